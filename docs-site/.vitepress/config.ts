@@ -24,6 +24,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
   ['changing-safely', '安全地修改协议', 'Changing the protocol safely'],
+  ['editors', '在编辑器里', 'In your editor'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
   ['targets', '生成什么，放在哪里', 'What is made, and where'],
   ['lint', '团队规则与规范检查', 'House rules and the lint'],

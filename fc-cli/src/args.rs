@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::lang::Language;
 use crate::place::{GLOBAL, Place};
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, new, places,
-    questions, release, retire, schema, settle, shell,
+    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
+    places, questions, release, retire, schema, settle, shell,
 };
 
 const STYLES: Styles = Styles::styled()
@@ -82,6 +82,7 @@ pub enum Command {
     #[command(hide = true)]
     GitDiff(git::diff::Options),
     Schema(schema::Options),
+    Lsp(lsp::Options),
     Completions(shell::Completions),
     Man(shell::Man),
 }

@@ -15,6 +15,7 @@ mod init;
 mod inspect;
 mod lang;
 mod lint;
+mod lsp;
 mod new;
 mod outcome;
 mod place;
@@ -73,6 +74,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
+        Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
         Command::Git(options) => git::run(&args.place, options),

@@ -52,6 +52,15 @@ impl Project {
         root.map(|root| Self::at(root, place)).transpose()
     }
 
+    /// The same from a directory other than the current one.
+    pub fn find_from(place: &Place, directory: &Path) -> Result<Self, Failure> {
+        let root = match &place.root {
+            Some(_) => root(place)?,
+            None => above(place, directory)?,
+        };
+        Self::at(root, place)
+    }
+
     fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {
         let file = root.join(FILE);
         let targets = if file.is_file() {
@@ -92,6 +101,10 @@ fn root(place: &Place) -> Result<PathBuf, Failure> {
             "cannot tell the current directory: {error}; name one with --root"
         )
     })?;
+    above(place, &here)
+}
+
+fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
     here.ancestors()
         .find(|directory| is_project(directory, place))
         .map(PathBuf::from)

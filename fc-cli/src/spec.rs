@@ -1,9 +1,8 @@
 //! Reading the spec and showing its faults.
 
+use fc_codegen::check::check;
 use fc_codegen::surface::language::Language;
-use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
-use fc_spec::load::{load, places};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
@@ -39,16 +38,7 @@ impl Spec {
     }
 
     fn of(sources: Sources, mut faults: Faults, languages: Vec<&'static Language>) -> Self {
-        let loaded = load(&sources, &mut faults);
-        let model = loaded.model().filter(|model| {
-            let clashes = clashes(model, &languages);
-            if !clashes.is_empty() {
-                let places = places(&sources);
-                faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
-            }
-            clashes.is_empty()
-        });
-        faults.sort();
+        let model = check(&sources, &languages, &mut faults).model();
         Self {
             sources,
             faults,

@@ -2,8 +2,10 @@
 //!
 //! A model becomes artifacts ([`emit`]), with what all packages say of it ([`surface`]), and with values and frames
 //! made up for it by `fc-reflect`; one function ([`output`]) touches the disk. [`inspect`] shows the model itself,
-//! [`questions`] what its owner has still to say, [`codes`] who has which code.
+//! [`questions`] what its owner has still to say, [`codes`] who has which code; [`check`] finds all that stands in the
+//! way of making anything of a spec.
 
+pub mod check;
 pub mod codes;
 pub mod emit;
 pub mod inspect;

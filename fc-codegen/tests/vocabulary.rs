@@ -12,10 +12,11 @@ use std::fs;
 use std::path::Path;
 
 /// Where words are looked for.
-const SOURCES: [&str; 5] = [
+const SOURCES: [&str; 6] = [
     "fc-cli/src",
     "fc-codegen/src",
     "fc-diff/src",
+    "fc-lsp/src",
     "fc-reflect/src",
     "fc-spec/src",
 ];

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 47] = [
+const TEXTS: [(&str, &[&str]); 50] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -33,6 +33,8 @@ const TEXTS: [(&str, &[&str]); 47] = [
     ("docs-site/.vitepress/search.ts", &["ts"]),
     ("docs-site/.vitepress/search-terms.ts", &["ts"]),
     ("docs-site/.vitepress/theme/components", &["vue"]),
+    ("editors", &["md"]),
+    ("editors/vscode/extension.js", &["js"]),
     ("fc-cli/src", &["rs"]),
     ("fc-cli/templates", &["md", "rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),
@@ -40,6 +42,7 @@ const TEXTS: [(&str, &[&str]); 47] = [
     ("fc-derive/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),
     ("fc-diff/src", &["rs"]),
+    ("fc-lsp/src", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
     ("stubs/cpp/README.md", &["md"]),

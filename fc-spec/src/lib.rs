@@ -2,7 +2,7 @@
 //!
 //! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
 //! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation, [`retire`] takes one out, [`revision`] gives the whole another number, [`mod@format`] lays out the text of a file, and
+//! new operation, [`retire`] takes one out, [`rename`] gives a thing another name, [`revision`] gives the whole another number, [`mod@format`] lays out the text of a file, and
 //! [`mod@merge`] makes one of three versions of it.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
@@ -15,6 +15,7 @@ pub mod lint;
 pub mod load;
 pub mod merge;
 pub mod model;
+pub mod rename;
 pub mod retire;
 pub mod revision;
 pub mod scaffold;

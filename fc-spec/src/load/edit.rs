@@ -306,7 +306,7 @@ impl<'s> Writing<'s> {
 }
 
 /// A text as it is written in YAML on one line, between braces too: in quotes where it could be taken for something else.
-fn text(text: &str) -> String {
+pub(crate) fn text(text: &str) -> String {
     if text.contains(char::is_control) {
         // What JSON escapes is escaped in the same way between double quotes of YAML.
         return serde_json::Value::from(text).to_string();

@@ -28,7 +28,9 @@ pub(crate) mod scalar;
 mod section;
 mod settle;
 mod shape;
+mod site;
 pub(crate) mod texts;
+mod uses;
 
 use crate::diagnostic::Faults;
 use crate::syntax::{Sources, parse};
@@ -38,9 +40,13 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 pub use partial::{Loaded, Partial};
 pub use places::{Item, Place, Places};
 pub use settle::{Said, SettleError, Settled, settle};
+pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
+pub use uses::{Uses, uses};
 
+pub(crate) use edit::text as written;
 pub(crate) use inside::{Inside, inside};
 pub(crate) use names::is_snake as is_operation_name;
+pub(crate) use site::entry_at;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// Reads a spec: what it says, as far as it can be read, and all of its faults.
@@ -48,7 +54,7 @@ pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     read(sources, faults, |draft, whole, faults| {
         check::check(&draft, whole, faults);
-        partial::build(draft, !faults.has_errors())
+        partial::build(draft, whole, !faults.has_errors())
     })
 }
 

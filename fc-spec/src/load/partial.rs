@@ -4,8 +4,8 @@ use super::draft::{Draft, Placed};
 use crate::model::{
     Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
     Envelope, Frame, FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
-    ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeDef,
-    TypeShape, Types, Waiver, link,
+    RangeUse, ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport,
+    TypeDef, TypeShape, Types, Waiver, link, next_code,
 };
 use std::collections::BTreeMap;
 
@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 pub struct Loaded {
     /// What could be read.
     pub partial: Partial,
+    /// Whether all files could be read as YAML, so that what is missing is really missing.
+    pub whole: bool,
     /// Whether nothing stands in the way of a model.
     sound: bool,
 }
@@ -22,7 +24,20 @@ impl Loaded {
     /// The model; `None` if there is any error in the spec. Warnings do not stand in the way.
     #[must_use]
     pub fn model(self) -> Option<Model> {
-        self.partial.whole().filter(|_| self.sound)
+        self.into_model().ok()
+    }
+
+    /// The model, or what could be read if there is any error in the spec.
+    ///
+    /// # Errors
+    ///
+    /// What could be read.
+    pub fn into_model(self) -> Result<Model, Box<Partial>> {
+        if self.sound {
+            self.partial.whole()
+        } else {
+            Err(Box::new(self.partial))
+        }
     }
 }
 
@@ -62,40 +77,75 @@ pub struct Partial {
 }
 
 impl Partial {
-    /// The model; `None` where a section is missing, which has been reported.
-    fn whole(self) -> Option<Model> {
-        Some(Model {
-            protocol: self.protocol?,
-            transport: self.transport?,
-            frame: self.frame?,
-            json: self.json?,
-            envelope: self.envelope?,
-            results: self.results,
-            calls: self.calls?,
-            limits: self.limits?,
-            ranges: self.ranges,
-            retired: self.retired,
-            groups: self.groups,
-            operations: self.operations,
-            types: self.types,
-            tables: self.tables,
-            entities: self.entities,
-            coordinates: self.coordinates,
-            stores: self.stores,
-            availability: self.availability,
-            glossary: self.glossary,
-            waivers: self.waivers,
-            retained_sections: self.retained_sections,
-            conflicts: self.conflicts,
-            answers: self.answers,
-            questions: self.questions,
-            changes: self.changes,
-        })
+    /// The model, or all of this again where a section is missing, which has been reported.
+    fn whole(self) -> Result<Model, Box<Self>> {
+        match self {
+            Self {
+                protocol: Some(protocol),
+                transport: Some(transport),
+                frame: Some(frame),
+                json: Some(json),
+                envelope: Some(envelope),
+                results,
+                calls: Some(calls),
+                limits: Some(limits),
+                ranges,
+                retired,
+                groups,
+                operations,
+                types,
+                tables,
+                entities,
+                coordinates,
+                stores,
+                availability,
+                glossary,
+                waivers,
+                retained_sections,
+                conflicts,
+                answers,
+                questions,
+                changes,
+            } => Ok(Model {
+                protocol,
+                transport,
+                frame,
+                json,
+                envelope,
+                results,
+                calls,
+                limits,
+                ranges,
+                retired,
+                groups,
+                operations,
+                types,
+                tables,
+                entities,
+                coordinates,
+                stores,
+                availability,
+                glossary,
+                waivers,
+                retained_sections,
+                conflicts,
+                answers,
+                questions,
+                changes,
+            }),
+            partial => Err(Box::new(partial)),
+        }
+    }
+
+    /// The code that the next operation gets from the ranges of this use.
+    #[must_use]
+    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
+        next_code(&self.operations, &self.retired, &self.ranges, usage)
     }
 }
 
 /// Takes the places off a checked draft. `sound`: it has no fault that stands in the way of a model.
-pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
+pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
     let types = draft.types.into_iter().map(|ty| {
         let mut broken = ty.parts.iter().map(|part| part.broken);
         known(ty.def, || broken.next() == Some(true))
@@ -150,6 +200,7 @@ pub(super) fn build(draft: Draft<'_>, sound: bool) -> Loaded {
     );
     Loaded {
         partial,
+        whole,
         sound: sound && missing.is_none(),
     }
 }

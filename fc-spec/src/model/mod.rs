@@ -188,17 +188,32 @@ impl Model {
     /// Codes that cannot be given out: in use or retired.
     #[must_use]
     pub fn taken_codes(&self) -> BTreeSet<u16> {
-        let operations = self.operations.iter();
-        let used = operations.filter_map(|operation| operation.code.value);
-        used.chain(self.retired.iter().map(|retired| retired.code))
-            .collect()
+        taken_codes(&self.operations, &self.retired)
     }
 
     /// The code that the next operation gets from the ranges of this use.
     #[must_use]
     pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
-        let taken = self.taken_codes();
-        let mut ranges = self.ranges.iter().filter(|range| range.usage == usage);
-        ranges.find_map(|range| range.next(&taken))
+        next_code(&self.operations, &self.retired, &self.ranges, usage)
     }
+}
+
+fn taken_codes(operations: &[Operation], retired: &[RetiredCode]) -> BTreeSet<u16> {
+    let used = operations
+        .iter()
+        .filter_map(|operation| operation.code.value);
+    used.chain(retired.iter().map(|retired| retired.code))
+        .collect()
+}
+
+/// Of a spec that may have faults, too.
+pub(crate) fn next_code(
+    operations: &[Operation],
+    retired: &[RetiredCode],
+    ranges: &[CodeRange],
+    usage: RangeUse,
+) -> Option<u16> {
+    let taken = taken_codes(operations, retired);
+    let mut ranges = ranges.iter().filter(|range| range.usage == usage);
+    ranges.find_map(|range| range.next(&taken))
 }

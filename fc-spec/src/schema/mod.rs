@@ -12,6 +12,8 @@ use crate::model::Dump;
 
 pub use reference::{Key, Part, Takes, Word, reference};
 
+pub(crate) use reference::words;
+
 /// The schema of the language, indented, with a newline at its end.
 #[must_use]
 pub fn schema() -> String {

@@ -81,6 +81,16 @@ pub fn reference() -> Vec<Part> {
     parts.chain([types(), units()]).collect()
 }
 
+/// The words of which one may stand where a value of this kind does.
+pub(crate) fn words(kind: &Kind) -> Vec<Word> {
+    match kind {
+        Kind::Type => types().words,
+        Kind::Unit => units().words,
+        Kind::Word(words) => words.iter().map(word).collect(),
+        _ => Vec::new(),
+    }
+}
+
 const TYPE: &str = "type";
 const UNIT: &str = "unit";
 

@@ -32,6 +32,20 @@ pub(super) enum Found {
     Error(io::Error),
 }
 
+/// Whether a file can be one of a spec, by its path from the spec's directory.
+#[must_use]
+pub fn is_spec_file(path: &Path) -> bool {
+    let is_file = path
+        .extension()
+        .is_some_and(|extension| extension == "yaml");
+    let mut parts = path.iter();
+    match (parts.next(), parts.next(), parts.next()) {
+        (Some(_), None, _) => is_file,
+        (Some(directory), Some(_), None) => is_file && directory == GROUPS,
+        _ => false,
+    }
+}
+
 /// What there is in the spec's directories, sorted by path; at most one item more than a spec may have.
 pub(super) fn find(root: &Path, spec: &Path) -> Vec<Item> {
     let mut found = Vec::new();

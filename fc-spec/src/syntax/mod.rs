@@ -29,6 +29,7 @@ mod tree;
 pub(crate) mod width;
 
 pub(crate) use edit::Edits;
+pub use find::is_spec_file;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
 pub(crate) use quote::quoted;

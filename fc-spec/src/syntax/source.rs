@@ -125,7 +125,7 @@ impl Sources {
     }
 
     /// Puts a file in the place of the one with its path.
-    pub(crate) fn replace(&mut self, file: SourceFile) {
+    pub fn replace(&mut self, file: SourceFile) {
         let mut files = self.files.iter_mut();
         if let Some(old) = files.find(|old| old.path == file.path) {
             *old = file;

@@ -25,19 +25,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     let mut used = Used::default();
     for item in &module.items {
         body.blank();
-        match &item.shape {
-            Shape::Record(_, fields) => {
-                structure(&mut body, &mut used, context, samples, item, fields);
-                if let Some((command, Direction::Request)) = item.body_of() {
-                    errors(&mut body, &mut used, context, command);
-                }
-            }
-            Shape::Enum(shape, values) => {
-                used.derives.insert("OpenEnum");
-                enumeration(&mut body, context, item, shape, values);
-            }
-            Shape::Choice(_, variants) => choice(&mut body, &mut used, context, item, variants),
-        }
+        declaration(&mut body, &mut used, context, samples, item);
     }
 
     let mut out = Source::rust();
@@ -57,6 +45,35 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
     out.blank();
     out.append(&body);
     out.finish()
+}
+
+/// One type as its module declares it.
+pub fn item(context: &Context<'_>, samples: &Samples<'_>, item: &Item<'_>) -> String {
+    let mut out = Source::rust();
+    declaration(&mut out, &mut Used::default(), context, samples, item);
+    out.finish()
+}
+
+fn declaration<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &'m Context<'_>,
+    samples: &Samples<'_>,
+    item: &'m Item<'_>,
+) {
+    match &item.shape {
+        Shape::Record(_, fields) => {
+            structure(out, used, context, samples, item, fields);
+            if let Some((command, Direction::Request)) = item.body_of() {
+                errors(out, used, context, command);
+            }
+        }
+        Shape::Enum(shape, values) => {
+            used.derives.insert("OpenEnum");
+            enumeration(out, context, item, shape, values);
+        }
+        Shape::Choice(_, variants) => choice(out, used, context, item, variants),
+    }
 }
 
 /// What a module has to import.

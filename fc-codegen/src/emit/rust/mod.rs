@@ -76,6 +76,46 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         .collect()
 }
 
+/// The types of these names as the crate declares them, one behind the other, without what they import.
+#[must_use]
+pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
+    let context = Context::new(
+        model,
+        targets.rust(),
+        &source::RUST,
+        targets.place(Product::Markdown),
+    );
+    let samples = Samples::new(model);
+    let items = context.package.items();
+    let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
+    let items: Vec<_> = items
+        .map(|item| messages::item(&context, &samples, item))
+        .collect();
+    items.join("\n")
+}
+
+/// A field as its struct declares it: `pub name: Option<String>`.
+#[must_use]
+pub fn field(model: &Model, targets: &Targets, owner: &str, wire: &str) -> Option<String> {
+    let context = Context::new(
+        model,
+        targets.rust(),
+        &source::RUST,
+        targets.place(Product::Markdown),
+    );
+    let mut items = context.package.items();
+    let item = items.find(|item| item.ty.of.name == owner)?;
+    let mut fields = item.fields().iter();
+    let field = fields.find(|field| field.of.wire == wire)?;
+    let ty = context.field_type(field);
+    let ty = if field.optional {
+        format!("Option<{ty}>")
+    } else {
+        ty
+    };
+    Some(format!("pub {}: {ty}", field.name))
+}
+
 /// A file of the crate.
 struct File<'m> {
     /// Below the crate's folder.

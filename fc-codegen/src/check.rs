@@ -1,0 +1,50 @@
+//! All that stands in the way of making products of a spec: its own faults, and names that a language cannot have.
+
+use crate::surface::language::Language;
+use crate::surface::package::clashes;
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Partial, load, places};
+use fc_spec::model::Model;
+use fc_spec::syntax::Sources;
+
+/// A spec that has been checked.
+#[derive(Debug)]
+pub struct Checked {
+    /// What it means, or what could be read of it if there is an error in it.
+    pub read: Result<Model, Box<Partial>>,
+    /// Whether all of its files could be read as YAML.
+    pub is_whole: bool,
+    /// Whether its names are free in all languages that were asked for.
+    pub is_spellable: bool,
+}
+
+impl Checked {
+    /// The model; `None` if there is any error.
+    #[must_use]
+    pub fn model(self) -> Option<Model> {
+        self.read.ok().filter(|_| self.is_spellable)
+    }
+}
+
+/// Reads a spec and adds its faults to those of reading its files, all in the order of their places. Its names have to
+/// be free in each of the `languages`.
+pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) -> Checked {
+    let loaded = load(sources, faults);
+    let is_whole = loaded.whole;
+    let read = loaded.into_model();
+    let clashes = match &read {
+        Ok(model) => clashes(model, languages),
+        Err(_) => Vec::new(),
+    };
+    if !clashes.is_empty() {
+        let places = places(sources);
+        faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
+    }
+    let is_spellable = clashes.is_empty();
+    faults.sort();
+    Checked {
+        read,
+        is_whole,
+        is_spellable,
+    }
+}

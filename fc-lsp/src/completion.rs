@@ -1,0 +1,231 @@
+//! What may be written at a place: keys, words, names of things, the next code.
+//!
+//! What is being written is not yet what the language wants, mostly not even YAML. So the text is read as it would be with
+//! a word in the place of what has been typed, as a key or as a value, and with its brackets closed.
+
+use crate::language::{self, both};
+use crate::snapshot::Snapshot;
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{OtherKey, Site, site_at};
+use fc_spec::schema::Word;
+use fc_spec::syntax::{FileId, SourceFile, Span, parse};
+use gen_lsp_types::{CompletionItem, CompletionItemKind, MarkupContent, MarkupKind, TextEdit};
+
+/// A word that no spec has.
+const WORD: &str = "zzz_here_zzz";
+
+/// What may be written at an offset.
+#[must_use]
+pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<CompletionItem> {
+    let Some(source) = snapshot.source(file).filter(|source| source.whole) else {
+        return Vec::new();
+    };
+    let Some(typed) = Typed::at(source, offset) else {
+        return Vec::new();
+    };
+    let replaced = Span::new(file, typed.start, typed.end);
+    for text in typed.readings(source) {
+        let Some(tree) = parse(file, &text, &mut Faults::new()) else {
+            continue;
+        };
+        let Some(site) = site_at(tree.root(), typed.start) else {
+            continue;
+        };
+        let found = Found {
+            snapshot,
+            replaced,
+            items: Vec::new(),
+        };
+        let items = found.of(&site);
+        if !items.is_empty() {
+            return items;
+        }
+    }
+    Vec::new()
+}
+
+/// The word in which the cursor is, and the line around it.
+struct Typed<'s> {
+    start: usize,
+    end: usize,
+    before: &'s str,
+    after: &'s str,
+}
+
+impl<'s> Typed<'s> {
+    fn at(source: &'s SourceFile, offset: usize) -> Option<Self> {
+        let line = source.line(offset);
+        let (first, last) = source.lines(line, line)?;
+        let (before, after) = (
+            source.text.get(first..offset)?,
+            source.text.get(offset..last)?,
+        );
+        let is_word = |c: char| c.is_alphanumeric() || "_%/²³·°℃Ω".contains(c);
+        let start = before.trim_end_matches(is_word).len();
+        let end = after.len() - after.trim_start_matches(is_word).len();
+        Some(Self {
+            start: first + start,
+            end: offset + end,
+            before: before.get(..start)?,
+            after: after.get(end..)?,
+        })
+    }
+
+    /// The file's text with a word in place of what has been typed, as the most likely thing first.
+    fn readings(&self, source: &SourceFile) -> Vec<String> {
+        let Self { before, after, .. } = self;
+        let in_key = {
+            let part = before.rsplit(['{', '[', ',']).next().unwrap_or_default();
+            let is_item = before.rfind('[') > before.rfind('{');
+            !part.contains(':') && !is_item && !after.trim_start().starts_with(':')
+        };
+        let closing = closing(before, after);
+        let value = format!("{WORD}{after}{closing}");
+        let key = format!("{WORD}: ~{after}{closing}");
+        let lines = if in_key { [key, value] } else { [value, key] };
+        let head = source.text.get(..self.start).unwrap_or_default();
+        let line = source.line(self.start);
+        let tail = source
+            .lines(line, line)
+            .map_or(source.text.len(), |(_, end)| end);
+        let tail = source.text.get(tail..).unwrap_or_default();
+        let line = lines.into_iter();
+        line.map(|line| [head, &line, tail].concat()).collect()
+    }
+}
+
+/// The brackets that a line leaves open.
+fn closing(before: &str, after: &str) -> String {
+    let mut open = Vec::new();
+    for c in before.chars().chain(after.chars()) {
+        match c {
+            '{' => open.push('}'),
+            '[' => open.push(']'),
+            '}' | ']' => {
+                open.pop();
+            }
+            _ => {}
+        }
+    }
+    let closing: String = open.into_iter().rev().collect();
+    if closing.is_empty() {
+        closing
+    } else {
+        format!(" {closing}")
+    }
+}
+
+struct Found<'s> {
+    snapshot: &'s Snapshot,
+    replaced: Span,
+    items: Vec<CompletionItem>,
+}
+
+impl Found<'_> {
+    fn of(mut self, site: &Site<'_>) -> Vec<CompletionItem> {
+        let keys = site.other_keys();
+        let is_key = !keys.is_empty();
+        for key in keys {
+            self.key(key);
+        }
+        if is_key {
+            return self.items;
+        }
+        if let Some(code) = site
+            .code_of()
+            .and_then(|it| self.snapshot.known().analysis().next_code(it))
+        {
+            let lang = self.snapshot.settings.lang;
+            let what = lang.pick("下一个空闲的功能码", "the next free code");
+            let code = format!("0x{code:04X}");
+            self.add(&code, CompletionItemKind::Value, what.to_owned(), None);
+        }
+        for kind in site.names() {
+            self.things(kind, site);
+        }
+        for word in site.words() {
+            self.word(&word);
+        }
+        self.items
+    }
+
+    fn key(&mut self, key: OtherKey) {
+        let lang = self.snapshot.settings.lang;
+        let Some(known) = language::key(key.part, key.name) else {
+            return;
+        };
+        let required = if known.required {
+            lang.pick("必填", "required")
+        } else {
+            ""
+        };
+        let text = both(&known.text, lang);
+        self.add(
+            key.name,
+            CompletionItemKind::Property,
+            required.to_owned(),
+            Some(text),
+        );
+        let after = if key.opens_lines { ":" } else { ": " };
+        let new_text = key.name.to_owned() + after;
+        let range = self.snapshot.range(self.replaced);
+        // What has to be there comes first.
+        let rank = if known.required { '0' } else { '1' };
+        let rank = format!("{rank}{:03}", self.items.len());
+        if let Some(item) = self.items.last_mut() {
+            item.sort_text = Some(rank);
+            item.text_edit = Some(TextEdit { range, new_text }.into());
+        }
+    }
+
+    fn word(&mut self, word: &Word) {
+        let lang = self.snapshot.settings.lang;
+        let about = both(&word.text, lang);
+        let detail = lang.text(&word.text).to_owned();
+        self.add(
+            word.word,
+            CompletionItemKind::EnumMember,
+            detail,
+            Some(about),
+        );
+    }
+
+    /// The things of a kind that the spec has; of enum values those of the enum in which the place is.
+    fn things(&mut self, kind: &str, site: &Site<'_>) {
+        let lang = self.snapshot.settings.lang;
+        let known = self.snapshot.known();
+        let places = known.places().iter();
+        let things: Vec<_> = places
+            .filter(|(item, _)| item.kind == kind)
+            .filter(|(item, _)| item.owner.is_none() || item.owner.as_deref() == site.owner())
+            .collect();
+        for (item, place) in things {
+            let title = known.title(item, place);
+            let title = title.map_or(String::new(), |title| lang.text(&title).to_owned());
+            self.add(&item.name, CompletionItemKind::Reference, title, None);
+        }
+    }
+
+    fn add(&mut self, label: &str, kind: CompletionItemKind, detail: String, text: Option<String>) {
+        let range = self.snapshot.range(self.replaced);
+        let edit = TextEdit {
+            range,
+            new_text: label.to_owned(),
+        };
+        self.items.push(CompletionItem {
+            label: label.to_owned(),
+            kind: Some(kind),
+            detail: (!detail.is_empty()).then_some(detail),
+            documentation: text.map(|value| {
+                MarkupContent {
+                    kind: MarkupKind::Markdown,
+                    value,
+                }
+                .into()
+            }),
+            sort_text: Some(format!("{:03}", self.items.len())),
+            text_edit: Some(edit.into()),
+            ..CompletionItem::default()
+        });
+    }
+}

@@ -1,0 +1,188 @@
+//! Which request is answered by what.
+
+use crate::snapshot::Snapshot;
+use crate::{
+    actions, completion, definition, document_symbols, formatting, hover, lenses, prepare_rename,
+    references, rename, workspace_symbols,
+};
+use gen_lsp_types as lsp;
+use lsp::Request as _;
+use lsp_server::{ErrorCode, Request, RequestId, Response, ResponseError};
+use serde_json::Value;
+
+/// What the server can do, for the answer to `initialize`.
+pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
+    lsp::ServerCapabilities {
+        position_encoding: Some(match encoding {
+            crate::Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
+            crate::Encoding::Utf16 => lsp::PositionEncodingKind::UTF16,
+        }),
+        text_document_sync: Some(
+            lsp::TextDocumentSyncOptions {
+                open_close: Some(true),
+                change: Some(lsp::TextDocumentSyncKind::Incremental),
+                ..lsp::TextDocumentSyncOptions::default()
+            }
+            .into(),
+        ),
+        completion_provider: Some(lsp::CompletionOptions {
+            trigger_characters: Some([" ", "{", "[", ","].map(str::to_owned).to_vec()),
+            ..lsp::CompletionOptions::default()
+        }),
+        hover_provider: Some(true.into()),
+        definition_provider: Some(true.into()),
+        references_provider: Some(true.into()),
+        document_symbol_provider: Some(true.into()),
+        workspace_symbol_provider: Some(true.into()),
+        code_action_provider: Some(
+            lsp::CodeActionOptions {
+                code_action_kinds: Some(vec![lsp::CodeActionKind::QuickFix]),
+                ..lsp::CodeActionOptions::default()
+            }
+            .into(),
+        ),
+        code_lens_provider: Some(lsp::CodeLensOptions::default()),
+        document_formatting_provider: Some(true.into()),
+        rename_provider: Some(
+            lsp::RenameOptions {
+                prepare_provider: Some(true),
+                ..lsp::RenameOptions::default()
+            }
+            .into(),
+        ),
+        ..lsp::ServerCapabilities::default()
+    }
+}
+
+/// Answers a request; without a snapshot, there being no project, with nothing.
+pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
+    let Request { id, method, params } = request;
+    let ask = Ask {
+        id,
+        params,
+        snapshot,
+    };
+    match method.as_str() {
+        m if m == lsp::CompletionRequest::METHOD.as_str() => {
+            ask.of::<lsp::CompletionRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
+                Some(completion(snapshot, offset).into())
+            })
+        }
+        m if m == lsp::HoverRequest::METHOD.as_str() => {
+            ask.of::<lsp::HoverRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
+                hover(snapshot, offset)
+            })
+        }
+        m if m == lsp::DefinitionRequest::METHOD.as_str() => {
+            ask.of::<lsp::DefinitionRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
+                let place = definition(snapshot, offset)?;
+                Some(lsp::Definition::from(place).into())
+            })
+        }
+        m if m == lsp::ReferencesRequest::METHOD.as_str() => {
+            ask.of::<lsp::ReferencesRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
+                references(snapshot, offset, params.context.include_declaration)
+            })
+        }
+        m if m == lsp::DocumentSymbolRequest::METHOD.as_str() => ask
+            .of::<lsp::DocumentSymbolRequest>(|snapshot, params| {
+                let file = snapshot.file(&params.text_document.uri)?;
+                Some(document_symbols(snapshot, file).into())
+            }),
+        m if m == lsp::WorkspaceSymbolRequest::METHOD.as_str() => ask
+            .of::<lsp::WorkspaceSymbolRequest>(|snapshot, params| {
+                Some(workspace_symbols(snapshot, &params.query).into())
+            }),
+        m if m == lsp::CodeActionRequest::METHOD.as_str() => {
+            ask.of::<lsp::CodeActionRequest>(|snapshot, params| {
+                let found = actions(snapshot, &params.text_document.uri, params.range);
+                Some(found.into_iter().map(Into::into).collect())
+            })
+        }
+        m if m == lsp::CodeLensRequest::METHOD.as_str() => {
+            ask.of::<lsp::CodeLensRequest>(|snapshot, params| {
+                Some(lenses(snapshot, snapshot.file(&params.text_document.uri)?))
+            })
+        }
+        m if m == lsp::DocumentFormattingRequest::METHOD.as_str() => ask
+            .of::<lsp::DocumentFormattingRequest>(
+            |snapshot, params| formatting(snapshot, &params.text_document.uri),
+        ),
+        m if m == lsp::PrepareRenameRequest::METHOD.as_str() => ask
+            .of::<lsp::PrepareRenameRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
+                prepare_rename(snapshot, offset).map(Into::into)
+            }),
+        m if m == lsp::RenameRequest::METHOD.as_str() => {
+            ask.trying::<lsp::RenameRequest>(|snapshot, params| {
+                let at = params.text_document_position_params;
+                let Some(offset) = snapshot.offset(&at.text_document.uri, at.position) else {
+                    return Ok(None);
+                };
+                rename(snapshot, offset, &params.new_name).map(Some)
+            })
+        }
+        _ => {
+            let message = format!("`{method}` is not known here");
+            Response::new_err(ask.id, ErrorCode::MethodNotFound as i32, message)
+        }
+    }
+}
+
+/// A request on its way to its answer.
+struct Ask<'s> {
+    id: RequestId,
+    params: Value,
+    snapshot: Option<&'s Snapshot>,
+}
+
+impl Ask<'_> {
+    fn of<R: lsp::Request>(self, answer: impl FnOnce(&Snapshot, R::Params) -> R::Result) -> Response
+    where
+        R::Result: Default,
+    {
+        self.trying::<R>(|snapshot, params| Ok(answer(snapshot, params)))
+    }
+
+    /// The same where the answer may be why there is none, in a sentence for the user.
+    fn trying<R: lsp::Request>(
+        self,
+        answer: impl FnOnce(&Snapshot, R::Params) -> Result<R::Result, String>,
+    ) -> Response
+    where
+        R::Result: Default,
+    {
+        let fails = |code: ErrorCode, message| ResponseError {
+            code: code as i32,
+            message,
+            data: None,
+        };
+        let result = match (
+            serde_json::from_value::<R::Params>(self.params),
+            self.snapshot,
+        ) {
+            (Err(error), _) => Err(fails(ErrorCode::InvalidParams, error.to_string())),
+            (Ok(_), None) => Ok(R::Result::default()),
+            (Ok(params), Some(snapshot)) => {
+                answer(snapshot, params).map_err(|message| fails(ErrorCode::RequestFailed, message))
+            }
+        };
+        let response_result = result.and_then(|result| {
+            serde_json::to_value(result)
+                .map_err(|error| fails(ErrorCode::InternalError, error.to_string()))
+        });
+        Response {
+            id: self.id,
+            response_result,
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! What is to be said of a key, a word or a thing, in both languages; of types and messages also what they are in Rust
+//! and an example of them in JSON.
+
+use crate::item::of_site;
+use crate::language::{self, both};
+use crate::snapshot::Snapshot;
+use fc_codegen::emit::rust;
+use fc_diff::Lang;
+use fc_reflect::sample::{Profile, Samples};
+use fc_spec::load::{Item, Role, Site};
+use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
+use fc_spec::syntax::FileId;
+use gen_lsp_types::{Hover, MarkupContent, MarkupKind};
+use std::fmt::Write as _;
+
+/// Most lines of an example or of Rust that are shown.
+const LINES: usize = 60;
+
+/// What is to be said of what is at an offset.
+#[must_use]
+pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
+    let (text, span) = snapshot.at(at, |site| {
+        let span = site.node.span();
+        if site.role == Role::Key {
+            return Some((of_key(snapshot, site)?, span));
+        }
+        if let Some(meant) = of_site(snapshot, site) {
+            return Some((thing(snapshot, &meant.item)?, meant.span));
+        }
+        Some((of_word(snapshot, site)?, span))
+    })?;
+    Some(Hover {
+        contents: MarkupContent {
+            kind: MarkupKind::Markdown,
+            value: text,
+        }
+        .into(),
+        range: Some(snapshot.range(span)),
+    })
+}
+
+fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
+    let lang = snapshot.settings.lang;
+    let key = language::key(site.part, site.key?)?;
+    let required = if key.required {
+        lang.pick("（必填）", " (required)")
+    } else {
+        ""
+    };
+    let mut text = format!("`{}`{required}\n\n{}", key.name, both(&key.text, lang));
+    let takes = key.takes.iter().filter(|takes| !takes.text.en.is_empty());
+    for takes in takes {
+        text.push_str("\n\n— ");
+        text.push_str(lang.text(&takes.text));
+    }
+    for word in key.takes.iter().flat_map(|takes| &takes.words) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "\n- `{}` {}", word.word, lang.text(&word.text));
+    }
+    Some(text)
+}
+
+fn of_word(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
+    let lang = snapshot.settings.lang;
+    let written = site.node.as_str()?.trim_end_matches('?');
+    let mut words = site.words().into_iter();
+    if let Some(word) = words.find(|word| word.word == written) {
+        return Some(format!("`{}`\n\n{}", word.word, both(&word.text, lang)));
+    }
+    // What its key is about is better than nothing.
+    let key = language::key(site.part, site.key?)?;
+    Some(format!("`{}`\n\n{}", key.name, both(&key.text, lang)))
+}
+
+/// What is to be said of a thing.
+pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
+    let known = snapshot.known().analysis();
+    let lang = snapshot.settings.lang;
+    let mut text = format!("**{}** `{}`", kind(item, lang), name(item));
+    if item.is_operation() {
+        let mut operations = known.operations().iter();
+        let operation = operations.find(|it| it.name == item.name)?;
+        of_operation(&mut text, operation, lang);
+        if let Some(model) = known.model() {
+            messages(&mut text, snapshot, model, operation);
+        }
+    } else if item.is_type() {
+        let ty = known.types().named(&item.name)?;
+        described(&mut text, &ty.title, ty.about.as_ref(), lang);
+        if let Some(model) = known.model() {
+            let shown = rust::items(model, &snapshot.project.targets, &[&ty.name]);
+            code(&mut text, "rust", &without_docs(&shown));
+            let sample = Samples::new(model).named(ty, Profile::Example);
+            json(&mut text, &sample);
+        }
+    } else if let Some(owner) = item.owner.as_deref().and_then(|it| known.types().named(it)) {
+        of_part(&mut text, snapshot, owner, item)?;
+    } else {
+        let place = snapshot.places().get(item)?;
+        let (title, about) = fc_spec::load::described(&snapshot.sources, place)?;
+        described(&mut text, &title, about.as_ref(), lang);
+    }
+    Some(text)
+}
+
+fn kind(item: &Item, lang: Lang) -> &str {
+    let part = language::part(item.kind);
+    part.map_or(item.kind, |part| lang.text(&part.name))
+}
+
+fn name(item: &Item) -> String {
+    match &item.owner {
+        Some(owner) => format!("{owner}.{}", item.name),
+        None => item.name.clone(),
+    }
+}
+
+fn described(text: &mut String, title: &Text, about: Option<&Text>, lang: Lang) {
+    for part in std::iter::once(title).chain(about) {
+        text.push_str("\n\n");
+        text.push_str(&both(part, lang));
+    }
+}
+
+fn of_operation(text: &mut String, operation: &Operation, lang: Lang) {
+    let _ = write!(text, " · `{}`", operation.code.spelling);
+    if let Some(effect) = operation.effect() {
+        let _ = write!(text, " · {}", effect.name());
+    }
+    described(text, &operation.title, operation.about.as_ref(), lang);
+    if let Some(deprecated) = &operation.deprecated {
+        text.push_str("\n\n⚠ ");
+        text.push_str(&both(&deprecated.note, lang));
+    }
+}
+
+/// Both bodies in Rust, and both messages.
+fn messages(text: &mut String, snapshot: &Snapshot, model: &Model, operation: &Operation) {
+    let bodies: Vec<&str> = operation.bodies().map(|body| body.ty.name()).collect();
+    let shown = rust::items(model, &snapshot.project.targets, &bodies);
+    code(text, "rust", &without_docs(&shown));
+    let samples = Samples::new(model);
+    for direction in [Direction::Request, Direction::Response] {
+        if operation.body(direction).is_some() {
+            let sample = samples.message(operation, direction, Profile::Example);
+            json(text, &sample);
+        }
+    }
+}
+
+/// A field, an enum value or a variant.
+fn of_part(text: &mut String, snapshot: &Snapshot, owner: &TypeDef, item: &Item) -> Option<()> {
+    let lang = snapshot.settings.lang;
+    match &owner.shape {
+        TypeShape::Struct(shape) => {
+            let field = shape.field(&item.name)?;
+            let mark = if field.optional { "?" } else { "" };
+            let _ = write!(text, " · `{}{mark}`", field.ty);
+            let details = field.details();
+            if let Some(unit) = &details.unit {
+                let _ = write!(text, " · {unit}");
+            }
+            described(text, &field.text, details.note.as_ref(), lang);
+            let model = snapshot.known().analysis().model()?;
+            let targets = &snapshot.project.targets;
+            let rust = rust::field(model, targets, &owner.name, &item.name)?;
+            code(text, "rust", &rust);
+            let sample = Samples::new(model).value_of(field);
+            json(text, &Value::Object(vec![(field.wire.clone(), sample)]));
+        }
+        TypeShape::Enum(shape) => {
+            let value = shape.values.iter().find(|it| it.name == item.name)?;
+            let _ = write!(text, " · `{}`", Value::from(&value.wire));
+            described(text, &value.text, None, lang);
+        }
+        TypeShape::OneOf(choice) => {
+            let variant = choice.variants.iter().find(|it| it.name == item.name)?;
+            described(text, &variant.text, None, lang);
+        }
+    }
+    Some(())
+}
+
+fn code(text: &mut String, language: &str, code: &str) {
+    let code = code.trim_end();
+    if code.is_empty() {
+        return;
+    }
+    let mut lines: Vec<&str> = code.lines().take(LINES).collect();
+    if code.lines().count() > LINES {
+        lines.push("…");
+    }
+    let _ = write!(text, "\n\n```{language}\n{}\n```", lines.join("\n"));
+}
+
+fn json(text: &mut String, value: &Value) {
+    if let Ok(pretty) = serde_json::to_string_pretty(value) {
+        code(text, "json", &pretty);
+    }
+}
+
+/// Rust without its comments, which say again what stands above them.
+fn without_docs(rust: &str) -> String {
+    let is_kept = |line: &&str| !line.trim_start().starts_with("///");
+    let lines = rust.lines().filter(is_kept);
+    let mut kept = String::new();
+    let mut was_blank = true;
+    for line in lines {
+        let is_blank = line.trim().is_empty();
+        if !(is_blank && was_blank) {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+        was_blank = is_blank;
+    }
+    kept
+}

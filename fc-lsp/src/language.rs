@@ -1,0 +1,33 @@
+//! What the spec language says of its keys and words, found by their names.
+
+use fc_diff::Lang;
+use fc_spec::model::Text;
+use fc_spec::schema::{Key, Part, reference};
+use std::sync::OnceLock;
+
+/// The key of a part.
+pub fn key(part: &str, name: &str) -> Option<&'static Key> {
+    let part = self::part(part)?;
+    part.keys.iter().find(|key| key.name == name)
+}
+
+/// A part by its id.
+pub fn part(id: &str) -> Option<&'static Part> {
+    static LANGUAGE: OnceLock<Vec<Part>> = OnceLock::new();
+    let parts = LANGUAGE.get_or_init(reference);
+    parts.iter().find(|part| part.id == id)
+}
+
+/// A text in both languages as paragraphs, the client's first.
+pub fn both(text: &Text, lang: Lang) -> String {
+    let other = match lang {
+        Lang::Zh => &text.en,
+        Lang::En => &text.zh,
+    };
+    let own = lang.text(text);
+    match (own.is_empty(), other.is_empty()) {
+        (false, false) if own != other => format!("{own}\n\n{other}"),
+        (true, _) => other.clone(),
+        _ => own.to_owned(),
+    }
+}

@@ -1,0 +1,146 @@
+//! What stands above a thing in an editor: the next free code, who uses it, and what breaks since the last release.
+
+use crate::snapshot::Snapshot;
+use fc_diff::{Finding, Lang};
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Item, Place, Role, sites};
+use fc_spec::model::RangeUse;
+use fc_spec::syntax::{FileId, Span, parse};
+use gen_lsp_types::{CodeLens, Command, Location};
+
+/// The command of clients that show references: the file, the position of the thing, and the places that name it.
+pub const SHOW_REFERENCES: &str = "fc.showReferences";
+
+/// All of a file.
+#[must_use]
+pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
+    let mut lenses = free_codes(snapshot, file);
+    let places = snapshot.places().iter();
+    for (item, place) in places.filter(|(_, place)| place.key.file == file) {
+        if is_declared(snapshot, item, place) {
+            lenses.extend(users(snapshot, item, place));
+        }
+    }
+    lenses.extend(breaks(snapshot, file));
+    lenses.sort_by_key(|lens| lens.range.start);
+    lenses
+}
+
+/// The code that the next operation gets, above the section that it would stand in.
+fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
+    let mut lenses = Vec::new();
+    let Some(source) = snapshot.source(file).filter(|source| source.whole) else {
+        return lenses;
+    };
+    let Some(tree) = parse(file, &source.text, &mut Faults::new()) else {
+        return lenses;
+    };
+    let lang = snapshot.settings.lang;
+    sites(tree.root(), &mut |site| {
+        let usage = site.operations().filter(|_| site.role == Role::Key);
+        let code = usage.and_then(|usage: RangeUse| snapshot.known().analysis().next_code(usage));
+        if let Some(code) = code {
+            let title = lang.pick("空闲的功能码", "free code");
+            let lens = said(
+                snapshot,
+                site.node.span(),
+                format!("{title} 0x{code:04X}"),
+                None,
+            );
+            lenses.push(lens);
+        }
+    });
+    lenses
+}
+
+/// Whether it is there for others to name it, and not made of an operation or field.
+fn is_declared(snapshot: &Snapshot, item: &Item, place: &Place) -> bool {
+    let key = snapshot.sources.slice(place.key);
+    item.owner.is_none() && key == item.name
+}
+
+/// How many places name a thing; nothing of a thing that no place has to name, such as most commands.
+fn users(snapshot: &Snapshot, item: &Item, place: &Place) -> Option<CodeLens> {
+    let uses = snapshot.uses().of(item).map(|sought| sought.span);
+    let places: Vec<Location> = uses.filter_map(|span| snapshot.location(span)).collect();
+    if places.is_empty() && !item.is_type() {
+        return None;
+    }
+    let title = match (snapshot.settings.lang, places.len()) {
+        (Lang::En, 1) => "1 user".to_owned(),
+        (Lang::En, many) => format!("{many} users"),
+        (Lang::Zh, many) => format!("{many} 处使用"),
+    };
+    let mut lens = said(snapshot, place.key, title, None);
+    let here = snapshot.location(place.key)?;
+    if let Some(command) = lens
+        .command
+        .as_mut()
+        .filter(|_| snapshot.settings.shows_references)
+    {
+        SHOW_REFERENCES.clone_into(&mut command.command);
+        let arguments = [
+            serde_json::to_value(&here.uri),
+            serde_json::to_value(here.range.start),
+            serde_json::to_value(&places),
+        ];
+        command.arguments = Some(arguments.into_iter().flatten().collect());
+    }
+    Some(lens)
+}
+
+/// What breaks since the last release and is not waived, above the operation or type in which it does.
+fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
+    let Some(release) = snapshot.project.release() else {
+        return Vec::new();
+    };
+    let lang = snapshot.settings.lang;
+    let findings = snapshot.findings().iter();
+    let breaking = findings.filter(|finding| finding.is_break() && finding.waived.is_none());
+    let mut broken: Vec<(Span, Vec<&str>)> = Vec::new();
+    for finding in breaking {
+        let Some(key) = shown_at(snapshot, finding).filter(|key| key.file == file) else {
+            continue;
+        };
+        let message = lang.text(&finding.message);
+        match broken.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, messages)) => messages.push(message),
+            None => broken.push((key, vec![message])),
+        }
+    }
+    let title = lang.pick("不兼容", "breaks");
+    let lenses = broken.into_iter().map(|(key, messages)| {
+        let title = format!("{title} {}", release.number);
+        said(snapshot, key, title, Some(messages.join("\n")))
+    });
+    lenses.collect()
+}
+
+/// The key of the operation or declared type in which a finding shows.
+fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
+    let places = snapshot.places();
+    let spot = finding.new.iter().find_map(|spot| {
+        let mut named = places.named(&spot.name);
+        let found = named.find(|(item, _)| spot.kind.is_empty() || item.kind == spot.kind);
+        found.map(|(_, place)| place)
+    })?;
+    let around = places.iter().filter(|(item, place)| {
+        (item.is_operation() || item.is_type()) && crate::item::holds(place, spot.key)
+    });
+    let largest = around.max_by_key(|(_, place)| place.whole.end - place.whole.start);
+    Some(largest.map_or(spot.key, |(_, place)| place.key))
+}
+
+fn said(snapshot: &Snapshot, span: Span, title: String, tooltip: Option<String>) -> CodeLens {
+    CodeLens {
+        range: snapshot.range(span),
+        command: Some(Command {
+            title,
+            tooltip,
+            // A command without a name is a text.
+            command: String::new(),
+            arguments: None,
+        }),
+        data: None,
+    }
+}

@@ -1,0 +1,21 @@
+//! Where a thing is named.
+
+use crate::item::meant;
+use crate::snapshot::Snapshot;
+use fc_spec::syntax::FileId;
+use gen_lsp_types::Location;
+
+/// All places at which the thing at an offset is named, in all files; with its own if that is asked for.
+#[must_use]
+pub fn references(
+    snapshot: &Snapshot,
+    at: (FileId, usize),
+    with_own: bool,
+) -> Option<Vec<Location>> {
+    let item = meant(snapshot, at)?.item;
+    let own = snapshot.places().get(&item).filter(|_| with_own);
+    let own = own.map(|place| place.key);
+    let uses = snapshot.uses().of(&item).map(|sought| sought.span);
+    let spans = own.into_iter().chain(uses);
+    Some(spans.filter_map(|span| snapshot.location(span)).collect())
+}

@@ -1,0 +1,295 @@
+//! One state of a project's files, and what has been found out about it.
+
+use crate::project::Project;
+use crate::settings::Settings;
+use fc_codegen::check::check;
+use fc_diff::{Against, Finding, diff, waive};
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Item, Partial, Place, Places, Site, Uses, described, places, site_at, uses};
+use fc_spec::model::{Model, Operation, RangeUse, Text, Types};
+use fc_spec::syntax::{FileId, SourceFile, Sources, Span, parse};
+use gen_lsp_types::{
+    Location, OptionalVersionedTextDocumentIdentifier, Position, Range, TextDocumentEdit,
+    TextDocumentIdentifier, TextEdit, Uri, WorkspaceEdit,
+};
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+/// One state of a project's files. What is asked of it is found out once, when it is asked first.
+#[derive(Debug)]
+pub struct Snapshot {
+    /// The project.
+    pub project: Arc<Project>,
+    /// How the client wants its answers.
+    pub settings: Arc<Settings>,
+    /// The files.
+    pub sources: Arc<Sources>,
+    /// What the client calls each file, and the version of its text if the client has it open.
+    documents: Vec<(Uri, Option<i32>)>,
+    today: String,
+    state: Arc<State>,
+    /// The last state before in which all files could be read.
+    before: Option<Arc<State>>,
+    uses: OnceLock<Uses>,
+    findings: OnceLock<Vec<Finding>>,
+}
+
+/// What can be found out about some files.
+#[derive(Debug)]
+pub struct State {
+    project: Arc<Project>,
+    sources: Arc<Sources>,
+    /// What was wrong with files on the disk.
+    unread: Faults,
+    analysis: OnceLock<Analysis>,
+    places: OnceLock<Places>,
+}
+
+/// What checking a spec comes to.
+#[derive(Debug)]
+pub struct Analysis {
+    /// Its faults, in the order of their places.
+    pub faults: Faults,
+    /// What it means, or what could be read of it.
+    pub read: Result<Model, Box<Partial>>,
+    /// Whether all files could be read.
+    is_whole: bool,
+}
+
+impl State {
+    /// What checking the files comes to.
+    pub fn analysis(&self) -> &Analysis {
+        self.analysis.get_or_init(|| {
+            let mut faults = self.unread.clone();
+            let languages = self.project.targets.languages();
+            let checked = check(&self.sources, &languages, &mut faults);
+            Analysis {
+                faults,
+                read: checked.read,
+                is_whole: checked.is_whole,
+            }
+        })
+    }
+
+    /// Where each thing is written.
+    pub fn places(&self) -> &Places {
+        self.places.get_or_init(|| places(&self.sources))
+    }
+
+    /// The title of an operation or type; of what else the spec declares, what its file says.
+    pub fn title(&self, item: &Item, place: &Place) -> Option<Text> {
+        if item.is_operation() {
+            let mut operations = self.analysis().operations().iter();
+            let operation = operations.find(|it| it.name == item.name)?;
+            return Some(operation.title.clone());
+        }
+        if item.is_type() {
+            return Some(self.analysis().types().named(&item.name)?.title.clone());
+        }
+        described(&self.sources, place).map(|(title, _)| title)
+    }
+
+    /// Whether it has been checked, and all files could be read.
+    fn is_whole(&self) -> bool {
+        self.analysis
+            .get()
+            .is_some_and(|analysis| analysis.is_whole)
+    }
+}
+
+impl Snapshot {
+    pub(crate) fn new(
+        project: Arc<Project>,
+        settings: Arc<Settings>,
+        (sources, unread): (Sources, Faults),
+        documents: Vec<(Uri, Option<i32>)>,
+        today: String,
+        before: Option<Arc<State>>,
+    ) -> Self {
+        let sources = Arc::new(sources);
+        let state = State {
+            project: Arc::clone(&project),
+            sources: Arc::clone(&sources),
+            unread,
+            analysis: OnceLock::new(),
+            places: OnceLock::new(),
+        };
+        Self {
+            project,
+            settings,
+            sources,
+            documents,
+            today,
+            state: Arc::new(state),
+            before,
+            uses: OnceLock::new(),
+            findings: OnceLock::new(),
+        }
+    }
+
+    /// What checking it comes to.
+    pub fn analysis(&self) -> &Analysis {
+        self.state.analysis()
+    }
+
+    /// Where each thing is written.
+    pub fn places(&self) -> &Places {
+        self.state.places()
+    }
+
+    /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for
+    /// which nobody waits until all is checked, and which do not go while a file is half written.
+    pub fn known(&self) -> &State {
+        match &self.before {
+            Some(before) if !self.state.is_whole() => before,
+            _ => &self.state,
+        }
+    }
+
+    /// What the next snapshot knows.
+    pub(crate) fn last_whole(&self) -> Option<Arc<State>> {
+        if self.state.is_whole() {
+            Some(Arc::clone(&self.state))
+        } else {
+            self.before.clone()
+        }
+    }
+
+    /// Where each thing is named.
+    pub fn uses(&self) -> &Uses {
+        self.uses.get_or_init(|| uses(&self.sources))
+    }
+
+    /// What differs from the last release; nothing where there is none, or while the spec has errors.
+    pub fn findings(&self) -> &[Finding] {
+        self.findings.get_or_init(|| {
+            let (Ok(model), Some(release)) = (&self.analysis().read, self.project.release()) else {
+                return Vec::new();
+            };
+            let mut findings = diff(&release.model, model);
+            waive(&mut findings, &model.waivers, &self.today, Against::Release);
+            findings
+        })
+    }
+
+    /// The file that the client calls so.
+    pub fn file(&self, uri: &Uri) -> Option<FileId> {
+        let at = self.documents.iter().position(|(known, _)| known == uri)?;
+        Some(FileId(u32::try_from(at).ok()?))
+    }
+
+    /// The text of a file.
+    pub fn source(&self, file: FileId) -> Option<&SourceFile> {
+        self.sources.get(file)
+    }
+
+    /// What the client calls a file.
+    pub fn uri(&self, file: FileId) -> Option<&Uri> {
+        self.document(file).map(|(uri, _)| uri)
+    }
+
+    /// The version of the text of a file that the client has open.
+    pub fn version(&self, file: FileId) -> Option<i32> {
+        self.document(file)?.1
+    }
+
+    fn document(&self, file: FileId) -> Option<&(Uri, Option<i32>)> {
+        self.documents.get(usize::try_from(file.0).ok()?)
+    }
+
+    /// A span as the client counts it.
+    pub fn range(&self, span: Span) -> Range {
+        match self.source(span.file) {
+            Some(file) => self.settings.encoding.range(file, span),
+            None => Range::default(),
+        }
+    }
+
+    /// A span in its file.
+    pub fn location(&self, span: Span) -> Option<Location> {
+        Some(Location {
+            uri: self.uri(span.file)?.clone(),
+            range: self.range(span),
+        })
+    }
+
+    /// The file and byte offset of a position.
+    pub fn offset(&self, uri: &Uri, position: Position) -> Option<(FileId, usize)> {
+        let file = self.file(uri)?;
+        let source = self.source(file)?;
+        Some((file, self.settings.encoding.offset(source, position)))
+    }
+
+    /// Hands the key or scalar at an offset to `then`; `None` where there is none, or where the file is no YAML.
+    pub fn at<T>(
+        &self,
+        (file, offset): (FileId, usize),
+        then: impl FnOnce(&Site<'_>) -> Option<T>,
+    ) -> Option<T> {
+        let source = self.source(file).filter(|source| source.whole)?;
+        let tree = parse(file, &source.text, &mut Faults::new())?;
+        then(&site_at(tree.root(), offset)?)
+    }
+
+    /// Replacements as a client makes them. Of files that it has open the version is named, so that nothing is
+    /// replaced in a text that has changed since.
+    pub fn edit(&self, changes: impl IntoIterator<Item = (Span, String)>) -> WorkspaceEdit {
+        let mut files: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
+        for (span, new_text) in changes {
+            let range = self.range(span);
+            let edit = TextEdit { range, new_text };
+            files.entry(span.file).or_default().push(edit);
+        }
+        let files = files.into_iter().filter_map(|(file, edits)| {
+            let text_document = OptionalVersionedTextDocumentIdentifier {
+                version: self.version(file),
+                text_document_identifier: TextDocumentIdentifier {
+                    uri: self.uri(file)?.clone(),
+                },
+            };
+            let edits = edits.into_iter().map(Into::into).collect();
+            Some(
+                TextDocumentEdit {
+                    text_document,
+                    edits,
+                }
+                .into(),
+            )
+        });
+        WorkspaceEdit {
+            document_changes: Some(files.collect()),
+            ..WorkspaceEdit::default()
+        }
+    }
+}
+
+impl Analysis {
+    /// The model; `None` if there is an error in the spec.
+    pub fn model(&self) -> Option<&Model> {
+        self.read.as_ref().ok()
+    }
+
+    /// Operations, those of a spec with errors too.
+    pub fn operations(&self) -> &[Operation] {
+        match &self.read {
+            Ok(model) => &model.operations,
+            Err(partial) => &partial.operations,
+        }
+    }
+
+    /// Types.
+    pub fn types(&self) -> &Types {
+        match &self.read {
+            Ok(model) => &model.types,
+            Err(partial) => &partial.types,
+        }
+    }
+
+    /// The code that the next operation gets from the ranges of this use.
+    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
+        match &self.read {
+            Ok(model) => model.next_code(usage),
+            Err(partial) => partial.next_code(usage),
+        }
+    }
+}

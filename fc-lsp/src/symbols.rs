@@ -1,0 +1,105 @@
+//! The things that a file says, as an outline; and those of the spec, to be found by their names.
+
+use crate::snapshot::Snapshot;
+use fc_spec::load::{Item, Place};
+use fc_spec::syntax::{FileId, Span};
+use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolKind, WorkspaceSymbol};
+use std::collections::BTreeMap;
+
+/// Most things that one search finds.
+const FOUND: usize = 200;
+
+/// The things that a file says, each within that which it is part of.
+#[must_use]
+pub fn document_symbols(snapshot: &Snapshot, file: FileId) -> Vec<DocumentSymbol> {
+    // Of the things that one key says, the operation or field rather than the type that is made of it.
+    let mut own: BTreeMap<(usize, usize), (&Item, &Place)> = BTreeMap::new();
+    for (item, place) in snapshot.places().iter() {
+        let whole = place.whole;
+        if whole.file == file {
+            // Around what is in it.
+            let key = (place.key.start, usize::MAX - whole.end);
+            let known = own.entry(key).or_insert((item, place));
+            if known.0.is_type() && !item.is_type() {
+                *known = (item, place);
+            }
+        }
+    }
+    let mut open: Vec<(usize, DocumentSymbol)> = Vec::new();
+    let mut top = Vec::new();
+    for (item, place) in own.into_values() {
+        close(&mut open, &mut top, place.key.start);
+        open.push((place.whole.end, symbol(snapshot, item, place)));
+    }
+    close(&mut open, &mut top, usize::MAX);
+    top
+}
+
+/// Puts what ends before `at` into that which it is part of.
+fn close(open: &mut Vec<(usize, DocumentSymbol)>, top: &mut Vec<DocumentSymbol>, at: usize) {
+    while open.last().is_some_and(|(end, _)| *end <= at) {
+        let Some((_, symbol)) = open.pop() else {
+            return;
+        };
+        match open.last_mut() {
+            Some((_, around)) => around.children.get_or_insert_default().push(symbol),
+            None => top.push(symbol),
+        }
+    }
+}
+
+#[allow(deprecated, reason = "a field of the protocol's that has to be named")]
+fn symbol(snapshot: &Snapshot, item: &Item, place: &Place) -> DocumentSymbol {
+    DocumentSymbol {
+        name: item.name.clone(),
+        detail: Some(item.kind.to_owned()),
+        kind: kind(item),
+        tags: None,
+        deprecated: None,
+        range: snapshot.range(place.whole),
+        selection_range: snapshot.range(first_line(snapshot, place)),
+        children: None,
+    }
+}
+
+/// What names it; of a list item, which has no key, its first line.
+fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
+    let key = place.key;
+    let text = snapshot.sources.slice(key);
+    let line = text.lines().next().map_or(0, str::len);
+    Span::new(key.file, key.start, key.start + line)
+}
+
+/// The things of the spec whose names hold a text, capitals or not.
+#[must_use]
+pub fn workspace_symbols(snapshot: &Snapshot, query: &str) -> Vec<WorkspaceSymbol> {
+    let query = query.to_lowercase();
+    let places = snapshot.places().iter();
+    let found = places.filter(|(item, _)| item.name.to_lowercase().contains(&query));
+    let found = found.filter_map(|(item, place)| {
+        let location = snapshot.location(first_line(snapshot, place))?;
+        Some(WorkspaceSymbol {
+            location: location.into(),
+            data: None,
+            base_symbol_information: BaseSymbolInformation {
+                name: item.name.clone(),
+                kind: kind(item),
+                tags: None,
+                container_name: item.owner.clone(),
+            },
+        })
+    });
+    found.take(FOUND).collect()
+}
+
+fn kind(item: &Item) -> SymbolKind {
+    if item.is_operation() {
+        SymbolKind::Function
+    } else if item.is_type() {
+        SymbolKind::Struct
+    } else if item.owner.is_some() {
+        SymbolKind::Field
+    } else {
+        SymbolKind::Constant
+    }
+}

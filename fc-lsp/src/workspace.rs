@@ -1,0 +1,185 @@
+//! The files of a project: those that the client has open as it has them, the others from the disk.
+
+use crate::project::Project;
+use crate::settings::Settings;
+use crate::snapshot::{Snapshot, State};
+use crate::uri;
+use fc_spec::diagnostic::Faults;
+use fc_spec::syntax::{SourceFile, Sources, is_spec_file, read_dir};
+use gen_lsp_types::{TextDocumentContentChangeEvent, Uri};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The files of a project.
+#[derive(Debug)]
+pub struct Workspace {
+    project: Arc<Project>,
+    settings: Arc<Settings>,
+    today: String,
+    /// As they are on the disk, and what is wrong with them there.
+    disk: (Sources, Faults),
+    /// Those that the client has open, by their paths in the project.
+    open: BTreeMap<String, Document>,
+    snapshot: Option<Arc<Snapshot>>,
+    before: Option<Arc<State>>,
+}
+
+/// A file that the client has open.
+#[derive(Debug)]
+struct Document {
+    uri: Uri,
+    version: i32,
+    file: SourceFile,
+}
+
+impl Workspace {
+    /// Reads the files of a project; `today` is the day for which waivers are looked at.
+    #[must_use]
+    pub fn new(project: Project, settings: Arc<Settings>, today: String) -> Self {
+        let mut workspace = Self {
+            project: Arc::new(project),
+            settings,
+            today,
+            disk: (Sources::new(), Faults::new()),
+            open: BTreeMap::new(),
+            snapshot: None,
+            before: None,
+        };
+        workspace.read();
+        workspace
+    }
+
+    /// The project.
+    #[must_use]
+    pub fn project(&self) -> &Project {
+        &self.project
+    }
+
+    /// The project as it is now, after a change of what is said of it.
+    pub fn set_project(&mut self, project: Project) {
+        self.project = Arc::new(project);
+        self.read();
+    }
+
+    /// Reads what is on the disk again, after a change there.
+    pub fn read(&mut self) {
+        let mut faults = Faults::new();
+        let sources = read_dir(&self.project.root, &self.project.spec, &mut faults);
+        self.disk = (sources, faults);
+        self.forget();
+    }
+
+    /// Takes the text of a file from the client from now on. Whether it is one of the spec.
+    pub fn open(&mut self, uri: Uri, version: i32, text: String) -> bool {
+        let Some(path) = self.path(&uri) else {
+            return false;
+        };
+        let file = SourceFile::new(path.as_str(), text);
+        let document = Document { uri, version, file };
+        self.open.insert(path, document);
+        self.forget();
+        true
+    }
+
+    /// Changes the text of a file that is open.
+    pub fn change(
+        &mut self,
+        uri: &Uri,
+        version: i32,
+        changes: Vec<TextDocumentContentChangeEvent>,
+    ) -> bool {
+        let Some(document) = self.open.values_mut().find(|it| it.uri == *uri) else {
+            return false;
+        };
+        for change in changes {
+            document.file = self.settings.encoding.changed(&document.file, change);
+        }
+        document.version = version;
+        self.forget();
+        true
+    }
+
+    /// Takes the text of a file from the disk again.
+    pub fn close(&mut self, uri: &Uri) -> bool {
+        let before = self.open.len();
+        self.open.retain(|_, document| document.uri != *uri);
+        if self.open.len() == before {
+            return false;
+        }
+        self.read();
+        true
+    }
+
+    /// The files as they are now.
+    pub fn snapshot(&mut self) -> Arc<Snapshot> {
+        if let Some(snapshot) = &self.snapshot {
+            return Arc::clone(snapshot);
+        }
+        let (sources, faults) = &self.disk;
+        let mut sources = sources.clone();
+        for (path, document) in &self.open {
+            if sources.iter().any(|(_, file)| file.path == *path) {
+                sources.replace(document.file.clone());
+            } else {
+                sources.push(document.file.clone());
+            }
+        }
+        // What cannot be read on the disk is no matter where the client has it.
+        let is_open = |fault: &&_| {
+            let fault: &fc_spec::diagnostic::Diagnostic = fault;
+            self.open.contains_key(sources.path(fault.primary.span))
+        };
+        let mut unread = Faults::new();
+        unread.extend(faults.iter().filter(|fault| !is_open(fault)).cloned());
+        let documents = sources.iter().map(|(_, file)| self.document(&file.path));
+        let snapshot = Arc::new(Snapshot::new(
+            Arc::clone(&self.project),
+            Arc::clone(&self.settings),
+            (sources.clone(), unread),
+            documents.collect(),
+            self.today.clone(),
+            self.before.clone(),
+        ));
+        self.snapshot = Some(Arc::clone(&snapshot));
+        snapshot
+    }
+
+    /// What the client calls a file, and the version of its text if it has it open.
+    fn document(&self, path: &str) -> (Uri, Option<i32>) {
+        match self.open.get(path) {
+            Some(document) => (document.uri.clone(), Some(document.version)),
+            None => (uri::of_path(&self.project.root.join(path)).into(), None),
+        }
+    }
+
+    /// The path in the project of a file that can be one of its spec: directly in its directory, or in `commands`.
+    fn path(&self, uri: &Uri) -> Option<String> {
+        let file = uri::to_path(uri.as_ref())?;
+        let root = &self.project.root;
+        let below = below(&file, root).or_else(|| {
+            // Through links: the client may see the project from another side.
+            let directory = file.parent()?.canonicalize().ok()?;
+            below(
+                &directory.join(file.file_name()?),
+                &root.canonicalize().ok()?,
+            )
+        })?;
+        let inside = below.strip_prefix(&self.project.spec).ok()?;
+        if !is_spec_file(inside) {
+            return None;
+        }
+        let parts: Vec<_> = below.iter().map(|part| part.to_string_lossy()).collect();
+        Some(parts.join("/"))
+    }
+
+    fn forget(&mut self) {
+        if let Some(snapshot) = self.snapshot.take() {
+            self.before = snapshot.last_whole();
+        }
+    }
+}
+
+fn below(file: &Path, root: &Path) -> Option<PathBuf> {
+    file.strip_prefix(root).ok().map(Path::to_owned)
+}

@@ -1,0 +1,143 @@
+//! Giving a thing another name, wherever the spec names it.
+//!
+//! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
+
+use crate::diagnostic::Faults;
+use crate::load::grammar::{
+    COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
+};
+use crate::load::{Item, Place, Uses, entry_at, load, written};
+use crate::syntax::{Entry, Node, SourceFile, Sources, Span, parse};
+
+/// What is replaced by what, so that a thing is called `new`; `None` of what has no name of its own, such as a type that
+/// is named after its operation.
+///
+/// Whether the name is free, and one that a thing can have, shows when the result is loaded.
+#[must_use]
+pub fn rename(
+    sources: &Sources,
+    (item, place): (&Item, &Place),
+    uses: &Uses,
+    new: &str,
+) -> Option<Vec<(Span, String)>> {
+    let file = sources.get(place.key.file)?;
+    let tree = parse(place.key.file, &file.text, &mut Faults::new())?;
+    let entry = entry_at(tree.root(), place.key)?;
+    let mut changes: Vec<(Span, String)> = Vec::new();
+    if let Some(table) = sent(item) {
+        changes.push(code_name(sources, file, (table, entry), new)?);
+    } else if entry.key.as_str() == Some(&item.name) {
+        changes.push((entry.key.span(), new.to_owned()));
+    }
+    let uses = uses.of(item);
+    changes.extend(uses.map(|sought| (sought.span, new.to_owned())));
+    (!changes.is_empty()).then_some(changes)
+}
+
+/// The keys of a thing whose own key is sent, so that its name stands beside it.
+fn sent(item: &Item) -> Option<&'static Table> {
+    let sent = [
+        Field::TABLE,
+        EnvelopeField::TABLE,
+        HeaderField::TABLE,
+        EnumValue::TABLE,
+    ];
+    sent.into_iter().find(|table| table.name == item.kind)
+}
+
+/// Sets the name in code of what has a wire key.
+fn code_name(
+    sources: &Sources,
+    file: &SourceFile,
+    (table, entry): (&'static Table, Entry<'_>),
+    new: &str,
+) -> Option<(Span, String)> {
+    let (node, name) = (entry.value, COMMON.name.name);
+    if let Some(old) = COMMON.name.of(node) {
+        return Some((old.span(), new.to_owned()));
+    }
+    let pair = format!("{name}: {new}");
+    if node.as_mapping().is_none() {
+        let long = longhand(sources, file, node, &pair)?;
+        return Some((node.span(), long));
+    }
+    let mut forms = FIELD_FORMS.iter();
+    let form = forms.find(|(mark, _)| node.entry(mark).is_some());
+    let table = match form {
+        Some((_, form)) if table.name == Field::TABLE.name => *form,
+        _ => table,
+    };
+    let rank = |key: &str| table.keys.iter().position(|known| known.name == key);
+    let before = node
+        .entries()
+        .filter(|entry| rank(entry.name()) < rank(name));
+    let is_flow = file.text.get(node.span().start..)?.starts_with('{');
+    let first = node.entries().next()?;
+    Some(match before.last() {
+        Some(last) if is_flow => (after(last.span()), format!(", {pair}")),
+        None if is_flow => (before_key(first), format!("{pair}, ")),
+        Some(last) => {
+            let span = last.span();
+            let line = file.line(span.end.saturating_sub(1).max(span.start));
+            let (_, end) = file.lines(line, line)?;
+            let indent = indent(file, last.key.span());
+            let newline = newline(file);
+            (
+                Span::point(span.file, end),
+                format!("{newline}{indent}{pair}"),
+            )
+        }
+        None => {
+            let indent = indent(file, first.key.span());
+            (
+                before_key(first),
+                format!("{pair}{}{indent}", newline(file)),
+            )
+        }
+    })
+}
+
+/// A field in its short form has no room for a name, and takes its text from its type.
+fn longhand(sources: &Sources, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
+    let span = node.span();
+    let short = file.text.get(span.start..span.end)?;
+    let named = short.trim_matches(['[', ']', '?', ' ', '"', '\'']);
+    let read = load(sources, &mut Faults::new());
+    let title = &read.partial.types.named(named)?.title;
+    let in_quotes = short.contains(['?', '[']) && !short.starts_with(['"', '\'', '[']);
+    let ty = if in_quotes {
+        format!("\"{short}\"")
+    } else {
+        short.to_owned()
+    };
+    let (zh, en) = (written(&title.zh), written(&title.en));
+    Some(format!(
+        "{{ {}: {ty}, {pair}, {}: {zh}, {}: {en} }}",
+        FIELD.r#type.name, TEXT.zh.name, TEXT.en.name
+    ))
+}
+
+fn after(span: Span) -> Span {
+    Span::point(span.file, span.end)
+}
+
+fn before_key(entry: Entry<'_>) -> Span {
+    let span = entry.key.span();
+    Span::point(span.file, span.start)
+}
+
+/// What stands before a key on its line, as blanks.
+fn indent(file: &SourceFile, key: Span) -> String {
+    let line = file.line(key.start);
+    let start = file.lines(line, line).map_or(key.start, |(start, _)| start);
+    let before = file.text.get(start..key.start).unwrap_or_default();
+    " ".repeat(before.chars().count())
+}
+
+fn newline(file: &SourceFile) -> &'static str {
+    if file.text.contains("\r\n") {
+        "\r\n"
+    } else {
+        "\n"
+    }
+}
