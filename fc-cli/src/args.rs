@@ -48,7 +48,7 @@ pub struct Args {
     /// When to use colors.
     #[arg(long, value_name = "WHEN", default_value = "auto", global = true, help_heading = GLOBAL)]
     pub color: Color,
-    /// In which language [default: what LC_ALL, LC_MESSAGES or LANG says, or en]
+    /// In which language [default: zh in a Chinese locale, else en]
     #[arg(long, value_name = "LANGUAGE", global = true, help_heading = GLOBAL)]
     pub lang: Option<Language>,
     /// Say nothing of what went well; results that were asked for, and what is wrong, are still printed.

@@ -37,7 +37,7 @@ pub fn speak(language: Option<Language>) {
 }
 
 fn of_environment() -> Lang {
-    let mut values = VARIABLES.iter().filter_map(|name| std::env::var_os(name));
+    let mut values = VARIABLES.into_iter().filter_map(std::env::var_os);
     let locale = values.find(|value| !value.is_empty());
     let locale = locale.unwrap_or_default();
     let is_chinese = locale

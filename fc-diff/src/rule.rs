@@ -103,7 +103,7 @@ impl Language {
 }
 
 /// The one of an English and a Chinese text in this language.
-pub(crate) fn pick<'t>(lang: Lang, [en, zh]: [&'t str; 2]) -> &'t str {
+pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
     lang.pick(zh, en)
 }
 

@@ -99,7 +99,7 @@ impl Diagnostic {
     /// Another place to blame.
     #[must_use]
     pub fn also(mut self, span: Span, text: Text) -> Self {
-        self.secondary.push(Label { span, text: text });
+        self.secondary.push(Label { span, text });
         self
     }
 

@@ -21,6 +21,7 @@ mod quote;
 mod read;
 mod recover;
 mod scan_error;
+mod scan_words;
 mod slip;
 mod source;
 mod span;
