@@ -303,7 +303,7 @@ impl Reader<'_> {
                 let error = error.to_string();
                 let message = text!(
                     "不是正则表达式：{error}",
-                    "this is no regular expression: {error}"
+                    "this is not a regular expression: {error}"
                 );
                 let note = text!("它要与整个文本匹配", "it is matched against the whole text");
                 self.fault(node.span(), message, note);
