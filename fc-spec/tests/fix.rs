@@ -42,7 +42,7 @@ fn slips() -> Vec<(String, Sources)> {
                     .lines()
                     .skip(1)
                     .filter_map(|line| line.strip_prefix(sign));
-                lines.map(|line| format!("{line}\n")).collect()
+                lines.flat_map(|line| [line, "\n"]).collect()
             };
             let (old, new) = (lines('-'), lines('+'));
             let in_protocol = slip.lines().any(|line| line == "@ protocol.yaml");
