@@ -34,7 +34,7 @@ Examples:
   fc check                    find all errors in the spec
   fc explain FC0012           read what an error means
   fc fmt                      lay out the files of the spec
-  fc lint                     find what is no error and better otherwise
+  fc lint                     find what is not wrong but could be better
   fc new get_battery --group status
                               add a command with the next free code
   fc questions                list what the owner of the protocol has still to say

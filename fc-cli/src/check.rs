@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::fix::{Done, mend};
+use fc_spec::fix::{Done, fix_all};
 use fc_spec::syntax::Sources;
 
 use crate::lang::{counted, lang, said};
@@ -23,7 +23,7 @@ Examples:
   fc check
   fc check --format json | jq -r .message
   fc check --format sarif > fc.sarif
-  fc check --fix --dry-run       show what can be mended without asking anybody
+  fc check --fix --dry-run       show the fixes that leave no choice
   fc check -q --deny warnings    for a hook: silent unless there is something to fix")]
 #[command(after_long_help = "\
 Examples:
@@ -57,7 +57,7 @@ pub struct Options {
     /// What ends with status 1 although it is not an error.
     #[arg(long, value_name = "WHAT")]
     deny: Option<Denied>,
-    /// Mend what can only be meant in one way, and check what is left.
+    /// Make the fixes that leave no choice, and check what is left.
     #[arg(long)]
     fix: bool,
     /// Show what `--fix` would change as a unified diff, and write nothing.
@@ -89,7 +89,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let mut spec = Spec::in_project(&project);
     if options.fix {
-        spec = mended(&project, spec, options)?;
+        spec = fixed(&project, spec, options)?;
     }
     if let Some(model) = &spec.model {
         project.targets.check_audiences(model)?;
@@ -108,21 +108,21 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(options.status(&spec))
 }
 
-/// The spec with what is certain mended, on the disk as well unless that is only to be shown.
-fn mended(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
-    let Some(mended) = mend(&spec.sources, |sources| {
+/// The spec with the certain fixes made, on the disk as well unless that is only to be shown.
+fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
+    let Some(fixed) = fix_all(&spec.sources, |sources| {
         spec.instead(sources.clone()).faults
     }) else {
         if options.format == Shown::Text {
             print::done(&said!(
-                "没有可以确定的修改\n",
-                "nothing that is certain to mend\n"
+                "没有可以直接做的修改\n",
+                "no fix that leaves no choice\n"
             ))?;
         }
         return Ok(spec);
     };
     let mut changed = String::new();
-    for ((_, old), (_, new)) in spec.sources.iter().zip(mended.sources.iter()) {
+    for ((_, old), (_, new)) in spec.sources.iter().zip(fixed.sources.iter()) {
         if old.text == new.text {
             continue;
         }
@@ -140,10 +140,10 @@ fn mended(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Fail
         path,
         line,
         message,
-    } in &mended.done
+    } in &fixed.done
     {
         let message = lang().text(message);
-        let word = said!("已修改", "mended");
+        let word = said!("已修改", "fixed");
         told += &format!("{} {path}:{line} {code}: {message}\n", print::good(&word));
     }
     if options.dry_run {

@@ -14,7 +14,7 @@ use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::{day, today};
 
-/// Find what is no error and better otherwise.
+/// Find what is not wrong but could be better.
 ///
 /// Rules are of categories: MINIMAL is what no protocol should have, STANDARD (which contains it) what makes one easy to use, DOCS is about
 /// texts, WIRE about values that some receivers cannot keep, SUNSET about dates of what is deprecated. `lint` in fc.yaml sets their

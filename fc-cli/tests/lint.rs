@@ -185,7 +185,7 @@ fn what_is_certain_is_mended() {
 
     let run = project.fc(&["check", "--fix"]).expect(0);
     assert!(
-        run.stdout.starts_with("mended spec/protocol.yaml:"),
+        run.stdout.starts_with("fixed spec/protocol.yaml:"),
         "{run:#?}"
     );
     assert!(run.stdout.contains(" FC0024: "), "{run:#?}");
@@ -193,7 +193,7 @@ fn what_is_certain_is_mended() {
 
     let run = project.fc(&["check", "--fix"]).expect(0);
     assert!(
-        run.stdout.starts_with("nothing that is certain to mend"),
+        run.stdout.starts_with("no fix that leaves no choice"),
         "{run:#?}"
     );
     project.fc(&["check", "--dry-run"]).expect(2);

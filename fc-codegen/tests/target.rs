@@ -119,7 +119,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "target: {}\n",
-            "unknown field `target`, expected `spec` or `targets`",
+            "unknown field `target`, expected one of `spec`, `targets`, `lint`",
         ),
         (
             "targets: { cobol: { out: a } }",

@@ -1,14 +1,14 @@
-//! What can be mended without asking anybody.
+//! Fixes that can be made without asking anybody.
 //!
 //! Most fixes of a fault are guesses, which a person has to look at. A few are certain: there is one thing that can be meant, and it is the
-//! same whoever is asked. [`certain`] says which; [`mend`] makes them, looks again, and goes on until there is none left.
+//! same whoever is asked. [`certain`] says which; [`fix_all`] makes them, looks again, and goes on until there is none left.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, Fix};
 use crate::model::Text;
 use crate::syntax::{Edits, FileId, SourceFile, Sources, Span, quoted};
 use std::collections::BTreeMap;
 
-/// Times that faults are looked for and mended: one hides another seldom more than twice.
+/// Times that faults are looked for and fixed: one hides another seldom more than twice.
 const ROUNDS: usize = 8;
 
 /// Shorter words are near to too many others.
@@ -29,7 +29,7 @@ pub struct Done {
 
 /// A spec with fewer faults than before.
 #[derive(Clone, Debug)]
-pub struct Mended {
+pub struct Fixed {
     /// Its files.
     pub sources: Sources,
     /// What was done, in the order in which it was done.
@@ -86,7 +86,7 @@ fn is_slip(old: &str, new: &str) -> bool {
 /// Makes all fixes that are certain, of what `check` finds in the files, and again of what it finds then. `None` if that leaves as
 /// many faults as there were.
 #[must_use]
-pub fn mend(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<Mended> {
+pub fn fix_all(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<Fixed> {
     let mut faults = check(sources);
     let before = faults.errors() + faults.warnings();
     let mut fewest = before;
@@ -102,7 +102,7 @@ pub fn mend(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<Men
             now = with(&now, file, &fixes, &mut done);
         }
         faults = check(&now);
-        // Behind a fault of the YAML there may be others, which are only seen now; they may be mended in the next round.
+        // Behind a fault of the YAML there may be others, which are only seen now; they may be fixed in the next round.
         let left = faults.errors() + faults.warnings();
         if left < fewest {
             fewest = left;
@@ -111,7 +111,7 @@ pub fn mend(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<Men
     }
     let (sources, count) = best?;
     done.truncate(count);
-    Some(Mended { sources, done })
+    Some(Fixed { sources, done })
 }
 
 /// The certain fixes of each file, in the order of their places; of two that overlap, the first.

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::fix::{Mended, certain, mend};
+use fc_spec::fix::{Fixed, certain, fix_all};
 use fc_spec::load::load;
 use fc_spec::syntax::Sources;
 use std::collections::BTreeSet;
@@ -42,7 +42,7 @@ fn slips() -> Vec<(String, Sources)> {
                     .lines()
                     .skip(1)
                     .filter_map(|line| line.strip_prefix(sign));
-                lines.map(|line| format!("{line}\n")).collect()
+                lines.flat_map(|line| [line, "\n"]).collect()
             };
             let (old, new) = (lines('-'), lines('+'));
             let in_protocol = slip.lines().any(|line| line == "@ protocol.yaml");
@@ -105,18 +105,18 @@ fn lines_that_changed(old: &Sources, new: &Sources) -> BTreeSet<(String, usize)>
 
 #[test]
 fn certain_fixes_add_no_fault_and_change_no_other_line() {
-    let (mut mended, mut with_certain) = (0, 0);
+    let (mut fixed, mut with_certain) = (0, 0);
     for (title, sources) in slips().into_iter().chain(fixtures()) {
         let before = check(&sources);
         with_certain += usize::from(before.iter().any(|it| certain(it, &sources).is_some()));
-        let Some(Mended {
+        let Some(Fixed {
             sources: after,
             done,
-        }) = mend(&sources, check)
+        }) = fix_all(&sources, check)
         else {
             continue;
         };
-        mended += 1;
+        fixed += 1;
         let left = check(&after);
         let count = |faults: &Faults| faults.errors() + faults.warnings();
         assert!(count(&left) < count(&before), "{title}");
@@ -124,11 +124,8 @@ fn certain_fixes_add_no_fault_and_change_no_other_line() {
         assert_eq!(lines_that_changed(&sources, &after), named, "{title}");
     }
     // Those that are left alone have something behind them that is not certain.
-    assert!(mended > 60, "{mended} of {with_certain}");
-    assert!(
-        mended * 10 >= with_certain * 9,
-        "{mended} of {with_certain}"
-    );
+    assert!(fixed > 60, "{fixed} of {with_certain}");
+    assert!(fixed * 10 >= with_certain * 9, "{fixed} of {with_certain}");
 }
 
 #[test]
@@ -137,9 +134,9 @@ fn what_hides_behind_a_fault_of_the_yaml_is_mended_as_well() {
         .replace("    effect: read\n", "    effect：raed\n    \t\n")
         .replace("since: 2023-05", "since: 2023/5");
     let broken = sources(&good("protocol.yaml"), &commands);
-    let mended = mend(&broken, check).expect("something is mended");
-    assert!(check(&mended.sources).is_empty(), "{:?}", mended.done);
-    let codes: Vec<_> = mended.done.iter().map(|it| it.code.as_str()).collect();
+    let fixed = fix_all(&broken, check).expect("something is fixed");
+    assert!(check(&fixed.sources).is_empty(), "{:?}", fixed.done);
+    let codes: Vec<_> = fixed.done.iter().map(|it| it.code.as_str()).collect();
     assert!(
         codes.contains(&"FC0024") && codes.contains(&"FC0109"),
         "{codes:?}"
@@ -166,6 +163,6 @@ fn guesses_are_left_alone() {
         assert!(good_commands.contains(old), "{old}");
         let broken = sources(&good("protocol.yaml"), &good_commands.replacen(old, new, 1));
         assert!(!check(&broken).is_empty(), "{new}");
-        assert!(mend(&broken, check).is_none(), "{new}");
+        assert!(fix_all(&broken, check).is_none(), "{new}");
     }
 }

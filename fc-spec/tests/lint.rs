@@ -236,7 +236,7 @@ fn what_is_wrong_with_settings_is_said_with_its_place() {
             .lines()
             .skip(1)
             .filter(|line| !line.starts_with('>'))
-            .map(|line| format!("{line}\n"))
+            .flat_map(|line| [line, "\n"])
             .collect();
         let yaml = yaml.trim_end();
         let (_, wrong) = set(yaml);

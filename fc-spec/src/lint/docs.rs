@@ -16,9 +16,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["text that repeats the name", "只重复名称的说明"],
         text: [
-            "The English text is the key in other words: `Map name` for `mapName`. A reader who did not know it before does not know it now. Say \
+            "The English text is the key in other words: `Lamp name` for `lampName`. A reader who did not know it before does not know it now. Say \
              what it is good for, where it comes from, or what its odd values mean. Off by default: for some keys there is nothing else to say.",
-            "英文说明只是把键名拆开写了一遍：`mapName` 写成 `Map name`，看了等于没看。请写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
+            "英文说明只是把键名拆开写了一遍：`lampName` 写成 `Lamp name`，看了等于没看。请写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
         ],
         find: Some(text_repeats_name),
     },
@@ -70,7 +70,7 @@ pub(super) const RULES: &[Rule] = &[
             "停用时没有指明改用什么",
         ],
         text: [
-            "An operation is `deprecated` without `replaced_by`. Generated packages warn whoever uses it; say to what they should move. Where \
+            "An operation is `deprecated` without `replaced_by`. Generated packages warn anyone who uses it; say to what they should move. Where \
              nothing replaces it, waive this.",
             "接口标记为 `deprecated`，但没有 `replaced_by`。生成的代码会提醒使用者，请写明改用哪个接口。确实没有替代的，可加豁免。",
         ],
@@ -84,7 +84,7 @@ pub(super) const RULES: &[Rule] = &[
         title: ["new operation without a date", "没有写明日期的新接口"],
         text: [
             "An operation that the source document never had does not say since when it exists. Robots in the field are older than the spec: \
-             whoever calls it has to know which of them have it. Write `since`.",
+             a caller has to know which of them have it. Write `since`.",
             "源文档中没有的接口，没有写明从什么时候起有。现场的机器人比规范旧，调用者需要知道哪些机器人支持。请写 `since`。",
         ],
         find: Some(new_without_since),

@@ -17,7 +17,7 @@ pub(super) const HOUSE_RULE: &Rule = &Rule {
     level: Level::Warning,
     title: ["against a rule of this project", "违反本项目的规则"],
     text: [
-        "A rule under `lint` in `fc.yaml` objects. The message is its own; its `id` stands beside it, and `levels` sets its level by that.",
+        "A rule under `lint` in `fc.yaml` objects. The message is its own; its `id` follows it, and `levels` sets its level by that.",
         "`fc.yaml` 的 `lint` 中写的规则不通过。提示内容就是规则自己的文字，旁边是它的 `id`；在 `levels` 中用 `id` 设置级别。",
     ],
     find: None,
@@ -34,7 +34,7 @@ pub(super) const WAIVER_OVER: &Rule = &Rule {
         "该提示的豁免已过期",
     ],
     text: [
-        "The date up to which the finding was accepted has passed. Mend what the lint found, or agree on another date.",
+        "The date up to which the finding was accepted has passed. Correct what the lint found, or agree on another date.",
         "接受该提示的期限已过。请改正提示的问题，或商定新的期限。",
     ],
     find: None,
@@ -48,7 +48,7 @@ pub(super) const WAIVER_UNUSED: &Rule = &Rule {
     level: Level::Error,
     title: ["the waiver accepts no finding", "豁免没有对应的提示"],
     text: [
-        "The lint finds nothing that this waiver accepts: it has been mended, or the thing has another name now. Remove the waiver. Levels do \
+        "The lint finds nothing that this waiver accepts: it has been corrected, or the thing has another name now. Remove the waiver. Levels do \
          not matter here: a waiver of a rule that is off is used as long as the rule would find something.",
         "没有这条豁免所接受的提示：问题已经改正，或者对象改了名。请删除这条豁免。与级别无关：规则虽然关闭，只要它能找到问题，豁免就算有用。",
     ],

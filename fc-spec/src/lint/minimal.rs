@@ -18,7 +18,7 @@ pub(super) const RULES: &[Rule] = &[
             "接口组与文件名不一致",
         ],
         text: [
-            "Whoever looks for a command of a group opens the file of that name. Rename the file, or the `id` of the group where nobody uses \
+            "Anyone who looks for a command of a group opens the file of that name. Rename the file, or the `id` of the group where nobody uses \
              the group's module in a generated package yet.",
             "找某一组的指令时，人们会打开同名的文件。请改文件名；如果生成的代码还没有人使用，也可以改接口组的 `id`。",
         ],

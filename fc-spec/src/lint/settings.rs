@@ -45,16 +45,10 @@ impl Settings {
     #[must_use]
     pub fn level(&self, rule: &Rule, house: Option<&str>) -> Level {
         let own = house.and_then(|id| self.levels.get(id));
-        let mut category = Some(rule.category);
-        let categories = std::iter::from_fn(|| {
-            let this = category?;
-            category = this.within();
-            Some(this)
-        });
+        let categories = std::iter::successors(Some(rule.category), |it| it.within());
         let said = own.or_else(|| self.levels.get(rule.code)).or_else(|| {
-            categories
-                .filter_map(|it| self.levels.get(it.name()))
-                .next()
+            let mut it = categories;
+            it.find_map(|it| self.levels.get(it.name()))
         });
         let usual = || {
             let house = house.and_then(|id| self.house.iter().find(|rule| rule.id == id));
@@ -104,11 +98,11 @@ fn read(
     let id = sources.push(source.clone());
     if !whole {
         let message = text!("无法读取 `{name}`", "`{name}` cannot be read");
-        let note = text!(
+        let advice = text!(
             "请改正 `{HOUSE}` 中的文件名",
             "correct its name under `{HOUSE}`"
         );
-        reader.fault(Span::point(id, 0), message, note);
+        reader.fault(Span::point(id, 0), message, advice);
         return Vec::new();
     }
     let Some(tree) = parse(id, &source.text, reader.faults) else {
@@ -130,10 +124,10 @@ pub(super) struct Reader<'f> {
 }
 
 impl Reader<'_> {
-    pub(super) fn fault(&mut self, span: Span, message: Text, note: Text) {
+    pub(super) fn fault(&mut self, span: Span, message: Text, advice: Text) {
         let code = FaultCode::Lint(SETTINGS);
         self.faults
-            .push(Diagnostic::error(code, span, message).note(note));
+            .push(Diagnostic::error(code, span, message).note(advice));
     }
 
     /// A word that is not one of those that may stand there.
@@ -153,14 +147,14 @@ impl Reader<'_> {
                 what = what
             ),
         );
-        self.faults.push(match nearest(word, words.clone()) {
-            Some(near) => fault.fix(node.span(), near, meant(near)),
-            None => {
+        self.faults
+            .push(if let Some(near) = nearest(word, words.clone()) {
+                fault.fix(node.span(), near, meant(near))
+            } else {
                 let words: Vec<_> = words.map(|word| format!("`{word}`")).collect();
                 let (zh, en) = (words.join("、"), words.join(", "));
                 fault.note(text!("可用的有：{zh}", "it is one of {en}"))
-            }
-        });
+            });
     }
 
     /// What stands under `lint`, and the files that it names.
@@ -174,14 +168,14 @@ impl Reader<'_> {
             }
         }
         if node.as_mapping().is_none() && !node.is_null() {
-            let note = text!(
+            let advice = text!(
                 "请在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
                 "write `{LEVELS}:` or `{HOUSE}:` below"
             );
             self.fault(
                 node.span(),
                 text!("这里没有设置", "these are no settings"),
-                note,
+                advice,
             );
         }
         files
@@ -255,12 +249,12 @@ impl Reader<'_> {
     fn house(&mut self, node: Node<'_>) -> Vec<String> {
         let mut files = Vec::new();
         if node.as_sequence().is_none() && !node.is_null() {
-            let note = text!(
+            let advice = text!(
                 "每条规则前写短横线：`- id: …`",
                 "write each rule behind a dash: `- id: …`"
             );
             let message = text!("项目的规则应为列表", "the rules of the project are a list");
-            self.fault(node.span(), message, note);
+            self.fault(node.span(), message, advice);
         }
         for item in node.items() {
             if let Some(file) = item.as_str() {

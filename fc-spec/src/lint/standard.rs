@@ -54,7 +54,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         code: "FC0814",
         category: Category::Standard,
-        name: "one-key-two-units",
+        name: "key-in-two-units",
         level: Level::Warning,
         title: ["one key in two units", "同一个键有两种单位"],
         text: [
@@ -115,7 +115,7 @@ pub(super) const RULES: &[Rule] = &[
         ],
         text: [
             "A command that moves the robot says neither in which states it is accepted (`accepted`) nor which reports follow it (`sets_off`). \
-             Whoever calls it cannot know whether it was taken nor when it is over.",
+             A caller cannot know whether it was taken nor when it is over.",
             "让机器人运动的指令既没有说明在什么状态下接受（`accepted`），也没有说明之后有什么上报（`sets_off`）。调用者无从知道指令是否被接受、何时结束。",
         ],
         find: Some(motion_without_process),
@@ -123,7 +123,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule {
         code: "FC0819",
         category: Category::Standard,
-        name: "one-key-two-types",
+        name: "key-of-two-types",
         level: Level::Off,
         title: ["one key of two types", "同一个键有两种类型"],
         text: [

@@ -15,7 +15,7 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["its last day is near", "停用日期临近"],
         text: [
-            "What is deprecated goes in this month or in one of the next three. Whoever still uses it has to move now; whoever is responsible \
+            "What is deprecated goes in this month or in one of the next three. Programs that still use it have to move now; the owner \
              either prepares the removal (`fc retire`) or agrees on a later date.",
             "已停用的内容将在本月或之后三个月内移除。还在使用的一方现在就要改；负责人则准备移除（`fc retire`），或商定更晚的日期。",
         ],

@@ -32,7 +32,7 @@ impl Reader<'_> {
             let found = node.get(key).and_then(Node::as_str).map(str::to_owned);
             if found.is_none() {
                 let message = missing(key);
-                let note = text!(
+                let advice = text!(
                     "规则要有 `id`、`zh`、`en`、`for` 和 `require`",
                     "a rule has `id`, `zh`, `en`, `for` and `require`"
                 );
@@ -41,7 +41,7 @@ impl Reader<'_> {
                         .next()
                         .map_or(node.span(), |it| it.key.span()),
                     message,
-                    note,
+                    advice,
                 );
             }
             found
@@ -60,14 +60,14 @@ impl Reader<'_> {
             self.test(it, shape, DEPTH)
         });
         let Some(require) = require else {
-            let note = text!(
+            let advice = text!(
                 "请写明要求，例如 `require: {{ since: present }}`",
                 "say what has to hold, such as `require: {{ since: present }}`"
             );
             self.fault(
                 node.span(),
                 text!("这条规则没有要求", "this rule requires nothing"),
-                note,
+                advice,
             );
             return None;
         };
@@ -85,11 +85,11 @@ impl Reader<'_> {
     /// What a rule is about.
     fn kinds(&mut self, node: Node<'_>) -> Option<Vec<&'static str>> {
         let Some(on) = node.get("for") else {
-            let note = text!(
+            let advice = text!(
                 "请写明针对什么，例如 `for: command`",
                 "say what it is about, such as `for: command`"
             );
-            self.fault(node.span(), missing("for"), note);
+            self.fault(node.span(), missing("for"), advice);
             return None;
         };
         let word = on.as_str().unwrap_or_default();
@@ -116,14 +116,14 @@ impl Reader<'_> {
             return None;
         };
         if node.as_mapping().is_none() {
-            let note = text!(
+            let advice = text!(
                 "请写明哪个路径应是什么，例如 `{{ effect: motion }}`",
                 "write what is asked of which path: `{{ effect: motion }}`"
             );
             self.fault(
                 node.span(),
                 text!("判断应为映射", "a test is a mapping"),
-                note,
+                advice,
             );
             return None;
         }
@@ -147,11 +147,11 @@ impl Reader<'_> {
 
     fn each(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Vec<Test>> {
         if node.as_sequence().is_none() {
-            let note = text!("每项判断前写短横线", "write each test behind a dash");
+            let advice = text!("每项判断前写短横线", "write each test behind a dash");
             self.fault(
                 node.span(),
                 text!("`all` 和 `any` 下应为列表", "`all` and `any` take a list"),
-                note,
+                advice,
             );
             return None;
         }
@@ -171,14 +171,14 @@ impl Reader<'_> {
             }
             if at.is_list() {
                 let list = path.get(..index).unwrap_or_default().join(".");
-                let note = text!(
+                let advice = text!(
                     "只能判断它有没有，以及长度：`min_length`、`max_length`",
                     "a rule can ask whether it is there, and for its length: `min_length`, `max_length`"
                 );
                 self.fault(
                     key.span(),
                     text!("`{list}` 是列表", "`{list}` is a list"),
-                    note,
+                    advice,
                 );
                 return None;
             }
@@ -251,14 +251,14 @@ impl Reader<'_> {
                 Some(checks)
             }
             NodeKind::Sequence(_) | NodeKind::Null => {
-                let note = text!(
+                let advice = text!(
                     "请写 `present`、`absent`、一个值，或 `{{ one_of: [ … ] }}` 等",
                     "write `present`, `absent`, a value, or `{{ one_of: [ … ] }}` and the like"
                 );
                 self.fault(
                     node.span(),
                     text!("这里没有判断", "this asks nothing"),
-                    note,
+                    advice,
                 );
                 None
             }
@@ -268,14 +268,14 @@ impl Reader<'_> {
     /// A value as the dump has it: a word where there are words to choose from.
     fn value(&mut self, node: Node<'_>, at: &At<'_>) -> Option<Value> {
         let Some(scalar) = node.as_scalar() else {
-            let note = text!(
+            let advice = text!(
                 "请写文本、数或布尔值",
                 "write a text, a number or a truth value"
             );
             self.fault(
                 node.span(),
                 text!("这里应为单个值", "a single value is asked for"),
-                note,
+                advice,
             );
             return None;
         };
@@ -303,10 +303,10 @@ impl Reader<'_> {
                 let error = error.to_string();
                 let message = text!(
                     "不是正则表达式：{error}",
-                    "this is no regular expression: {error}"
+                    "this is not a regular expression: {error}"
                 );
-                let note = text!("它要与整个文本匹配", "it is matched against the whole text");
-                self.fault(node.span(), message, note);
+                let advice = text!("它要与整个文本匹配", "it is matched against the whole text");
+                self.fault(node.span(), message, advice);
                 None
             }
         }
@@ -315,14 +315,14 @@ impl Reader<'_> {
     fn number(&mut self, node: Node<'_>) -> Option<f64> {
         let number = scalar::number(node).map(|number| number.to_f64());
         if number.is_none() {
-            let note = text!(
+            let advice = text!(
                 "例如 `3`、`0.5` 或 `0x0A00`",
                 "such as `3`, `0.5` or `0x0A00`"
             );
             self.fault(
                 node.span(),
                 text!("这里应为数", "a number is wanted here"),
-                note,
+                advice,
             );
         }
         number
