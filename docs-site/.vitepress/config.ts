@@ -24,6 +24,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
+  ['releases', '发布、豁免与变更记录', 'Releases, waivers and changelogs'],
   ['targets', '生成什么，放在哪里', 'What is made, and where'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],

@@ -62,15 +62,8 @@ impl Shelf {
 
     /// The file with the dump of a release.
     pub fn released(&self, name: &str) -> Result<PathBuf, Failure> {
-        if let Some(path) = self.releases.named(name) {
-            return Ok(path.to_owned());
-        }
-        let known: Vec<_> = self.releases.numbers().map(ToString::to_string).collect();
-        let known = match known.as_slice() {
-            [] => "there is none yet".to_owned(),
-            known => format!("there are {}", known.join(", ")),
-        };
-        Err(format!("there is no release `{name}`; {known}").into())
+        let path = self.releases.named(name).map(Path::to_owned);
+        Ok(path.ok_or_else(|| self.releases.without(name))?)
     }
 
     /// Name of the working tree.

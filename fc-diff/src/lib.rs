@@ -30,7 +30,7 @@ pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render};
 pub use rule::{Lang, Language, Rule, Wire};
 pub use version::{Version, VersionError};
-pub use waive::{Against, waive};
+pub use waive::{Against, is_ours, waive};
 
 use fc_spec::model::Model;
 
@@ -43,3 +43,8 @@ pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
     found.retain(|finding| seen.insert(finding.fingerprint.clone()));
     found
 }
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -143,11 +143,41 @@ impl Releases {
         found.map(|(_, path)| path.as_path())
     }
 
+    /// That there is none which is written like this.
+    #[must_use]
+    pub fn without(&self, name: &str) -> NoRelease {
+        NoRelease {
+            name: name.to_owned(),
+            known: self.numbers().map(ToString::to_string).collect(),
+        }
+    }
+
     /// The numbers, from the first to the last.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
         self.0.iter().map(|(number, _)| number)
     }
 }
+
+/// There is no such release.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoRelease {
+    /// What was asked for.
+    pub name: String,
+    /// The numbers of those that there are, from the first to the last.
+    pub known: Vec<String>,
+}
+
+impl fmt::Display for NoRelease {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "there is no release `{}`; ", self.name)?;
+        match self.known.as_slice() {
+            [] => f.write_str("there is none yet"),
+            known => write!(f, "there are {}", known.join(", ")),
+        }
+    }
+}
+
+impl std::error::Error for NoRelease {}
 
 /// The file of a release, from the spec's directory: `releases/2026.12.json`.
 #[must_use]
@@ -162,6 +192,11 @@ pub enum Objection {
     NotLater {
         /// That of the last release.
         last: String,
+    },
+    /// The spec calls itself by a later one already.
+    GoesBack {
+        /// Its version.
+        version: String,
     },
     /// Nothing differs from the last release.
     Unchanged,
@@ -190,6 +225,10 @@ impl fmt::Display for Objection {
             Self::NotLater { last } => {
                 write!(f, "the last release is {last}; choose a later number")
             }
+            Self::GoesBack { version } => write!(
+                f,
+                "the spec is of version {version} already; choose that or a later number"
+            ),
             Self::Unchanged => f.write_str("nothing has changed since the last release"),
             Self::TooSmall { part, changes } => {
                 let part = ["first", "second", "third", "fourth"]
@@ -288,6 +327,15 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
         });
     }
     objections
+}
+
+/// That a number comes before the version by which the spec calls itself, where that is a number.
+#[must_use]
+pub fn goes_back(next: &Number, version: &str) -> Option<Objection> {
+    let written: Number = version.parse().ok()?;
+    (*next < written).then(|| Objection::GoesBack {
+        version: version.to_owned(),
+    })
 }
 
 /// What findings call the number itself.

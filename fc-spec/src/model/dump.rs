@@ -92,7 +92,7 @@ impl std::fmt::Display for DumpError {
             Self::Shape(error) => write!(f, "not a dump of `fc inspect`: {error}"),
             Self::Format(found) => write!(
                 f,
-                "a dump of format {found}; this version reads format {}",
+                "a dump of format {found}; this version reads format {}: print it again from its spec, with this `fc inspect`",
                 Dump::FORMAT
             ),
             Self::Name(Unlinked { missing, user }) => {
