@@ -189,7 +189,7 @@ fn changes(shelf: &Shelf, project: &Project, model: &Model, today: &str) -> Resu
 fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<Status, Failure> {
     let mut text = String::new();
     for objection in objections {
-        text += &print::leveled(&format!("error: {objection}\n"));
+        text += &print::leveled(&format!("error: {}\n", objection.message().en));
     }
     let _ = write!(text, "{number} is not released");
     if let Some((last, _)) = shelf.releases.last() {

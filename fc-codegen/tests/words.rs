@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 47] = [
+const TEXTS: [(&str, &[&str]); 55] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -33,6 +33,14 @@ const TEXTS: [(&str, &[&str]); 47] = [
     ("docs-site/.vitepress/search.ts", &["ts"]),
     ("docs-site/.vitepress/search-terms.ts", &["ts"]),
     ("docs-site/.vitepress/theme/components", &["vue"]),
+    ("fc-cli/README.md", &["md"]),
+    ("fc-codegen/README.md", &["md"]),
+    ("fc-derive/README.md", &["md"]),
+    ("fc-diff/README.md", &["md"]),
+    ("fc-generated/README.md", &["md"]),
+    ("fc-reflect/README.md", &["md"]),
+    ("fc-runtime/README.md", &["md"]),
+    ("fc-spec/README.md", &["md"]),
     ("fc-cli/src", &["rs"]),
     ("fc-cli/templates", &["md", "rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),

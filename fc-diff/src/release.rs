@@ -1,6 +1,7 @@
 //! Releases: versions of a spec that are frozen as dumps beside it, and what the next one has to be called.
 
 use crate::finding::Finding;
+use fc_spec::model::Text;
 use std::cmp::Ordering;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -214,38 +215,51 @@ pub enum Objection {
     },
     /// Something that no release may have: a code that is used again, a waiver that has expired.
     Fault {
-        /// The finding, in English.
-        message: String,
+        /// What was found.
+        message: Text,
     },
 }
 
-impl fmt::Display for Objection {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotLater { last } => {
-                write!(f, "the last release is {last}; choose a later number")
-            }
-            Self::GoesBack { version } => write!(
-                f,
-                "the spec is of version {version} already; choose that or a later number"
-            ),
-            Self::Unchanged => f.write_str("nothing has changed since the last release"),
+impl Objection {
+    /// What it is, in both languages.
+    #[must_use]
+    pub fn message(&self) -> Text {
+        let [zh, en] = match self {
+            Self::NotLater { last } => [
+                format!("上一次发布是 {last}，请取更大的版本号"),
+                format!("the last release is {last}; choose a later number"),
+            ],
+            Self::GoesBack { version } => [
+                format!("规范的版本已是 {version}，请取这个版本号或更大的"),
+                format!("the spec is of version {version} already; choose that or a later number"),
+            ],
+            Self::Unchanged => [
+                "上一次发布以来没有变更".to_owned(),
+                "nothing has changed since the last release".to_owned(),
+            ],
             Self::TooSmall { part, changes } => {
-                let part = ["first", "second", "third", "fourth"]
-                    .get(*part)
-                    .unwrap_or(&"next");
-                write!(
-                    f,
-                    "{changes} of the changes ask for a larger step: the {part} part of the number has to rise"
-                )
+                let number = part + 1;
+                let place = ["first", "second", "third", "fourth"];
+                let place = place.get(*part).unwrap_or(&"next");
+                [
+                    format!("有 {changes} 处变更要求更大的步长：版本号的第 {number} 段要增加"),
+                    format!(
+                        "{changes} of the changes ask for a larger step: the {place} part of the number has to rise"
+                    ),
+                ]
             }
-            Self::NotWaived { ids } => write!(
-                f,
-                "old and new apps and robots would misunderstand each other: undo these changes, or accept each with a waiver: {}",
-                ids.join(", ")
-            ),
-            Self::Fault { message } => f.write_str(message),
-        }
+            Self::NotWaived { ids } => {
+                let ids = ids.join(", ");
+                [
+                    format!("新旧 app 与机器人之间会出现误解：请撤销这些变更，或逐一豁免：{ids}"),
+                    format!(
+                        "old and new apps and robots would misunderstand each other: undo these changes, or accept each with a waiver: {ids}"
+                    ),
+                ]
+            }
+            Self::Fault { message } => return message.clone(),
+        };
+        Text { zh, en }
     }
 }
 
@@ -290,7 +304,7 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
         .iter()
         .filter(|it| it.rule.is_error && it.waived.is_none());
     objections.extend(faults.iter().chain(never).map(|finding| Objection::Fault {
-        message: finding.message.en.clone(),
+        message: finding.message.clone(),
     }));
     // The number itself is a difference.
     let is_change = |it: &&&Finding| it.subject != VERSION;
