@@ -26,6 +26,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['changing-safely', '安全地修改协议', 'Changing the protocol safely'],
   ['editors', '在编辑器里', 'In your editor'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
+  ['releases', '发布、豁免与变更记录', 'Releases, waivers and changelogs'],
   ['targets', '生成什么，放在哪里', 'What is made, and where'],
   ['lint', '团队规则与规范检查', 'House rules and the lint'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],

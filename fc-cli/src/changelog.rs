@@ -46,21 +46,27 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Some(_) => new.model.protocol.version.clone(),
         None => lang.pick("未发布", "Unreleased").to_owned(),
     };
-    let part = |version: Version| -> Result<Version, Failure> {
-        Ok(Version {
-            model: of_audience(version.model, options.audience.as_deref())?,
-            ..version
-        })
+    let (old, new) = match options.audience.as_deref() {
+        Some(audience) => of_audience(old, new, audience)?,
+        None => (old, new),
     };
-    let (old, new) = (part(old)?, part(new)?);
     let findings = shelf.compare(&old, &new, &today(None));
     print::result(&section(&title, &findings, &new.model, lang))?;
     Ok(Status::Fine)
 }
 
-fn of_audience(model: Model, audience: Option<&str>) -> Result<Model, Failure> {
-    Ok(match audience {
-        Some(audience) => model.for_audience(audience)?,
-        None => model,
-    })
+/// Both versions without what is not for this audience. One that does not know it withholds nothing from it.
+fn of_audience(old: Version, new: Version, audience: &str) -> Result<(Version, Version), Failure> {
+    let (one, other) = (
+        old.model.for_audience(audience),
+        new.model.for_audience(audience),
+    );
+    if let (Err(_), Err(unknown)) = (&one, &other) {
+        return Err(unknown.to_string().into());
+    }
+    let part = |whole: Version, part: Option<Model>| Version {
+        model: part.unwrap_or_else(|| whole.model.clone()),
+        ..whole
+    };
+    Ok((part(old, one.ok()), part(new, other.ok())))
 }

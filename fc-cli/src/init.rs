@@ -21,8 +21,8 @@ pub struct Options {
     /// Where it is to be; made if it is not there, and empty if it is.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
-    /// Checkout of the repository with `fc-runtime` and `fc-derive`, which are not published yet
-    /// [default: the one that this program was built from].
+    /// Checkout of the repository with `fc-runtime` and `fc-derive` [default: the one that this program was built
+    /// from; without one, the crates of this version].
     #[arg(long, value_name = "DIR")]
     runtime: Option<PathBuf>,
 }
@@ -54,7 +54,7 @@ const FILES: [(&str, &str); 8] = [
     ),
 ];
 
-/// Its manifest, which names crates by their paths.
+/// Its manifest, which says of some crates where they are.
 const MANIFEST: &str = include_str!("../templates/init/Cargo.toml.in");
 
 /// The crates that it stands on.
@@ -117,22 +117,30 @@ fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
 
 fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
     let built_from = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let checkout = runtime.unwrap_or(&built_from);
+    // One that was installed from a registry has no checkout around it.
+    let has = |checkout: &&Path| CRATES.iter().all(|name| checkout.join(name).is_dir());
+    let checkout = runtime.or_else(|| Some(built_from.as_path()).filter(has));
     let mut manifest = MANIFEST.to_owned();
     for name in CRATES {
-        let path = checkout.join(name);
-        let path = path.canonicalize().map_err(|error| {
-            let path = path.display();
-            said!(
-                "没有 `{path}`（{error}）；用 --runtime 指定一份源码",
-                "there is no `{path}` ({error}); name a checkout with --runtime"
-            )
-        })?;
-        // Quoted and escaped as TOML and Rust both do.
-        let quoted = format!("{:?}", path.to_string_lossy());
-        manifest = manifest.replace(&format!("{{{{{name}}}}}"), &quoted);
+        let from = match checkout {
+            Some(checkout) => path_of(&checkout.join(name))?,
+            None => format!("version = {:?}", env!("CARGO_PKG_VERSION")),
+        };
+        manifest = manifest.replace(&format!("{{{{{name}}}}}"), &from);
     }
     Ok(manifest)
+}
+
+fn path_of(path: &Path) -> Result<String, Failure> {
+    let path = path.canonicalize().map_err(|error| {
+        let path = path.display();
+        said!(
+            "没有 `{path}`（{error}）；用 --runtime 指定一份源码",
+            "there is no `{path}` ({error}); name a checkout with --runtime"
+        )
+    })?;
+    // Quoted and escaped as TOML and Rust both do.
+    Ok(format!("path = {:?}", path.to_string_lossy()))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

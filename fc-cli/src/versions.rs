@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use fc_diff::release::Releases;
 use fc_diff::{Against, Finding, Version, VersionError, diff, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
-use fc_spec::model::Text;
 
 use crate::lang::{lang, said};
 use crate::outcome::Failure;
@@ -72,23 +71,8 @@ impl Shelf {
 
     /// The file with the dump of a release.
     pub fn released(&self, name: &str) -> Result<PathBuf, Failure> {
-        if let Some(path) = self.releases.named(name) {
-            return Ok(path.to_owned());
-        }
-        let known: Vec<_> = self.releases.numbers().map(ToString::to_string).collect();
-        let known = match known.as_slice() {
-            [] => said!("还没有发布版本", "there is none yet"),
-            known => said!(
-                "已有：{known}",
-                "there are {known}",
-                known = Text::listed(known)
-            ),
-        };
-        Err(said!(
-            "没有发布版本 `{name}`；{known}",
-            "there is no release `{name}`; {known}"
-        )
-        .into())
+        let path = self.releases.named(name).map(Path::to_owned);
+        Ok(path.ok_or_else(|| self.releases.without(name))?)
     }
 
     /// Name of the working tree.

@@ -121,8 +121,8 @@ fn people_see_both_versions() {
 FC0717 probe: an operation has another code (0x0104 → 0x0108)
     breaks: old apps with new robots; new apps with old robots
     waiver: FC0717-193de5bdee5c
-  - spec/commands/lamp.yaml:120: probe:
-  + spec/commands/lamp.yaml:120: probe:
+  - spec/commands/lamp.yaml:121: code: 0x0104
+  + spec/commands/lamp.yaml:121: code: 0x0108
 FC0700 protocol.version: a change that no rule judges (7 → 8)
 
 2 changes from old to .: 1 on the wire, 0 in sources, 0 in behaviour

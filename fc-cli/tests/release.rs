@@ -92,10 +92,10 @@ fn a_release_freezes_the_spec_and_tells_what_is_new() {
         run.stdout,
         "\
 released 7.1
-  spec/protocol.yaml
   spec/releases/7.1.json
   spec/releases/CHANGELOG.md
   spec/releases/CHANGELOG.en.md
+  spec/protocol.yaml
 run `fc generate`, commit, and tag the commit
 "
     );
@@ -156,7 +156,8 @@ fn a_waiver_accepts_one_change_for_a_time() {
     let project = released();
     break_it(&project);
     let break_ = ["diff", "--fail-on", "wire", "--today", "2027-03-31"];
-    project.fc(&break_).expect(1);
+    let run = project.fc(&break_).expect(1);
+    assert!(run.stdout.contains("FC0763 "), "{run:#?}");
     let id = waiver(&project);
     let waivers =
         format!("waivers:\n  {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }}\n");
@@ -167,6 +168,7 @@ fn a_waiver_accepts_one_change_for_a_time() {
             .contains("    waived by 张伟 until 2027-03: Agreed\n"),
         "{run:#?}"
     );
+    assert!(!run.stdout.contains("FC0763 "), "it is announced: {run:#?}");
     let json = project
         .fc(&[&break_[..], &["--format", "json"]].concat())
         .expect(0);
@@ -180,24 +182,81 @@ fn a_waiver_accepts_one_change_for_a_time() {
             .contains(&format!("FC0765 {id}: the waiver has expired")),
         "{run:#?}"
     );
-    // With it, a number by the calendar will do; after the release it accepts nothing any more.
+    let run = project
+        .fc(&["release", "2027.04", "--today", "2027-04-01"])
+        .expect(1);
+    assert!(run.stderr.contains("the waiver has expired"), "{run:#?}");
+}
+
+/// With a waiver, a number by the calendar will do. After the release it would accept nothing.
+#[test]
+fn a_release_takes_out_the_waivers_that_have_served() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waiver = format!("  {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }}\n");
+    let other =
+        "  FC0801-000000000000: { zh: 无关, en: Of another check, by: 李雷, until: 2099-01 }\n";
+    project.write(
+        "spec/waivers.yaml",
+        &format!("# Breaks.\nwaivers:\n{waiver}{other}"),
+    );
+    let run = project.fc(&["release", "2026.12", "--dry-run"]).expect(0);
+    let shown = format!("spec/waivers.yaml\n-{waiver}");
+    assert!(run.stdout.contains(&shown), "{run:#?}");
     let release = ["release", "2026.12", "--today", "2026-12-01"];
-    project.fc(&release).expect(0);
+    let run = project.fc(&release).expect(0);
+    assert!(run.stdout.contains("  spec/waivers.yaml\n"), "{run:#?}");
+    let left = format!("# Breaks.\nwaivers:\n{other}");
+    assert_eq!(project.read("spec/waivers.yaml"), left);
     let changelog = project.read("spec/releases/CHANGELOG.md");
     assert!(
         changelog.contains("（影响：旧 app 配新机器人、新 app 配旧机器人）。已商定\n"),
         "{changelog}"
     );
+    assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
+
+    // Put back, it accepts nothing. Against another version than the last release that cannot be said.
+    project.write("spec/waivers.yaml", &format!("waivers:\n{waiver}"));
     let run = project.fc(&["diff"]).expect(1);
-    assert!(
-        run.stdout
-            .contains(&format!("FC0766 {id}: the waiver accepts nothing")),
-        "{run:#?}"
-    );
-    // Against another version that cannot be said.
+    let unused = format!("FC0766 {id}: the waiver accepts nothing");
+    assert!(run.stdout.contains(&unused), "{run:#?}");
     project
         .fc(&["diff", "7", "--today", "2026-12-01"])
         .expect(0);
+}
+
+/// A file of waivers alone stays a file that can be read.
+#[test]
+fn the_last_waiver_leaves_an_empty_list() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waivers = format!(
+        "waivers:\n  {id}:\n    zh: 已商定\n    en: Agreed\n    by: 张伟\n    until: 2027-03\n"
+    );
+    project.write("spec/waivers.yaml", &waivers);
+    project
+        .fc(&["release", "2026.12", "--today", "2026-12-01"])
+        .expect(0);
+    assert_eq!(project.read("spec/waivers.yaml"), "waivers: {}\n");
+    project.fc(&["check"]).expect(0);
+}
+
+#[test]
+fn a_waiver_in_braces_is_left_to_people() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waivers =
+        format!("waivers: {{ {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }} }}\n");
+    project.write("spec/waivers.yaml", &waivers);
+    let run = project
+        .fc(&["release", "2026.12", "--today", "2026-12-01"])
+        .expect(0);
+    let left = format!("take these waivers out, they have served: {id}\n");
+    assert!(run.stdout.contains(&left), "{run:#?}");
+    assert_eq!(project.read("spec/waivers.yaml"), waivers);
 }
 
 #[test]
@@ -266,6 +325,173 @@ fn what_a_release_said_is_made_again() {
         "{run:#?}"
     );
     project.fc(&["generate", "--as-of", "7"]).expect(2);
+}
+
+#[test]
+fn the_first_release_is_not_before_the_version_of_the_spec() {
+    let project = Project::new();
+    let before = project.files("spec");
+    let run = project.fc(&["release", "6.9"]).expect(1);
+    assert_eq!(
+        run.stderr,
+        "error: the spec is of version 7 already; choose that or a later number\n6.9 is not released\n"
+    );
+    let run = project
+        .fc(&["release", "7", "--dry-run", "--today", "2026-09-01"])
+        .expect(0);
+    assert_eq!(
+        run.stdout,
+        "\
+would release 7
+
+## 7 (2026-09-01)
+
+首次发布，共 8 个接口。
+
+## 7 (2026-09-01)
+
+First release, with 8 operations.
+"
+    );
+    assert_eq!(project.files("spec"), before);
+
+    // Once more, and with zeros behind it, it is there already.
+    project.fc(&["release", "7"]).expect(0);
+    let before = project.files("spec");
+    for number in ["7", "7.0"] {
+        let run = project.fc(&["release", number]).expect(1);
+        let said = "error: the last release is 7; choose a later number\n";
+        assert!(run.stderr.starts_with(said), "{run:#?}");
+    }
+    assert_eq!(project.files("spec"), before);
+
+    // A version that was raised by hand is not lowered again.
+    add_command(&project);
+    change(
+        &project,
+        "protocol.yaml",
+        "version: \"7\"",
+        "version: \"7.3\"",
+    );
+    let run = project.fc(&["release", "7.2"]).expect(1);
+    assert!(run.stderr.contains("is of version 7.3 already"), "{run:#?}");
+    project.fc(&["release", "7.3"]).expect(0);
+}
+
+#[test]
+fn what_people_have_written_into_the_changelog_stays() {
+    let project = released();
+    let path = "spec/releases/CHANGELOG.en.md";
+    let old = "## 7 (2026-09-01)\n\nFirst release. Thanks to all.\n\n## 6\n\nLost.\n";
+    for head in ["", "# Our changes\n\nA word before.\n\n"] {
+        project.write(path, &format!("{head}{old}"));
+        std::fs::remove_file(project.path("spec/releases/7.1.json")).ok();
+        if head.is_empty() {
+            add_command(&project);
+        }
+        project
+            .fc(&["release", "7.1", "--today", "2026-12-01"])
+            .expect(0);
+        let new = "## 7.1 (2026-12-01)\n\n### New\n\n- `get_warmth` (0x0108): Get the warmth\n\n";
+        assert_eq!(project.read(path), format!("{head}{new}{old}"));
+    }
+}
+
+#[test]
+fn a_spec_with_errors_is_not_released() {
+    let project = released();
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "effect: motion",
+        "effect: red",
+    );
+    let before = project.files("spec");
+    let run = project.fc(&["release", "8"]).expect(1);
+    assert!(run.stderr.contains("`red`"), "{run:#?}");
+    assert_eq!(project.files("spec"), before);
+}
+
+#[test]
+fn a_release_that_cannot_be_read_is_named() {
+    let project = released();
+    project.write("spec/releases/8.json", r#"{ "format": 99 }"#);
+    // What is not named by a number is no release.
+    project.write("spec/releases/draft.json", "{}");
+    for arguments in [
+        &["diff"][..],
+        &["changelog"],
+        &["release", "9"],
+        &["generate", "--as-of", "8", "--out", "old"],
+    ] {
+        let run = project.fc(arguments).expect(2);
+        let said = "a dump of format 99; this version reads format";
+        assert!(run.stderr.contains(said), "{run:#?}");
+        assert!(run.stderr.contains('8'), "{run:#?}");
+    }
+    let run = project.fc(&["diff", "draft"]).expect(2);
+    assert!(run.stderr.contains("cannot read `draft`"), "{run:#?}");
+    project.fc(&["diff", "7"]).expect(0);
+    let run = project.fc(&["diff", "6.2"]).expect(2);
+    assert_eq!(
+        run.stderr,
+        "error: there is no release `6.2`; there are 7, 8\n"
+    );
+
+    std::fs::remove_dir_all(project.path("spec/releases")).expect("removed");
+    project.write("spec/releases", "");
+    let run = project.fc(&["diff"]).expect(2);
+    assert!(run.stderr.contains("cannot read `"), "{run:#?}");
+    assert!(run.stderr.contains("spec/releases"), "{run:#?}");
+}
+
+/// A directory that is called like a release is not taken for it.
+#[test]
+fn a_release_counts_before_a_directory_of_its_name() {
+    let project = released();
+    project.write("7/nothing", "");
+    assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
+    let run = project.fc(&["diff", "./7"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("`./7` is neither a directory with a spec"),
+        "{run:#?}"
+    );
+}
+
+#[test]
+fn a_changelog_for_an_audience_has_what_is_for_it() {
+    let project = released();
+    let unknown = project.fc(&["changelog", "--for", "nobody"]).expect(2);
+    assert!(unknown.stderr.contains("nobody"), "{unknown:#?}");
+    let run = project.fc(&["changelog", "--for", "user_app"]).expect(0);
+    assert_eq!(run.stdout, "## Unreleased\n\nNothing has changed.\n");
+
+    change(
+        &project,
+        "protocol.yaml",
+        "    tester_app:",
+        "    new_app: { zh: 新 app, en: new app }\n    tester_app:",
+    );
+    let only = NEW.replace(
+        "    effect: read",
+        "    effect: read\n    available: { for: [new_app] }",
+    );
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "\ncommands:\n",
+        &format!("\ncommands:{only}"),
+    );
+    let of = |audience: &str| {
+        project
+            .fc(&["changelog", "--for", audience])
+            .expect(0)
+            .stdout
+    };
+    assert!(!of("user_app").contains("get_warmth"));
+    // The last release does not know it yet.
+    assert!(of("new_app").contains("- `get_warmth` (0x0108): Get the warmth\n"));
 }
 
 #[test]

@@ -16,3 +16,8 @@ pub mod surface;
 pub mod target;
 
 use fc_reflect::sample;
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 50] = [
+const TEXTS: [(&str, &[&str]); 59] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -35,6 +35,15 @@ const TEXTS: [(&str, &[&str]); 50] = [
     ("docs-site/.vitepress/theme/components", &["vue"]),
     ("editors", &["md"]),
     ("editors/vscode/extension.js", &["js"]),
+    ("fc-cli/README.md", &["md"]),
+    ("fc-codegen/README.md", &["md"]),
+    ("fc-derive/README.md", &["md"]),
+    ("fc-diff/README.md", &["md"]),
+    ("fc-generated/README.md", &["md"]),
+    ("fc-lsp/README.md", &["md"]),
+    ("fc-reflect/README.md", &["md"]),
+    ("fc-runtime/README.md", &["md"]),
+    ("fc-spec/README.md", &["md"]),
     ("fc-cli/src", &["rs"]),
     ("fc-cli/templates", &["md", "rs"]),
     ("fc-codegen/src", &["rs", "md", "j2"]),

@@ -311,3 +311,8 @@ pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
 pub fn dispatch(attribute: TokenStream, item: TokenStream) -> TokenStream {
     dispatch::expand(attribute.into(), item.into()).into()
 }
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -52,6 +52,9 @@ pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> St
         };
         part(["Documentation", "文档"], vec![line]);
     }
+    if !findings.iter().any(|it| is_change(&it)) {
+        out += lang.pick("\n没有变更。\n", "\nNothing has changed.\n");
+    }
     out
 }
 
@@ -73,9 +76,14 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
         let title = pick(lang, ["Changes of the protocol", "协议变更记录"]);
         return format!("# {title}\n\n{section}");
     };
-    match changelog.find("\n## ") {
+    let first = if changelog.starts_with("## ") {
+        Some(0)
+    } else {
+        changelog.find("\n## ").map(|at| at + 1)
+    };
+    match first {
         Some(at) => {
-            let (head, rest) = changelog.split_at(at + 1);
+            let (head, rest) = changelog.split_at(at);
             format!("{head}{section}\n{rest}")
         }
         None => format!("{}\n\n{section}", changelog.trim_end()),

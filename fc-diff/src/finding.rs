@@ -88,6 +88,8 @@ pub struct Finding {
     pub silent: bool,
     /// What happened, in one sentence.
     pub message: Text,
+    /// From what to what, as the message has it; empty where it has no such thing.
+    pub(crate) values: [String; 2],
     /// Twelve hex digits: the same for the same change, whatever lines it is on.
     pub fingerprint: String,
     /// Places of the old version that show it, the best first.
@@ -119,6 +121,7 @@ impl Finding {
             },
             fingerprint: fingerprint([rule.code().as_str(), &subject, from, to]),
             subject,
+            values: [from.to_owned(), to.to_owned()],
             old: Vec::new(),
             new: Vec::new(),
             waived: None,

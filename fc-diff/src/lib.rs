@@ -33,7 +33,7 @@ pub use render::{Format, render, stands_in};
 pub use rule::{Language, Rule, Wire};
 pub use sunset::gone_early;
 pub use version::{Version, VersionError};
-pub use waive::{Against, waive};
+pub use waive::{Against, is_ours, waive};
 
 use fc_spec::model::Model;
 
@@ -46,3 +46,8 @@ pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
     found.retain(|finding| seen.insert(finding.fingerprint.clone()));
     found
 }
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

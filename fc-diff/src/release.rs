@@ -1,6 +1,8 @@
 //! Releases: versions of a spec that are frozen as dumps beside it, and what the next one has to be called.
 
 use crate::finding::Finding;
+use fc_spec::model::Text;
+use fc_spec::text;
 use std::cmp::Ordering;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -143,11 +145,58 @@ impl Releases {
         found.map(|(_, path)| path.as_path())
     }
 
+    /// That there is none which is written like this.
+    #[must_use]
+    pub fn without(&self, name: &str) -> NoRelease {
+        NoRelease {
+            name: name.to_owned(),
+            known: self.numbers().map(ToString::to_string).collect(),
+        }
+    }
+
     /// The numbers, from the first to the last.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
         self.0.iter().map(|(number, _)| number)
     }
 }
+
+/// There is no such release.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoRelease {
+    /// What was asked for.
+    pub name: String,
+    /// The numbers of those that there are, from the first to the last.
+    pub known: Vec<String>,
+}
+
+impl NoRelease {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        let known = match self.known.as_slice() {
+            [] => text!("还没有发布版本", "there is none yet"),
+            known => text!(
+                "已有：{known}",
+                "there are {known}",
+                known = Text::listed(known)
+            ),
+        };
+        text!(
+            "没有发布版本 `{name}`；{known}",
+            "there is no release `{name}`; {known}",
+            name = self.name,
+            known = known
+        )
+    }
+}
+
+impl fmt::Display for NoRelease {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().en)
+    }
+}
+
+impl std::error::Error for NoRelease {}
 
 /// The file of a release, from the spec's directory: `releases/2026.12.json`.
 #[must_use]
@@ -162,6 +211,11 @@ pub enum Objection {
     NotLater {
         /// That of the last release.
         last: String,
+    },
+    /// The spec calls itself by a later one already.
+    GoesBack {
+        /// Its version.
+        version: String,
     },
     /// Nothing differs from the last release.
     Unchanged,
@@ -179,34 +233,51 @@ pub enum Objection {
     },
     /// Something that no release may have: a code that is used again, a waiver that has expired.
     Fault {
-        /// The finding, in English.
-        message: String,
+        /// What was found.
+        message: Text,
     },
 }
 
-impl fmt::Display for Objection {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotLater { last } => {
-                write!(f, "the last release is {last}; choose a later number")
-            }
-            Self::Unchanged => f.write_str("nothing has changed since the last release"),
+impl Objection {
+    /// What it is, in both languages.
+    #[must_use]
+    pub fn message(&self) -> Text {
+        let [zh, en] = match self {
+            Self::NotLater { last } => [
+                format!("上一次发布是 {last}，请取更大的版本号"),
+                format!("the last release is {last}; choose a later number"),
+            ],
+            Self::GoesBack { version } => [
+                format!("规范的版本已是 {version}，请取这个版本号或更大的"),
+                format!("the spec is of version {version} already; choose that or a later number"),
+            ],
+            Self::Unchanged => [
+                "上一次发布以来没有变更".to_owned(),
+                "nothing has changed since the last release".to_owned(),
+            ],
             Self::TooSmall { part, changes } => {
-                let part = ["first", "second", "third", "fourth"]
-                    .get(*part)
-                    .unwrap_or(&"next");
-                write!(
-                    f,
-                    "{changes} of the changes ask for a larger step: the {part} part of the number has to rise"
-                )
+                let number = part + 1;
+                let place = ["first", "second", "third", "fourth"];
+                let place = place.get(*part).unwrap_or(&"next");
+                [
+                    format!("有 {changes} 处变更要求更大的步长：版本号的第 {number} 段要增加"),
+                    format!(
+                        "{changes} of the changes ask for a larger step: the {place} part of the number has to rise"
+                    ),
+                ]
             }
-            Self::NotWaived { ids } => write!(
-                f,
-                "old and new apps and robots would misunderstand each other: undo these changes, or accept each with a waiver: {}",
-                ids.join(", ")
-            ),
-            Self::Fault { message } => f.write_str(message),
-        }
+            Self::NotWaived { ids } => {
+                let ids = ids.join(", ");
+                [
+                    format!("新旧 app 与机器人之间会出现误解：请撤销这些变更，或逐一豁免：{ids}"),
+                    format!(
+                        "old and new apps and robots would misunderstand each other: undo these changes, or accept each with a waiver: {ids}"
+                    ),
+                ]
+            }
+            Self::Fault { message } => return message.clone(),
+        };
+        Text { zh, en }
     }
 }
 
@@ -251,7 +322,7 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
         .iter()
         .filter(|it| it.rule.is_error && it.waived.is_none());
     objections.extend(faults.iter().chain(never).map(|finding| Objection::Fault {
-        message: finding.message.en.clone(),
+        message: finding.message.clone(),
     }));
     // The number itself is a difference.
     let is_change = |it: &&&Finding| it.subject != VERSION;
@@ -288,6 +359,15 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
         });
     }
     objections
+}
+
+/// That a number comes before the version by which the spec calls itself, where that is a number.
+#[must_use]
+pub fn goes_back(next: &Number, version: &str) -> Option<Objection> {
+    let written: Number = version.parse().ok()?;
+    (*next < written).then(|| Objection::GoesBack {
+        version: version.to_owned(),
+    })
 }
 
 /// What findings call the number itself.

@@ -3,9 +3,10 @@
 use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::pick;
 use crate::version::Version;
-use fc_spec::load::{Item, Places};
+use fc_spec::load::{Item, Place};
 use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
+use fc_spec::syntax::Span;
 use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};
 use std::fmt::Write as _;
@@ -61,21 +62,60 @@ pub fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bo
         .any(is_there)
 }
 
-/// A place as `path:line`.
-fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
-    spots.iter().find_map(|spot| {
-        let found = find(spot, &version.places)?;
-        Some((
-            version.sources.path(found).to_owned(),
-            version.sources.line(found),
-        ))
-    })
+/// A line of a version: `-` or `+`, its file, its number, and it.
+type Excerpt<'v> = (char, &'v str, usize, &'v str);
+
+/// Lines of both versions that show a finding: of what it is about, the first that differs and has the value from which or to which
+/// it changed, or else the one with the name.
+fn excerpts<'v>(finding: &Finding, [old, new]: [&'v Version; 2]) -> Vec<Excerpt<'v>> {
+    let side = |spots: &[Spot], version: &'v Version| {
+        let place = place_of(spots, version);
+        place.map(|place| (place.key, lines(place.whole, version), version))
+    };
+    let (was, is) = (side(&finding.old, old), side(&finding.new, new));
+    let [from, to] = &finding.values;
+    let sides = [('-', &was, &is, from), ('+', &is, &was, to)];
+    let excerpts = sides.into_iter().filter_map(|(sign, side, other, value)| {
+        let (key, own, version) = side.as_ref()?;
+        let others = other.as_ref().map(|(_, lines, _)| lines);
+        let is_new = |line: &str| !others.into_iter().flatten().any(|(_, it)| *it == line);
+        let shows = |line: &str| !value.is_empty() && line.contains(value) && is_new(line);
+        let named = version.sources.line(*key);
+        let line = own.iter().find(|(_, line)| shows(line));
+        let (number, line) = line.or_else(|| own.iter().find(|(number, _)| *number == named))?;
+        Some((sign, version.sources.path(*key), *number, *line))
+    });
+    excerpts.collect()
 }
 
-fn find(spot: &Spot, places: &Places) -> Option<fc_spec::syntax::Span> {
-    let is_kind = |item: &Item| spot.kind.is_empty() || item.kind == spot.kind;
-    let mut found = places.named(&spot.name).filter(|(item, _)| is_kind(item));
-    found.next().map(|(_, place)| place.key)
+/// The lines of a span with their numbers, without the blanks around them.
+fn lines(span: Span, version: &Version) -> Vec<(usize, &str)> {
+    let Some(file) = version.sources.get(span.file) else {
+        return Vec::new();
+    };
+    let (first, last) = (file.line(span.start), file.line(span.end));
+    let text = file.lines(first, last);
+    let text = text.and_then(|(start, end)| file.text.get(start..end));
+    let lines = text.unwrap_or_default().lines().map(str::trim);
+    (first..).zip(lines).collect()
+}
+
+/// A place as `path:line`.
+fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
+    let found = place_of(spots, version)?.key;
+    Some((
+        version.sources.path(found).to_owned(),
+        version.sources.line(found),
+    ))
+}
+
+fn place_of<'v>(spots: &[Spot], version: &'v Version) -> Option<&'v Place> {
+    spots.iter().find_map(|spot| {
+        let is_kind = |item: &Item| spot.kind.is_empty() || item.kind == spot.kind;
+        let mut found = version.places.named(&spot.name);
+        let found = found.find(|(item, _)| is_kind(item));
+        found.map(|(_, place)| place)
+    })
 }
 
 /// Whom it breaks, in a few words.
@@ -121,18 +161,7 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
                 ),
             };
         }
-        for (sign, spots, version) in [('-', &finding.old, old), ('+', &finding.new, new)] {
-            let Some(span) = spots.iter().find_map(|spot| find(spot, &version.places)) else {
-                continue;
-            };
-            let line = version.sources.line(span);
-            let file = version.sources.get(span.file);
-            let written = file.and_then(|file| {
-                let (start, end) = file.lines(line, line)?;
-                file.text.get(start..end)
-            });
-            let path = version.sources.path(span);
-            let written = written.unwrap_or_default().trim();
+        for (sign, path, line, written) in excerpts(finding, [old, new]) {
             let _ = writeln!(text, "  {sign} {path}:{line}: {written}");
         }
     }
@@ -146,8 +175,10 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
         _ if findings.is_empty() => writeln!(text, "{}", pick(lang, ["no changes", "没有变更"])),
         Lang::En => writeln!(
             text,
-            "\n{all} changes from {} to {}: {wire} on the wire, {source} in sources, {behaviour} in behaviour",
-            old.name, new.name
+            "\n{all} {} from {} to {}: {wire} on the wire, {source} in sources, {behaviour} in behaviour",
+            if all == 1 { "change" } else { "changes" },
+            old.name,
+            new.name
         ),
         Lang::Zh => writeln!(
             text,

@@ -13,7 +13,16 @@ const DERIVED: [&str; 4] = ["place", "edit", "format", "waivers"];
 /// A path of it says that what is in both versions of a list stands in another order.
 const ORDER: &str = "#order";
 /// Lists in the order of the files.
-const AS_WRITTEN: [&str; 4] = ["answers", "questions", "conflicts", "types"];
+const AS_WRITTEN: [&str; 6] = [
+    "answers",
+    "questions",
+    "conflicts",
+    "types",
+    "groups",
+    "operations",
+];
+/// A question is of the group of what it is about.
+const OF_QUESTIONS: &str = "questions";
 /// Characters of a value that a finding shows.
 const SHOWN: usize = 60;
 
@@ -56,7 +65,9 @@ impl Walk<'_> {
         let keys = old
             .keys()
             .chain(new.keys().filter(|key| !old.contains_key(*key)));
-        for key in keys.filter(|key| !DERIVED.contains(&key.as_str())) {
+        let is_question = path.first().is_some_and(|list| list == OF_QUESTIONS);
+        let is_derived = |key: &str| DERIVED.contains(&key) || (is_question && key == "group");
+        for key in keys.filter(|key| !is_derived(key)) {
             let (one, other) = (old.get(key), new.get(key));
             let (one, other) = (one.unwrap_or(&Value::Null), other.unwrap_or(&Value::Null));
             path.push(key.clone());

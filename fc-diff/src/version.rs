@@ -1,6 +1,6 @@
 //! A version of a spec to compare: a directory, a dump, a release, or what git has of one.
 
-use crate::release::Releases;
+use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Places, load, places};
 use fc_spec::model::Text;
@@ -50,6 +50,8 @@ pub enum VersionError {
     Git(String, String),
     /// It is not a directory with a spec, nor a file.
     NoSpec(String),
+    /// It is the number of a release that there is not.
+    NoRelease(NoRelease),
     /// Its files are too large.
     TooLarge(String),
 }
@@ -83,6 +85,7 @@ impl VersionError {
                 "`{name}` 不是有规范的目录，不是 `fc inspect` 的输出，不是发布版本，也不是 git:REF",
                 "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor a release, nor git:REF"
             ),
+            Self::NoRelease(error) => error.text(),
             Self::TooLarge(name) => {
                 let most = MOST >> 20;
                 text!(
@@ -104,7 +107,8 @@ impl std::error::Error for VersionError {}
 
 impl Version {
     /// Reads a version: a project's or a spec's directory, a file that `fc inspect` has printed, the number of a release of
-    /// the spec in `project`, or `git:REF` for what git has of it; `spec` leads from there to the spec's directory.
+    /// the spec in `project`, which counts before a file of that name, or `git:REF` for what git has of it; `spec` leads from
+    /// there to the spec's directory.
     ///
     /// # Errors
     ///
@@ -115,9 +119,11 @@ impl Version {
         }
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
         let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
-        let path = Path::new(name);
-        let of_release = releases.named(name).filter(|_| !path.exists());
-        let path = of_release.unwrap_or(path);
+        // A directory that is called like a release is `./2026.12`.
+        let path = releases.named(name).unwrap_or(Path::new(name));
+        if name.parse::<Number>().is_ok() && !path.exists() {
+            return Err(VersionError::NoRelease(releases.without(name)));
+        }
         if !path.is_dir() {
             let mut file = std::fs::File::open(path)
                 .map_err(unreadable)?

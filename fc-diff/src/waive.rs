@@ -2,11 +2,17 @@
 
 use crate::finding::Finding;
 use crate::rules::operations::CODE_REUSED;
-use crate::rules::process::{WAIVER_OVER, WAIVER_REFUSED, WAIVER_UNUSED};
+use crate::rules::process::{RELEASE, WAIVER_OVER, WAIVER_REFUSED, WAIVER_UNUSED};
 use fc_spec::model::Waiver;
 
 /// What the ids of waivers for this comparison begin with; those of others are for others.
 const OURS: &str = "FC07";
+
+/// Whether a waiver is about a change between versions.
+#[must_use]
+pub fn is_ours(waiver: &Waiver) -> bool {
+    waiver.id.starts_with(OURS)
+}
 
 /// Against what was compared, which decides what can be said of a waiver that accepts nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +26,7 @@ pub enum Against {
 /// Marks the findings that waivers accept on a day, `YYYY-MM-DD`, and adds what is wrong with the waivers.
 pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str, against: Against) {
     let mut wrong = Vec::new();
-    for waiver in waivers.iter().filter(|it| it.id.starts_with(OURS)) {
+    for waiver in waivers.iter().filter(|it| is_ours(it)) {
         let about = |rule| Finding::new(rule, &waiver.id, ["", ""]).is("waiver", &waiver.id);
         let finding = findings.iter_mut().find(|it| it.waiver_id() == waiver.id);
         match finding {
@@ -33,6 +39,10 @@ pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str, again
             None if against == Against::Release => wrong.push(about(&WAIVER_UNUSED)),
             None => {}
         }
+    }
+    // Breaks that are accepted are announced.
+    if !findings.iter().any(Finding::is_break) {
+        findings.retain(|it| it.rule.number != RELEASE.number);
     }
     findings.append(&mut wrong);
 }

@@ -104,9 +104,9 @@ const UNSHOWN: [(&str, &str); 4] = [
         "operation-port-changed",
         "FC0510: the port follows from the kind",
     ),
-    ("waiver-expired", "no change: tests/waivers.rs"),
-    ("waiver-unused", "no change: tests/waivers.rs"),
-    ("waiver-refused", "no change: tests/waivers.rs"),
+    ("waiver-expired", "no change: tests/release.rs"),
+    ("waiver-unused", "no change: tests/release.rs"),
+    ("waiver-refused", "no change: tests/release.rs"),
 ];
 
 #[test]

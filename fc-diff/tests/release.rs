@@ -4,7 +4,7 @@
 
 mod support;
 
-use fc_diff::release::{Number, Objection, objections};
+use fc_diff::release::{Number, Objection, goes_back, objections};
 use fc_diff::{Against, Finding, diff, waive};
 use fc_spec::model::{Location, Text, Waiver};
 use support::{base, edits, model};
@@ -34,6 +34,7 @@ fn breaks(found: &[Finding]) -> bool {
 fn names(objections: &[Objection]) -> Vec<&'static str> {
     let name = |it: &Objection| match it {
         Objection::NotLater { .. } => "not later",
+        Objection::GoesBack { .. } => "goes back",
         Objection::Unchanged => "unchanged",
         Objection::TooSmall { part: 0, .. } => "first",
         Objection::TooSmall { .. } => "second",
@@ -108,7 +109,9 @@ fn what_is_waived_asks_for_no_more_than_what_is_new() {
     assert_eq!(objections(&last, &next, &found), []);
 
     // A month later they hold no more.
-    found.iter_mut().for_each(|it| it.waived = None);
+    for finding in &mut found {
+        finding.waived = None;
+    }
     waive(&mut found, &waivers, "2027-04-01", Against::Release);
     let late = objections(&last, &next, &found);
     assert!(names(&late).contains(&"fault"), "{late:?}");
@@ -122,6 +125,65 @@ fn a_code_that_is_used_again_is_never_released() {
         let objections = objections(&number("7"), &number(next), &found);
         assert!(names(&objections).contains(&"fault"), "{next}");
     }
+}
+
+#[test]
+fn a_number_does_not_come_before_the_version_that_the_spec_has() {
+    for (next, version, goes) in [
+        ("2026.08", "2026.09", true),
+        ("2026.09", "2026.09", false),
+        ("2026.9", "2026.09", false),
+        ("2026.12", "2026.09", false),
+        ("1.0", "1", false),
+        ("0.9", "1", true),
+        // What is no number says nothing.
+        ("0.9", "draft", false),
+    ] {
+        let objection = goes_back(&number(next), version);
+        assert_eq!(objection.is_some(), goes, "{next} after {version}");
+    }
+}
+
+#[test]
+fn a_waiver_that_fits_nothing_is_found_where_that_can_be_said() {
+    let waiver = |id: &str| Waiver {
+        id: id.to_owned(),
+        reason: Text {
+            zh: "已商定".to_owned(),
+            en: "Agreed".to_owned(),
+        },
+        by: "Zhang Wei".to_owned(),
+        until: "2027-03".to_owned(),
+        location: Location {
+            file: String::new(),
+            name: String::new(),
+            line: 1,
+        },
+    };
+    // The second is of another check.
+    let waivers = ["FC0717-000000000000", "FC0801-000000000000"].map(waiver);
+    for (against, expected) in [
+        (Against::Release, vec!["waiver-unused"]),
+        (Against::Other, vec![]),
+    ] {
+        let mut found = Vec::new();
+        waive(&mut found, &waivers, "2027-03-31", against);
+        let names: Vec<_> = found.iter().map(|it| it.rule.name).collect();
+        assert_eq!(names, expected);
+    }
+
+    let is_reused = |it: &Finding| it.rule.name == "retired-code-reused";
+    let mut found = found(|found| found.iter().any(is_reused));
+    let ids: Vec<_> = found.iter().filter(|it| is_reused(it)).collect();
+    let waivers: Vec<_> = ids.iter().map(|it| waiver(&it.waiver_id())).collect();
+    waive(&mut found, &waivers, "2027-03-31", Against::Release);
+    assert!(
+        found
+            .iter()
+            .filter(|it| is_reused(it))
+            .all(|it| it.waived.is_none())
+    );
+    assert!(found.iter().any(|it| it.rule.name == "waiver-refused"));
 }
 
 #[test]

@@ -46,41 +46,58 @@ fn what_the_readmes_print_compiles_for_a_user_outside() {
             "{name}: Rust that is not compiled"
         );
 
-        let project = tempfile::tempdir().unwrap();
-        let here = root().join("fc-generated").canonicalize().unwrap();
-        let path = "path = \"fc-generated\"";
-        assert!(manifest.contains(path), "{name}: {manifest}");
-        let manifest = manifest.replace(path, &format!("path = {:?}", here.to_string_lossy()));
-        let package = "[package]\nname = \"user\"\nedition = \"2024\"\n\n[workspace]\n";
-        fs::write(
-            project.path().join("Cargo.toml"),
-            [package, "\n", &manifest, "\n"].concat(),
-        )
-        .unwrap();
-        // The versions that are there, so that nothing has to be fetched.
-        fs::copy(root().join("Cargo.lock"), project.path().join("Cargo.lock")).unwrap();
-        let sources = project.path().join("src/bin");
-        fs::create_dir_all(&sources).unwrap();
-        for (number, program) in programs.iter().enumerate() {
-            fs::write(sources.join(format!("program_{number}.rs")), program).unwrap();
-        }
-
-        let output = Command::new(env!("CARGO"))
-            .args(["check", "--offline"])
-            .current_dir(project.path())
-            .env(
-                "CARGO_TARGET_DIR",
-                Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme"),
-            )
-            .env("RUSTFLAGS", "-D warnings")
-            .output()
-            .unwrap();
-        assert!(
-            output.status.success(),
-            "{name}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        compile(name, manifest, &programs);
     }
+}
+
+/// What the package says of itself on a registry, with the manifest that the whole prints.
+#[test]
+fn what_this_package_prints_compiles_for_a_user_outside() {
+    let whole = fs::read_to_string(root().join("README.md")).unwrap();
+    let name = "fc-generated/README.md";
+    let text = fs::read_to_string(root().join(name)).unwrap();
+    let programs = fences(&text, "rust");
+    assert_eq!(programs.len(), 1, "{name}: an app");
+    let manifests = fences(&whole, "toml");
+    compile(name, manifests.first().expect("a manifest"), &programs);
+}
+
+/// Compiles programs as a package of their own, with that manifest.
+fn compile(name: &str, manifest: &str, programs: &[&str]) {
+    let project = tempfile::tempdir().unwrap();
+    let here = root().join("fc-generated").canonicalize().unwrap();
+    let path = "path = \"fc-generated\"";
+    assert!(manifest.contains(path), "{name}: {manifest}");
+    let manifest = manifest.replace(path, &format!("path = {:?}", here.to_string_lossy()));
+    let package = "[package]\nname = \"user\"\nedition = \"2024\"\n\n[workspace]\n";
+    fs::write(
+        project.path().join("Cargo.toml"),
+        [package, "\n", &manifest, "\n"].concat(),
+    )
+    .unwrap();
+    // The versions that are there, so that nothing has to be fetched.
+    fs::copy(root().join("Cargo.lock"), project.path().join("Cargo.lock")).unwrap();
+    let sources = project.path().join("src/bin");
+    fs::create_dir_all(&sources).unwrap();
+    for (number, program) in programs.iter().enumerate() {
+        fs::write(sources.join(format!("program_{number}.rs")), program).unwrap();
+    }
+
+    let output = Command::new(env!("CARGO"))
+        .args(["check", "--offline"])
+        .current_dir(project.path())
+        .env(
+            "CARGO_TARGET_DIR",
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme"),
+        )
+        .env("RUSTFLAGS", "-D warnings")
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{name}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 #[test]

@@ -288,3 +288,8 @@ pub struct Decoded<'m> {
     /// The message in it; `None` of a stream that is not JSON: its bytes are [`Frame::data`].
     pub message: Option<Message<'m>>,
 }
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -109,3 +109,8 @@ pub use server::{
 pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
 pub use stream::StreamFrame;
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -22,3 +22,8 @@ pub mod scaffold;
 pub mod schema;
 pub mod syntax;
 mod vocabulary;
+
+/// Its examples compile.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

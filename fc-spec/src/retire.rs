@@ -208,6 +208,13 @@ fn without(file: &SourceFile, entry: Entry<'_>, parent: Entry<'_>) -> Option<Edi
     }
     let alone = parent.value.entries().nth(1).is_none();
     let gone = if alone { parent } else { entry };
+    let mut edits = Edits::default();
+    edits.remove_lines(file, with_comments(file, gone));
+    Some(edits)
+}
+
+/// An entry, the comments above it, and the blank line above if there is one below as well.
+pub(crate) fn with_comments(file: &SourceFile, gone: Entry<'_>) -> Span {
     let key = gone.key.span();
     let above = gone.key.comments().find(|it| it.start < key.start);
     let mut start = above.map_or(key.start, |comment| comment.start.min(key.start));
@@ -222,9 +229,7 @@ fn without(file: &SourceFile, entry: Entry<'_>, parent: Entry<'_>) -> Option<Edi
     if first > 1 && is_blank(first - 1) && is_blank(file.line(end.saturating_sub(1)) + 1) {
         start = file.lines(first - 1, first - 1).map_or(start, |it| it.0);
     }
-    let mut edits = Edits::default();
-    edits.remove_lines(file, Span::new(key.file, start, end));
-    Some(edits)
+    Span::new(key.file, start, end)
 }
 
 /// With a code among the retired ones. `None` if there is no line for it.
@@ -268,7 +273,7 @@ fn indent(file: &SourceFile, span: Span) -> String {
 }
 
 /// Whether what stands under a key begins on its line.
-fn is_flow(file: &SourceFile, entry: Entry<'_>) -> bool {
+pub(crate) fn is_flow(file: &SourceFile, entry: Entry<'_>) -> bool {
     let value = entry.value.span();
     value.start == value.end || file.line(value.start) == file.line(entry.key.span().start)
 }

@@ -1,38 +1,77 @@
-//! The spec under another number of its version.
+//! What a release changes in the text of a spec: the number of its version, and the waivers that have served.
 
 use crate::diagnostic::Faults;
 use crate::load::grammar::{FILE, PROTOCOL};
-use crate::syntax::{Edits, SourceFile, Sources, parse, quoted};
+use crate::retire::{is_flow, with_comments};
+use crate::syntax::{Edits, SourceFile, Sources, Span, Tree, parse, quoted};
 
-/// A spec that calls itself by another version.
+/// A spec in which one thing is written differently.
 #[derive(Clone, Debug)]
-pub struct Renumbered {
+pub struct Revised {
     /// Its files.
     pub sources: Sources,
-    /// Path of the file that has changed.
+    /// Path of the file that has the thing.
     pub path: String,
-    /// The line that has changed, as a diff without line numbers.
+    /// The lines that have changed, as a diff without line numbers; empty where it was like that before.
     pub diff: String,
 }
 
 /// Writes `version` as that of the protocol; everything else stays as it is, to the byte. `None` where no file says of
 /// which version the protocol is, which [`load`](crate::load::load) reports.
 #[must_use]
-pub fn renumbered(sources: &Sources, version: &str) -> Option<Renumbered> {
-    let (file, edits) = sources.iter().find_map(|(id, file)| {
-        let tree = parse(id, &file.text, &mut Faults::new())?;
+pub fn renumbered(sources: &Sources, version: &str) -> Option<Revised> {
+    revised(sources, |tree, _| {
         let written = PROTOCOL.version.of(FILE.protocol.of(tree.root()))?;
         let mut edits = Edits::default();
         // Always in quotes: without them other parsers read it as a number.
         edits.replace(written.span(), quoted(version));
-        Some((file, edits))
+        Some(edits)
+    })
+}
+
+/// Takes a waiver out, with the comments above it; of the last one `waivers: {}` is left. `None` where none has this id, or
+/// where it is not written on lines of its own.
+#[must_use]
+pub fn without_waiver(sources: &Sources, id: &str) -> Option<Revised> {
+    revised(sources, |tree, file| {
+        let waivers = tree.root().entry(FILE.waivers.name)?;
+        let gone = waivers.value.entry(id)?;
+        if is_flow(file, waivers) {
+            return None;
+        }
+        let mut edits = Edits::default();
+        if waivers.value.entries().nth(1).is_none() {
+            edits.insert_after(colon(file, waivers.key.span())?, " {}");
+        }
+        edits.remove_lines(file, with_comments(file, gone));
+        Some(edits)
+    })
+}
+
+/// That of a key.
+fn colon(file: &SourceFile, key: Span) -> Option<Span> {
+    let at = key.end + file.text.get(key.end..)?.find(':')?;
+    Some(Span::new(key.file, at, at + 1))
+}
+
+fn revised(
+    sources: &Sources,
+    edits: impl Fn(&Tree<'_>, &SourceFile) -> Option<Edits>,
+) -> Option<Revised> {
+    let (file, edits) = sources.iter().find_map(|(id, file)| {
+        let tree = parse(id, &file.text, &mut Faults::new())?;
+        Some((file, edits(&tree, file)?))
     })?;
-    let (path, diff) = (file.path.clone(), edits.diff(file));
-    let text = edits.apply(file);
-    let mut changed = sources.clone();
-    changed.replace(SourceFile::new(&path, text));
-    Some(Renumbered {
-        sources: changed,
+    let (path, text) = (file.path.clone(), edits.apply(file));
+    let diff = if text == file.text {
+        String::new()
+    } else {
+        edits.diff(file)
+    };
+    let mut sources = sources.clone();
+    sources.replace(SourceFile::new(&path, text));
+    Some(Revised {
+        sources,
         path,
         diff,
     })
@@ -42,6 +81,12 @@ pub fn renumbered(sources: &Sources, version: &str) -> Option<Renumbered> {
 mod tests {
     use super::*;
 
+    /// The texts of all files; none where nothing could be revised.
+    fn texts(revised: Option<&Revised>) -> Vec<String> {
+        let files = revised.into_iter().flat_map(|it| it.sources.iter());
+        files.map(|(_, file)| file.text.clone()).collect()
+    }
+
     #[test]
     fn only_the_number_changes() {
         let before = "# a comment\nprotocol:\n  version: \"2024.09\" # of the month\n  id: fc\n";
@@ -49,17 +94,31 @@ mod tests {
             ("spec/other.yaml", "types:\n"),
             ("spec/protocol.yaml", before),
         ]);
-        let Some(after) = renumbered(&sources, "2026.12") else {
-            panic!("there is a version");
-        };
-        assert_eq!(after.path, "spec/protocol.yaml");
-        let texts: Vec<_> = after
-            .sources
-            .iter()
-            .map(|(_, file)| file.text.clone())
-            .collect();
-        assert_eq!(texts[0], "types:\n");
-        assert_eq!(texts[1], before.replace("2024.09", "2026.12"));
+        let after = renumbered(&sources, "2026.12");
+        let path = after.as_ref().map(|it| it.path.as_str());
+        assert_eq!(path, Some("spec/protocol.yaml"));
+        let expected = ["types:\n", &before.replace("2024.09", "2026.12")];
+        assert_eq!(texts(after.as_ref()), expected);
+        let again = after.and_then(|it| renumbered(&it.sources, "2026.12"));
+        assert_eq!(texts(again.as_ref()), expected);
+        assert_eq!(again.map(|it| it.diff), Some(String::new()));
         assert!(renumbered(&Sources::from_texts([("spec/other.yaml", "types:\n")]), "1").is_none());
+    }
+
+    #[test]
+    fn only_the_waiver_goes() {
+        let one = "  # agreed in March\n  FC0725-1a2b3c4d5e6f: { by: a }\n";
+        let other = "  FC0717-1a2b3c4d5e6f:\n    by: b # still\n";
+        let text = format!("# head\nwaivers: # accepted\n{one}{other}");
+        let sources = Sources::from_texts([("spec/waivers.yaml", text.as_str())]);
+        let after = without_waiver(&sources, "FC0725-1a2b3c4d5e6f");
+        assert_eq!(texts(after.as_ref()), [text.replace(one, "")]);
+        let last = after.and_then(|it| without_waiver(&it.sources, "FC0717-1a2b3c4d5e6f"));
+        let left = "# head\nwaivers: {} # accepted\n";
+        assert_eq!(texts(last.as_ref()), [left]);
+        assert!(without_waiver(&sources, "FC0799-1a2b3c4d5e6f").is_none());
+        let flow = "waivers: { FC0725-1a2b3c4d5e6f: { by: a } }\n";
+        let flow = Sources::from_texts([("spec/waivers.yaml", flow)]);
+        assert!(without_waiver(&flow, "FC0725-1a2b3c4d5e6f").is_none());
     }
 }

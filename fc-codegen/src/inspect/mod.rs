@@ -136,6 +136,9 @@
 //! `section.<number>`.
 
 mod fields;
+mod frozen;
+
+pub use frozen::frozen;
 
 use crate::sample::Samples;
 use fc_spec::model::{

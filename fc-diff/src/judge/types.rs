@@ -6,6 +6,7 @@ use crate::matching::{self, Pair};
 use crate::rule::Wire;
 use crate::rules::choices as rules;
 use crate::rules::fields::{NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_CHANGED};
+use crate::rules::operations::GROUP_MOVED;
 use fc_spec::model::{EnumRepr, EnumType, OneOf, TypeDef, TypeShape};
 
 /// A pair of things at one place.
@@ -37,6 +38,9 @@ impl<'m> Judge<'m> {
                 senders,
                 owners: [old.name.clone(), new.name.clone()],
             };
+            if old.group != new.group {
+                self.type_moved(old, new);
+            }
             match (&old.shape, &new.shape) {
                 (TypeShape::Struct(old), TypeShape::Struct(new)) => {
                     self.object(&here, &old.fields, &new.fields);
@@ -50,6 +54,16 @@ impl<'m> Judge<'m> {
                     self.claim_in(&here.path, &[]);
                 }
             }
+        }
+    }
+
+    /// Whose file holds it now. What is part of a message goes with its operation, and what has another name has another path anyway.
+    fn type_moved(&mut self, old: &TypeDef, new: &TypeDef) {
+        self.claim(&["types", &new.name, "group"]);
+        if new.body_of.is_none() && old.name == new.name {
+            let [from, to] = [old, new].map(|it| it.group.as_deref().unwrap_or_default());
+            let finding = Finding::new(&GROUP_MOVED, &new.name, [from, to]);
+            self.report(finding.at("", &new.name));
         }
     }
 

@@ -99,8 +99,8 @@ impl DumpError {
             Self::Format(found) => {
                 let format = Dump::FORMAT;
                 text!(
-                    "输出的格式是 {found}；这个版本读取的格式是 {format}",
-                    "a dump of format {found}; this version reads format {format}"
+                    "输出的格式是 {found}；这个版本读取的格式是 {format}：用这个 `fc inspect` 从规范重新输出",
+                    "a dump of format {found}; this version reads format {format}: print it again from its spec, with this `fc inspect`"
                 )
             }
             Self::Name(Unlinked { missing, user }) => text!(

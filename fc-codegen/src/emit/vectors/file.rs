@@ -1,14 +1,15 @@
 //! What every file of vectors has.
 
-use crate::emit::json::{int, object, text};
-use fc_spec::model::{Model, Operation, Value};
+use crate::emit::json::{int, text};
+use fc_spec::model::{Operation, Value};
 
 /// Version of the files' format.
 const FORMAT: i128 = 1;
 
-/// The contents of a file about one operation, or about none.
+/// The contents of a file about one operation, or about none. The version of the protocol is for one file alone, so that a release does
+/// not change all of them.
 pub(super) fn contents(
-    model: &Model,
+    version: Option<&str>,
     operation: Option<&Operation>,
     accepted: Vec<Value>,
     rejected: Vec<Value>,
@@ -18,13 +19,19 @@ pub(super) fn contents(
     let code = operation
         .and_then(|operation| operation.code.value)
         .map(int);
-    object([
-        ("format", int(FORMAT)),
-        ("version", text(&model.protocol.version)),
+    let format = ("format", int(FORMAT));
+    let version = version.map(|version| ("version", text(version)));
+    let rest = [
         ("operation", name.unwrap_or(Value::Null)),
         ("kind", kind.unwrap_or(Value::Null)),
         ("code", code.unwrap_or(Value::Null)),
         ("accepted", Value::Array(accepted)),
         ("rejected", Value::Array(rejected)),
-    ])
+    ];
+    let entries = [format].into_iter().chain(version).chain(rest);
+    Value::Object(
+        entries
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect(),
+    )
 }

@@ -13,12 +13,8 @@ use std::ops::RangeInclusive;
 
 pub(super) fn file(reflector: &Reflector<'_>) -> Value {
     let frames = Frames::new(reflector);
-    contents(
-        reflector.model(),
-        None,
-        frames.accepted(),
-        frames.rejected(),
-    )
+    let version = &reflector.model().protocol.version;
+    contents(Some(version), None, frames.accepted(), frames.rejected())
 }
 
 /// Takes a frame that must be refused: the error, a name, all of the input.

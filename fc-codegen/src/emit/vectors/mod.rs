@@ -4,11 +4,11 @@
 //! what no operation has to do with. Every file is
 //!
 //! ```json
-//! { "format": 1, "version": "2024.09", "operation": "get_station", "kind": "command", "code": 2563,
+//! { "format": 1, "operation": "get_station", "kind": "command", "code": 2563,
 //!   "accepted": [ … ], "rejected": [ … ] }
 //! ```
 //!
-//! `version` is that of the protocol, so that a copy of the files tells which release it holds peers to.
+//! `frames.json` has the protocol's `version` as well, so that a copy of the files tells which release it holds peers to.
 //!
 //! **Accepted**, in an operation's file: `name`, `direction` (`request`, `response`), `case`
 //! (`plain`, `gzip`, `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `integral`, `variant_<name>`,
@@ -69,7 +69,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         })
         .collect();
     artifacts.push(artifact(targets, "frames", &frames::file(&reflector)));
-    artifacts.push(artifact(targets, "bodies", &bodies::file(model)));
+    artifacts.push(artifact(targets, "bodies", &bodies::file()));
     artifacts
 }
 
@@ -98,5 +98,5 @@ fn of_operation(reflector: &Reflector<'_>, operation: &Operation) -> Value {
         rejected.extend(frame_faults::of_operation(&case, &example));
         rejected.extend(body_faults::of_operation(&case));
     }
-    contents(reflector.model(), Some(operation), accepted, rejected)
+    contents(None, Some(operation), accepted, rejected)
 }
