@@ -3,6 +3,7 @@
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
+use crate::lang::Language;
 use crate::place::{GLOBAL, Place};
 use crate::{
     changelog, check, codes, diff, explain, fmt, generate, init, inspect, lsp, new, places,
@@ -46,6 +47,9 @@ pub struct Args {
     /// When to use colors.
     #[arg(long, value_name = "WHEN", default_value = "auto", global = true, help_heading = GLOBAL)]
     pub color: Color,
+    /// In which language [default: what LC_ALL, LC_MESSAGES or LANG says, or en]
+    #[arg(long, value_name = "LANGUAGE", global = true, help_heading = GLOBAL)]
+    pub lang: Option<Language>,
     /// Say nothing of what went well; results that were asked for, and what is wrong, are still printed.
     #[arg(short, long, global = true, help_heading = GLOBAL)]
     pub quiet: bool,

@@ -3,7 +3,7 @@
 use fc_diff::{Version, section};
 use fc_spec::model::Model;
 
-use crate::lang::Language;
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -29,9 +29,6 @@ pub struct Options {
     /// Only what this audience has, as the spec names it under `availability`.
     #[arg(long = "for", value_name = "AUDIENCE")]
     audience: Option<String>,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -44,10 +41,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let (Some(old), Some(new)) = (shelf.read(&old)?, shelf.read(&new)?) else {
         return Ok(Status::Faulty);
     };
-    let lang = options.lang.into();
+    let lang = lang();
     let title = match &options.new {
         Some(_) => new.model.protocol.version.clone(),
-        None => fc_diff::Lang::pick(lang, ["Unreleased", "未发布"]).to_owned(),
+        None => lang.pick("未发布", "Unreleased").to_owned(),
     };
     let part = |version: Version| -> Result<Version, Failure> {
         Ok(Version {

@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use fc_spec::diagnostic::{Format, render};
 
+use crate::lang::{counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -79,12 +80,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Text => {
             spec.show_faults()?;
             if let Some(model) = &spec.model {
-                print::done(&format!(
-                    "{} {}: {}, {}\n",
-                    print::good("checked"),
-                    print::counted(spec.files(), "file"),
-                    print::counted(model.operations.len(), "operation"),
-                    print::counted(model.types.len(), "type"),
+                let files = counted(spec.files(), "文件", "file");
+                let operations = counted(model.operations.len(), "接口", "operation");
+                let types = counted(model.types.len(), "类型", "type");
+                let checked = print::good(&said!("检查完毕", "checked"));
+                print::done(&said!(
+                    "{checked}：{files}，{operations}，{types}\n",
+                    "{checked} {files}: {operations}, {types}\n"
                 ))?;
             }
             return Ok(options.status(&spec));
@@ -94,10 +96,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Github => Format::Github,
     };
     let rendered = if format == Format::Json {
-        render(&spec.faults, &spec.sources, format)
+        render(&spec.faults, &spec.sources, format, lang())
     } else {
         let prefix = in_repository(&project.root);
-        render(&spec.faults, &spec.sources.below(&prefix), format)
+        render(&spec.faults, &spec.sources.below(&prefix), format, lang())
     };
     print::result(&rendered)?;
     Ok(options.status(&spec))

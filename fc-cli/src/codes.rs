@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use fc_codegen::codes::CodeMap;
 
-use crate::lang::Language;
+use crate::lang::lang;
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -32,9 +32,6 @@ pub struct Options {
         conflicts_with = "codes"
     )]
     format: Shown,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -52,7 +49,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(spec.status());
     };
     let map = CodeMap::new(model);
-    let lang = options.lang.into();
+    let lang = lang();
     print::result(&match options.format {
         _ if !options.codes.is_empty() => {
             let codes = options.codes.iter();

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use fc_diff::{Finding, render};
 
-use crate::lang::Language;
+use crate::lang::lang;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -52,9 +52,6 @@ pub struct Options {
     /// How to print the changes.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
     /// Exit with 1 if there is a change of this kind.
     #[arg(long, value_name = "KINDS", value_delimiter = ',')]
     fail_on: Vec<Kind>,
@@ -124,7 +121,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if matches!(options.format, Shown::Github | Shown::Sarif) {
         new.sources = new.sources.below(&in_repository(&shelf.root));
     }
-    let lang = options.lang.into();
+    let lang = lang();
     print::result(&render(&findings, [&old, &new], format, lang))?;
     let fails = |finding: &Finding| {
         let counts = || finding.waived.is_none();

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
 
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
@@ -21,24 +22,26 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<Status, Failure> {
+    let lang = lang();
+    let colon = lang.pick("：", ": ");
     let mut text = String::new();
     match &options.code {
         None => {
             for code in FaultCode::ALL {
-                let _ = writeln!(text, "{code}  {}", code.title());
+                let _ = writeln!(text, "{code}  {}", code.title(lang));
             }
             for rule in Rule::all() {
-                let [title, _] = rule.title;
-                let _ = writeln!(text, "{}  {title}", rule.code());
+                let _ = writeln!(text, "{}  {}", rule.code(), rule.title_in(lang));
             }
         }
         Some(number) => {
             if let Some(rule) = Rule::parse(number) {
-                let [title, _] = rule.title;
-                let _ = write!(text, "{}: {title}\n\n{}", rule.code(), rule.explain());
+                let (code, title) = (rule.code(), rule.title_in(lang));
+                let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
             } else {
                 let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
-                let _ = write!(text, "{code}: {}\n\n{}", code.title(), code.explain());
+                let (title, about) = (code.title(lang), code.explain(lang));
+                let _ = write!(text, "{code}{colon}{title}\n\n{about}");
             }
         }
     }
@@ -49,7 +52,13 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
 fn unknown(number: &str) -> String {
     let codes = FaultCode::ALL.iter().map(|code| code.as_str());
     match nearest(number, codes) {
-        Some(code) => format!("there is no error code `{number}`; did you mean `{code}`?"),
-        None => format!("there is no error code `{number}`; `fc explain` lists them all"),
+        Some(code) => said!(
+            "没有错误码 `{number}`；是否想写 `{code}`？",
+            "there is no error code `{number}`; did you mean `{code}`?"
+        ),
+        None => said!(
+            "没有错误码 `{number}`；`fc explain` 列出全部错误码",
+            "there is no error code `{number}`; `fc explain` lists them all"
+        ),
     }
 }

@@ -9,6 +9,7 @@ use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::format::{Refused, format};
 use fc_spec::syntax::{FileId, SourceFile, Sources, limits, read_bytes, read_dir, read_files};
 
+use crate::lang::{counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -48,7 +49,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let mut faults = Faults::new();
     let from_stdin = options.files.iter().any(|file| file.as_os_str() == "-");
     if from_stdin && options.files.len() > 1 {
-        return Err("`-` is for standard input alone".into());
+        return Err(said!(
+            "`-` 表示标准输入，只能单独使用",
+            "`-` is for standard input alone"
+        )
+        .into());
     }
     let (root, sources) = if from_stdin {
         (PathBuf::new(), stdin(&mut faults)?)
@@ -80,13 +85,17 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::done(&run.shown)?;
     }
     faults.sort();
-    let summary = summary(&faults).map(|line| print::leveled(&line) + "\n");
-    let reported = render(&faults, &sources, Format::Colored) + &summary.unwrap_or_default();
+    let summary = summary(&faults, lang()).map(|line| print::leveled(&line) + "\n");
+    let reported =
+        render(&faults, &sources, Format::Colored, lang()) + &summary.unwrap_or_default();
     print::message(&(reported + &run.mistakes))?;
     let stale = options.check && run.changed > 0;
     if stale {
-        let files = print::counted(run.changed, "file");
-        print::message(&format!("{files} not laid out: run `fc fmt`\n"))?;
+        let files = counted(run.changed, "文件", "file");
+        print::message(&said!(
+            "{files}没有排好版：运行 `fc fmt`\n",
+            "{files} not laid out: run `fc fmt`\n"
+        ))?;
     }
     let mut codes = faults.iter().map(|fault| fault.code);
     let is_unreadable = codes.any(|code| code == FaultCode::Unreadable);
@@ -107,7 +116,12 @@ fn stdin(faults: &mut Faults) -> Result<Sources, Failure> {
     std::io::stdin()
         .take(limit.saturating_add(1))
         .read_to_end(&mut bytes)
-        .map_err(|error| format!("cannot read standard input: {error}"))?;
+        .map_err(|error| {
+            said!(
+                "无法读取标准输入：{error}",
+                "cannot read standard input: {error}"
+            )
+        })?;
     Ok(read_bytes(STDIN.to_owned(), bytes, faults))
 }
 
@@ -130,9 +144,10 @@ impl Run<'_> {
             Ok(new) => return new,
             Err(Refused::Faults(of_file)) => faults.append(of_file),
             Err(Refused::NotTheSame) => {
-                let line = format!(
-                    "error: `{}` stays as it is: laid out, it would not say the same, which is a mistake of `fc fmt`",
-                    file.path
+                let path = &file.path;
+                let line = said!(
+                    "错误：`{path}` 保持不变：排版后含义会改变，这是 `fc fmt` 的缺陷",
+                    "error: `{path}` stays as it is: laid out, it would not say the same, which is a mistake of `fc fmt`"
                 );
                 self.mistakes += &(print::leveled(&line) + "\n");
             }
@@ -154,7 +169,11 @@ impl Run<'_> {
         let path = &file.path;
         if writes {
             replace_spec_file(self.root, path, new)?;
-            writeln!(self.shown, "{} {path}", print::good("laid out"))?;
+            writeln!(
+                self.shown,
+                "{} {path}",
+                print::good(&said!("已排版", "laid out"))
+            )?;
         } else if self.options.diff {
             let (before, after) = (format!("a/{path}"), format!("b/{path}"));
             self.shown += &print::diff(&unified(&before, &after, &file.text, new));

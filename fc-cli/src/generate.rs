@@ -10,6 +10,7 @@ use fc_codegen::surface::package::clashes;
 use fc_codegen::target::{FILE, part};
 use fc_spec::model::{Dump, Model};
 
+use crate::lang::{counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
@@ -79,7 +80,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     spec.show_faults()?;
     match &spec.model {
         Some(model) => {
-            let read = print::counted(spec.files(), "file");
+            let read = counted(spec.files(), "文件", "file");
             make(model, &read, project, place, options)
         }
         None => Ok(spec.status()),
@@ -88,14 +89,26 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 /// The model that `fc inspect` has written.
 fn dumped(path: &Path) -> Result<Model, Failure> {
-    let cannot = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
+    let name = path.display();
+    let cannot = |error: std::io::Error| {
+        said!(
+            "无法读取 `{name}`：{error}",
+            "cannot read `{name}`: {error}"
+        )
+    };
     let mut text = String::new();
     if path.as_os_str() == "-" {
         std::io::stdin().read_to_string(&mut text).map_err(cannot)?;
     } else {
         text = std::fs::read_to_string(path).map_err(cannot)?;
     }
-    Ok(Dump::read(&text).map_err(|error| format!("`{}`: {error}", path.display()))?)
+    Ok(Dump::read(&text).map_err(|error| {
+        said!(
+            "`{name}`：{error}",
+            "`{name}`: {error}",
+            error = error.text()
+        )
+    })?)
 }
 
 /// Makes the files of a model, or checks them; `read` says what it was read from.
@@ -122,12 +135,14 @@ fn make(
         artifacts.extend(plugin::run(target, model, &project.root)?);
     }
     if let Some(out) = &options.out.as_ref().filter(|_| !options.check) {
-        std::fs::create_dir_all(out)
-            .map_err(|error| format!("cannot make `{}`: {error}", out.display()))?;
+        std::fs::create_dir_all(out).map_err(|error| {
+            let out = out.display();
+            said!("无法创建 `{out}`：{error}", "cannot make `{out}`: {error}")
+        })?;
     }
     let plan = plan(artifacts, root, &options.only)?;
 
-    let read = format!("read       {read}\n");
+    let read = said!("读取 {read}\n", "read       {read}\n");
     if options.check {
         return check(&plan, &read, place, options);
     }
@@ -145,15 +160,23 @@ fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
     };
     if is_root || out.join(FILE).is_file() {
         let out = out.display();
-        return Err(format!("`{out}` is a project; name another directory with --out").into());
+        return Err(said!(
+            "`{out}` 是一个项目；用 --out 指定别的目录",
+            "`{out}` is a project; name another directory with --out"
+        )
+        .into());
     }
     Ok(())
 }
 
 fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
     if plan.is_fresh() {
-        let count = print::counted(plan.unchanged.len(), "file");
-        print::done(&format!("{read}{}      {count}\n", print::good("fresh")))?;
+        let count = counted(plan.unchanged.len(), "文件", "file");
+        let fresh = print::good(&said!("最新", "fresh"));
+        print::done(&said!(
+            "{read}{fresh} {count}\n",
+            "{read}{fresh}      {count}\n"
+        ))?;
         return Ok(Status::Fine);
     }
     let mut out = String::new();
@@ -162,19 +185,20 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
         out.push('\n');
     }
     for path in &plan.foreign {
-        let _ = writeln!(
-            out,
-            "{path}: in the way, and not written by the generator\n"
+        out += &said!(
+            "{path}：占用了位置，却不是生成器写的\n\n",
+            "{path}: in the way, and not written by the generator\n\n"
         );
     }
     print::result(&out)?;
 
     let stale = plan.created.len() + plan.updated.len() + plan.orphaned.len() + plan.foreign.len();
     let verb = if stale == 1 { "is" } else { "are" };
-    let line = format!(
-        "error: {} {verb} stale; run `{}`\n",
-        print::counted(stale, "file"),
-        command(place, options),
+    let files = counted(stale, "文件", "file");
+    let command = command(place, options);
+    let line = said!(
+        "错误：{files}已过期；运行 `{command}`\n",
+        "error: {files} {verb} stale; run `{command}`\n"
     );
     print::message(&print::leveled(&line))?;
     Ok(Status::Faulty)
@@ -187,24 +211,29 @@ fn summary(plan: &Plan) -> String {
     let removed = plan.orphaned.iter().map(|file| file.path.as_str());
     let mut out = String::new();
     for (what, paths) in [
-        ("created", created.collect::<Vec<_>>()),
-        ("updated", updated.collect()),
-        ("removed", removed.collect()),
+        (said!("新建", "created"), created.collect::<Vec<_>>()),
+        (said!("更新", "updated"), updated.collect()),
+        (said!("删除", "removed"), removed.collect()),
     ] {
         if paths.is_empty() {
             continue;
         }
-        let _ = writeln!(out, "{what:<10} {}", print::counted(paths.len(), "file"));
+        let files = counted(paths.len(), "文件", "file");
+        out += &said!("{what} {files}\n", "{what:<10} {files}\n");
         for path in paths.iter().take(NAMED) {
             let _ = writeln!(out, "             {path}");
         }
         if paths.len() > NAMED {
-            let _ = writeln!(out, "             and {} more", paths.len() - NAMED);
+            let more = paths.len() - NAMED;
+            out += &said!(
+                "             另有 {more} 个\n",
+                "             and {more} more\n"
+            );
         }
     }
     if !plan.unchanged.is_empty() {
-        let unchanged = print::counted(plan.unchanged.len(), "file");
-        let _ = writeln!(out, "unchanged  {unchanged}");
+        let unchanged = counted(plan.unchanged.len(), "文件", "file");
+        out += &said!("不变 {unchanged}\n", "unchanged  {unchanged}\n");
     }
     out
 }

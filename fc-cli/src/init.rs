@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::{generate, print};
@@ -62,7 +63,11 @@ const CRATES: [&str; 2] = ["fc-derive", "fc-runtime"];
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let directory = &options.directory;
     if place.root.is_some() || place.spec.is_some() {
-        return Err("`fc init DIR` makes a project in DIR; it has no --root and no --spec".into());
+        return Err(said!(
+            "`fc init DIR` 在 DIR 中建立项目；它没有 --root 和 --spec",
+            "`fc init DIR` makes a project in DIR; it has no --root and no --spec"
+        )
+        .into());
     }
     let manifest = manifest(options.runtime.as_deref())?;
     refuse_what_is_there(directory)?;
@@ -74,10 +79,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec: None,
     };
     let status = generate::run(&place, &generate::Options::default())?;
-    print::done(&format!(
-        "{} {}\nits README.md says how to go on; `cargo test` there lets its robot and its app talk\n",
-        print::good("began"),
-        directory.display(),
+    let (began, directory) = (print::good(&said!("已建立", "began")), directory.display());
+    print::done(&said!(
+        "{began} {directory}\n下一步见其中的 README.md；在那里运行 `cargo test`，它的机器人和 app 就会互相通信\n",
+        "{began} {directory}\nits README.md says how to go on; `cargo test` there lets its robot and its app talk\n"
     ))?;
     Ok(status)
 }
@@ -88,16 +93,21 @@ fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
         Err(error) => {
-            return Err(format!("cannot read `{}`: {error}", directory.display()).into());
+            let directory = directory.display();
+            let message = said!(
+                "无法读取 `{directory}`：{error}",
+                "cannot read `{directory}`: {error}"
+            );
+            return Err(message.into());
         }
     };
     for entry in entries {
         let name = entry?.file_name();
         if name != ".git" {
-            return Err(format!(
-                "`{}` is not empty: it has `{}`; name another directory",
-                directory.display(),
-                name.to_string_lossy()
+            let (directory, name) = (directory.display(), name.to_string_lossy());
+            return Err(said!(
+                "`{directory}` 不是空目录：里面有 `{name}`；请指定别的目录",
+                "`{directory}` is not empty: it has `{name}`; name another directory"
             )
             .into());
         }
@@ -112,9 +122,10 @@ fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
     for name in CRATES {
         let path = checkout.join(name);
         let path = path.canonicalize().map_err(|error| {
-            format!(
-                "there is no `{}` ({error}); name a checkout with --runtime",
-                path.display()
+            let path = path.display();
+            said!(
+                "没有 `{path}`（{error}）；用 --runtime 指定一份源码",
+                "there is no `{path}` ({error}); name a checkout with --runtime"
             )
         })?;
         // Quoted and escaped as TOML and Rust both do.
@@ -126,6 +137,12 @@ fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-    made.and_then(|()| fs::write(path, text))
-        .map_err(|error| format!("cannot write `{}`: {error}", path.display()).into())
+    made.and_then(|()| fs::write(path, text)).map_err(|error| {
+        let path = path.display();
+        said!(
+            "无法写入 `{path}`：{error}",
+            "cannot write `{path}`: {error}"
+        )
+        .into()
+    })
 }

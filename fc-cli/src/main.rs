@@ -41,6 +41,7 @@ fn main() -> ExitCode {
     let args = Args::parse();
     args.color.apply();
     print::quiet(args.quiet);
+    lang::speak(args.lang);
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
             // The reader of the output is gone; there is nobody to tell.

@@ -4,6 +4,7 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::model::Kind;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -75,17 +76,19 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     )?;
     let after = spec.with(&new.path, &new.text);
     if after.model.is_none() {
-        return Err(format!("with `{}` {}", options.name, after.objection()).into());
+        let (name, objection) = (&options.name, after.objection());
+        return Err(said!("加上 `{name}` 之后{objection}", "with `{name}` {objection}").into());
     }
     replace_spec_file(&project.root, &new.path, &new.text)?;
-    let code = new.code.map(|code| format!("as 0x{code:04X}"));
-    print::done(&format!(
-        "{} {} {} in {}:{}\nsay what it does there, then run `fc generate`\n",
-        print::good("began"),
-        options.name,
-        code.as_deref().unwrap_or("without a code"),
-        new.path,
-        new.line,
+    let code = match new.code {
+        Some(code) => said!("功能码 0x{code:04X}", "as 0x{code:04X}"),
+        None => said!("没有功能码", "without a code"),
+    };
+    let began = print::good(&said!("已加入", "began"));
+    let (name, path, line) = (&options.name, &new.path, new.line);
+    print::done(&said!(
+        "{began} {name}，{code}，在 {path}:{line}\n在那里写明它的作用，再运行 `fc generate`\n",
+        "{began} {name} {code} in {path}:{line}\nsay what it does there, then run `fc generate`\n"
     ))?;
     Ok(Status::Fine)
 }

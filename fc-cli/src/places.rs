@@ -4,6 +4,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place as Written, load, places};
 use fc_spec::syntax::{Sources, read_dir};
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -42,12 +43,18 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let found: Vec<_> = found.map(|(item, at)| shown(item, at, &sources)).collect();
     if found.is_empty() {
         let near = places.nearest(name);
-        let near = near.map(|near| format!("; did you mean `{near}`?"));
-        let cause = "; the spec has errors, which `fc check` shows";
-        let cause = near.or(faults.has_errors().then(|| cause.to_owned()));
-        let message = format!(
-            "there is no `{name}` in the spec{}",
-            cause.unwrap_or_default()
+        let near = near.map(|near| said!("；是否想写 `{near}`？", "; did you mean `{near}`?"));
+        let cause = || {
+            said!(
+                "；规范有错误，`fc check` 会列出",
+                "; the spec has errors, which `fc check` shows"
+            )
+        };
+        let cause = near.or(faults.has_errors().then(cause));
+        let cause = cause.unwrap_or_default();
+        let message = said!(
+            "规范中没有 `{name}`{cause}",
+            "there is no `{name}` in the spec{cause}"
         );
         return Err(message.into());
     }

@@ -9,6 +9,7 @@ use fc_codegen::product::Artifact;
 use fc_codegen::target::{Plugin, part};
 use fc_spec::model::Model;
 
+use crate::lang::said;
 use crate::outcome::Failure;
 
 /// Longest answer, in bytes.
@@ -32,16 +33,35 @@ pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>,
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
-        .map_err(|error| format!("cannot run `{program}` for the target `{target}`: {error}"))?;
+        .map_err(|error| {
+            said!(
+                "无法为目标 `{target}` 运行 `{program}`：{error}",
+                "cannot run `{program}` for the target `{target}`: {error}"
+            )
+        })?;
     let question = inspect::json_with(&model, &plugin.options);
-    let answer = converse(&mut child, question.as_bytes())
-        .map_err(|error| format!("cannot talk to `{program}`: {error}"))?;
-    let status = (child.wait()).map_err(|error| format!("cannot wait for `{program}`: {error}"))?;
+    let answer = converse(&mut child, question.as_bytes()).map_err(|error| {
+        said!(
+            "无法与 `{program}` 通信：{error}",
+            "cannot talk to `{program}`: {error}"
+        )
+    })?;
+    let status = (child.wait()).map_err(|error| {
+        said!(
+            "无法等待 `{program}` 结束：{error}",
+            "cannot wait for `{program}`: {error}"
+        )
+    })?;
     if !status.success() {
-        return Err(format!("`{program}` made nothing of the target `{target}`: {status}").into());
+        return Err(said!(
+            "`{program}` 没有为目标 `{target}` 生成任何内容：{status}",
+            "`{program}` made nothing of the target `{target}`: {status}"
+        )
+        .into());
     }
     plugin.artifacts(&answer).map_err(|error| {
-        format!(
+        said!(
+            "`{program}` 为目标 `{target}` 返回的不是 {{ path, contents }} 的列表：{error}",
             "`{program}` did not answer with a list of {{ path, contents }} for the target `{target}`: {error}"
         )
         .into()

@@ -1,5 +1,14 @@
 //! Output. Everything may hold ANSI colors; the streams take them out where they do not belong.
 
+use fc_codegen::output::OutputError;
+use fc_codegen::target::TargetError;
+use fc_diff::VersionError;
+use fc_spec::load::SettleError;
+use fc_spec::model::{DumpError, ProjectionError};
+use fc_spec::retire::RetireError;
+use fc_spec::scaffold::ScaffoldError;
+
+use crate::lang::{in_lang, said};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -39,9 +48,33 @@ pub fn message(text: &str) -> io::Result<()> {
 }
 
 /// Prints why a command failed.
-pub fn failure(failure: &dyn Error) {
+pub fn failure(failure: &(dyn Error + 'static)) {
+    let failure = words(failure);
     // If the error stream is closed as well, the exit status has to do.
-    let _ = message(&format!("{ERROR}error:{ERROR:#} {failure}\n"));
+    let error = said!("错误：{failure}\n", "error: {failure}\n");
+    let _ = message(&leveled(&error));
+}
+
+/// Why a command failed, in the language of this run; errors of libraries know English alone.
+fn words(failure: &(dyn Error + 'static)) -> String {
+    macro_rules! of {
+        ($($Known:ty),+) => {
+            $(if let Some(error) = failure.downcast_ref::<$Known>() {
+                return in_lang(&error.text());
+            })+
+        };
+    }
+    of!(
+        DumpError,
+        OutputError,
+        ProjectionError,
+        RetireError,
+        ScaffoldError,
+        SettleError,
+        TargetError,
+        VersionError
+    );
+    failure.to_string()
 }
 
 /// A word of good news.
@@ -51,10 +84,12 @@ pub fn good(text: &str) -> String {
 
 /// The level at the start of a line, in color.
 pub fn leveled(line: &str) -> String {
-    match line.strip_prefix("error:") {
-        Some(rest) => format!("{ERROR}error:{ERROR:#}{rest}"),
-        None => line.to_owned(),
+    for level in ["error:", "错误："] {
+        if let Some(rest) = line.strip_prefix(level) {
+            return format!("{ERROR}{level}{ERROR:#}{rest}");
+        }
     }
+    line.to_owned()
 }
 
 /// A unified diff, in color.
@@ -70,14 +105,6 @@ pub fn diff(text: &str) -> String {
         let _ = writeln!(out, "{style}{line}{style:#}");
     }
     out
-}
-
-/// `1 file`, `2 files`.
-pub fn counted(count: usize, one: &str) -> String {
-    match count {
-        1 => format!("1 {one}"),
-        _ => format!("{count} {one}s"),
-    }
 }
 
 /// Whether a command failed because its output is not read any more (`fc explain | head`).

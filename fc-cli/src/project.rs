@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::target::{FILE, Targets};
 
+use crate::lang::said;
 use crate::outcome::Failure;
 use crate::place::Place;
 
@@ -38,8 +39,13 @@ impl Project {
     fn at(place: &Place, root: PathBuf) -> Result<Self, Failure> {
         let file = root.join(FILE);
         let targets = if file.is_file() {
-            let text = std::fs::read_to_string(&file)
-                .map_err(|error| format!("cannot read `{}`: {error}", file.display()))?;
+            let text = std::fs::read_to_string(&file).map_err(|error| {
+                let file = file.display();
+                said!(
+                    "无法读取 `{file}`：{error}",
+                    "cannot read `{file}`: {error}"
+                )
+            })?;
             Targets::read(&text)?
         } else {
             Targets::default()
@@ -59,12 +65,16 @@ impl Project {
 fn root(place: &Place) -> Result<PathBuf, Failure> {
     if let Some(root) = &place.root {
         if !root.is_dir() {
-            return Err(format!("`{}` is not a directory", root.display()).into());
+            let root = root.display();
+            return Err(said!("`{root}` 不是目录", "`{root}` is not a directory").into());
         }
         return Ok(root.clone());
     }
     let here = std::env::current_dir().map_err(|error| {
-        format!("cannot tell the current directory: {error}; name one with --root")
+        said!(
+            "无法得知当前目录：{error}；用 --root 指定",
+            "cannot tell the current directory: {error}; name one with --root"
+        )
     })?;
     above(place, &here)
 }
@@ -79,9 +89,10 @@ fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
         .find(|directory| directory.join(FILE).is_file() || directory.join(&protocol).is_file())
         .map(PathBuf::from)
         .ok_or_else(|| {
-            format!(
-                "no `{FILE}` and no `{}` here or in a directory above; go to the project, or name it with --root",
-                protocol.display()
+            let protocol = protocol.display();
+            said!(
+                "这里和上级目录中都没有 `{FILE}` 或 `{protocol}`；请进入项目目录，或用 --root 指定",
+                "no `{FILE}` and no `{protocol}` here or in a directory above; go to the project, or name it with --root"
             )
             .into()
         })

@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
-use fc_spec::model::{AnswerKind, Question};
+use fc_spec::model::{AnswerKind, Question, Text};
 
-use crate::lang::Language;
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -41,9 +41,6 @@ pub struct Options {
     /// How to print them.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Shown,
-    /// In which language.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -88,9 +85,15 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         && model.group(id).is_none()
     {
         let known: Vec<&str> = model.groups.iter().map(|group| group.id.as_str()).collect();
-        return Err(format!("there is no group `{id}`; there are {}", known.join(", ")).into());
+        let known = Text::listed(known);
+        return Err(said!(
+            "没有分组 `{id}`；分组有：{known}",
+            "there is no group `{id}`; there are {known}",
+            known = known
+        )
+        .into());
     }
-    let lang = options.lang.into();
+    let lang = lang();
     let by = match options.by {
         Order::Impact => By::Impact,
         Order::Group => By::Group,
@@ -98,14 +101,15 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     };
     let list = List::new(model, lang, by, |question| options.wants(question));
     if list.is_empty() && !options.ids.is_empty() {
-        return Err(format!(
-            "there is no question {}; `fc questions --state all --decisions` lists them",
-            options.ids.join(", ")
+        return Err(said!(
+            "没有问题 {ids}；`fc questions --state all --decisions` 列出全部问题",
+            "there is no question {ids}; `fc questions --state all --decisions` lists them",
+            ids = Text::listed(&options.ids)
         )
         .into());
     }
     print::result(&match options.format {
-        Shown::Text if list.is_empty() => "no questions\n".to_owned(),
+        Shown::Text if list.is_empty() => said!("没有问题\n", "no questions\n"),
         Shown::Text if options.ids.is_empty() => list.text(),
         Shown::Text => list.text() + &print::diff(&list.edits()),
         Shown::Json => list.json(),

@@ -10,6 +10,7 @@ use fc_diff::{Finding, Lang, first_section, section, with_section};
 use fc_spec::model::Model;
 use fc_spec::revision::renumbered;
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -56,10 +57,18 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let number = &options.number;
     let Some(renumbered) = renumbered(&spec.sources, &number.to_string()) else {
-        return Err("no file of the spec has its version".into());
+        return Err(said!(
+            "规范的文件中都没有写版本",
+            "no file of the spec has its version"
+        )
+        .into());
     };
     let Some(model) = spec.instead(renumbered.sources.clone()).model else {
-        return Err(format!("the spec has errors once its version is {number}").into());
+        return Err(said!(
+            "把版本改为 {number} 后，规范有错误",
+            "the spec has errors once its version is {number}"
+        )
+        .into());
     };
     let shelf = Shelf::of(&project)?;
     let today = today(options.today.as_deref());
@@ -84,11 +93,14 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     for (_, file) in protocol.filter(|(_, file)| file.path == renumbered.path) {
         replace_spec_file(&project.root, &file.path, &file.text)?;
     }
-    let mut text = format!("{} {number}\n", print::good("released"));
+    let mut text = format!("{} {number}\n", print::good(&said!("已发布", "released")));
     for path in std::iter::once(renumbered.path).chain(written) {
         let _ = writeln!(text, "  {path}");
     }
-    text += "run `fc generate`, commit, and tag the commit\n";
+    text += &said!(
+        "运行 `fc generate`，提交，再给提交打上标签\n",
+        "run `fc generate`, commit, and tag the commit\n"
+    );
     print::done(&text)?;
     Ok(Status::Fine)
 }
@@ -122,9 +134,13 @@ fn findings(
         return Ok(Some(Some(findings)));
     }
     for objection in objections {
-        print::message(&print::leveled(&format!("error: {objection}\n")))?;
+        print::message(&print::leveled(&said!(
+            "错误：{objection}\n",
+            "error: {objection}\n"
+        )))?;
     }
-    print::message(&format!(
+    print::message(&said!(
+        "{number} 没有发布；`fc diff` 会列出自 {last} 以来的变更\n",
         "{number} is not released; `fc diff` shows what has changed since {last}\n"
     ))?;
     Ok(None)
@@ -147,7 +163,13 @@ fn write(
         let before = match std::fs::read_to_string(&disk) {
             Ok(text) => Some(text),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-            Err(error) => return Err(format!("cannot read `{path}`: {error}").into()),
+            Err(error) => {
+                return Err(said!(
+                    "无法读取 `{path}`：{error}",
+                    "cannot read `{path}`: {error}"
+                )
+                .into());
+            }
         };
         let text = with_section(before.as_deref(), &section, lang);
         replace_spec_file(&project.root, &path, &text)?;

@@ -6,6 +6,7 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::model::Text;
 use fc_spec::retire::retire;
 
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -52,7 +53,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let retired = retire(model, &spec.sources, &options.name, &why)?;
     let after = spec.instead(retired.sources);
     if after.model.is_none() {
-        return Err(format!("without `{}` {}", options.name, after.objection()).into());
+        let (name, objection) = (&options.name, after.objection());
+        return Err(said!(
+            "去掉 `{name}` 之后{objection}",
+            "without `{name}` {objection}"
+        )
+        .into());
     }
     let mut text = String::new();
     for (path, diff) in &retired.diffs {
@@ -60,16 +66,20 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let _ = writeln!(text, "{path}\n{}", print::diff(diff).trim_end());
     }
     let what = if options.dry_run {
-        "would retire"
+        said!("将停用", "would retire")
     } else {
-        "retired"
+        said!("已停用", "retired")
     };
-    let _ = write!(text, "{} {}", print::good(what), options.name);
+    let _ = write!(text, "{} {}", print::good(&what), options.name);
     if let Some(code) = &retired.code {
-        let _ = write!(text, " and its code {code}");
+        text += &said!(" 及其功能码 {code}", " and its code {code}");
     }
     if !retired.with_it.is_empty() {
-        let _ = write!(text, ", with {}", retired.with_it.join(", "));
+        text += &said!(
+            "，连同 {with_it}",
+            ", with {with_it}",
+            with_it = Text::listed(&retired.with_it)
+        );
     }
     if options.dry_run {
         print::result(&(text + "\n"))?;
@@ -81,7 +91,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         }
     }
     print::done(
-        &(text + "\nrun `fc generate` to take it out of everything that is made of the spec\n"),
+        &(text
+            + &said!(
+                "\n运行 `fc generate`，把它从由规范生成的所有内容中去掉\n",
+                "\nrun `fc generate` to take it out of everything that is made of the spec\n"
+            )),
     )?;
     Ok(Status::Fine)
 }

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use fc_codegen::output::replace_spec_file;
 use fc_codegen::questions::read;
 use fc_spec::load::{Said, settle};
-use fc_spec::model::{AnswerKind, Confirmation, Fact, Model};
+use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 
+use crate::lang::{counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -106,11 +107,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let settled = settle(&spec.sources, &said)?;
         let after = spec.with(&settled.path, &settled.text);
         if after.model.is_none() {
-            return Err(format!(
-                "with this answer to {} {}\n{}",
-                settled.id,
-                after.objection(),
-                print::diff(&settled.diff)
+            let (id, objection) = (&settled.id, after.objection());
+            let diff = print::diff(&settled.diff);
+            return Err(said!(
+                "写下对 {id} 的这个答复之后{objection}\n{diff}",
+                "with this answer to {id} {objection}\n{diff}"
             )
             .into());
         }
@@ -128,11 +129,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         }
     }
     let what = if options.dry_run {
-        "would settle"
+        said!("将写下答复", "would settle")
     } else {
-        "settled"
+        said!("已写下答复", "settled")
     };
-    let mut text = format!("{diffs}{} {}\n", print::good(what), ids.join(", "));
+    let mut text = format!("{diffs}{} {}\n", print::good(&what), ids.join(", "));
     if let Some(model) = &spec.model {
         text += &rest(model, &ids);
     }
@@ -160,11 +161,16 @@ fn rest(model: &Model, ids: &[String]) -> String {
     let same: Vec<_> = same.map(|question| question.id.as_str()).collect();
     let also = match same.as_slice() {
         [] => String::new(),
-        same => format!(", about the same: {}", same.join(", ")),
+        same => said!(
+            "，涉及相同内容的有：{same}",
+            ", about the same: {same}",
+            same = Text::listed(same)
+        ),
     };
-    format!(
-        "{} left{also}\nrun `fc generate`, and read again what the texts around say of it\n",
-        print::counted(open.len(), "open question")
+    let left = counted(open.len(), "待确认的问题", "open question");
+    said!(
+        "还有 {left}{also}\n运行 `fc generate`，并重读前后文字中与它有关的说明\n",
+        "{left} left{also}\nrun `fc generate`, and read again what the texts around say of it\n"
     )
 }
 
@@ -174,14 +180,24 @@ impl Options {
         let today = || jiff::Zoned::now().date().to_string();
         let date = self.date.clone().unwrap_or_else(today);
         if let Some(path) = &self.from {
-            let sheet = std::fs::read(path)
-                .map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
+            let sheet = std::fs::read(path).map_err(|error| {
+                let path = path.display();
+                said!(
+                    "无法读取 `{path}`：{error}",
+                    "cannot read `{path}`: {error}"
+                )
+            })?;
             let said = read(&sheet, model, self.by.as_deref(), &date).map_err(|errors| {
                 let errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
                 errors.join("\n       ")
             })?;
             if said.is_empty() {
-                return Err(format!("`{}` answers no open question", path.display()).into());
+                let path = path.display();
+                return Err(said!(
+                    "`{path}` 没有答复任何待确认的问题",
+                    "`{path}` answers no open question"
+                )
+                .into());
             }
             return Ok(said);
         }
@@ -204,9 +220,11 @@ impl Options {
             }
         }
         if values.is_empty() && !self.confirm && self.reply.is_none() {
-            return Err(
-                "nothing is said: give a value, or `--confirm` what the spec says already".into(),
-            );
+            return Err(said!(
+                "什么也没有答复：给出一个值，或用 `--confirm` 确认规范现有的写法",
+                "nothing is said: give a value, or `--confirm` what the spec says already"
+            )
+            .into());
         }
         Ok(vec![Said {
             id: self.id.clone().unwrap_or_default(),
@@ -227,5 +245,12 @@ fn text(file: &PathBuf) -> Result<String, Failure> {
     } else {
         std::fs::read_to_string(file)
     };
-    read.map_err(|error| format!("cannot read `{}`: {error}", file.display()).into())
+    read.map_err(|error| {
+        let file = file.display();
+        said!(
+            "无法读取 `{file}`：{error}",
+            "cannot read `{file}`: {error}"
+        )
+        .into()
+    })
 }

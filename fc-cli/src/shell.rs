@@ -6,6 +6,7 @@ use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
 
 use crate::args::Args;
+use crate::lang::{counted, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
@@ -41,15 +42,21 @@ pub fn completions(options: &Completions) -> Result<Status, Failure> {
 
 pub fn man(options: &Man) -> Result<Status, Failure> {
     let directory = options.directory.as_path();
-    let cannot = |error| format!("cannot write to `{}`: {error}", directory.display());
+    let shown = directory.display();
+    let cannot = |error: std::io::Error| {
+        said!(
+            "无法写入 `{shown}`：{error}",
+            "cannot write to `{shown}`: {error}"
+        )
+    };
     std::fs::create_dir_all(directory).map_err(cannot)?;
     clap_mangen::generate_to(command(), directory).map_err(cannot)?;
     let pages = command().get_subcommands().count() + 1;
-    print::done(&format!(
-        "{} {} in {}\n",
-        print::good("wrote"),
-        print::counted(pages, "page"),
-        directory.display()
+    let wrote = print::good(&said!("已写入", "wrote"));
+    let pages = counted(pages, "页面", "page");
+    print::done(&said!(
+        "{wrote} {pages}，在 {shown}\n",
+        "{wrote} {pages} in {shown}\n"
     ))?;
     Ok(Status::Fine)
 }

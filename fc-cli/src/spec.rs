@@ -6,6 +6,7 @@ use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
+use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -65,15 +66,26 @@ impl Spec {
         let errors = self.faults.iter();
         let errors = errors.filter(|fault| fault.severity == Severity::Error);
         let errors: Vec<_> = errors
-            .map(|fault| format!("{} ({})", fault.message, fault.code))
+            .map(|fault| {
+                let code = fault.code;
+                said!(
+                    "{message}（{code}）",
+                    "{message} ({code})",
+                    message = fault.message
+                )
+            })
             .collect();
-        format!("the spec would have errors: {}", errors.join("; "))
+        let errors = errors.join(lang().pick("；", "; "));
+        said!(
+            "规范会有错误：{errors}",
+            "the spec would have errors: {errors}"
+        )
     }
 
     /// Shows the faults to people, and how to read more about them.
     pub fn show_faults(&self) -> Result<(), Failure> {
-        let text = render(&self.faults, &self.sources, Format::Colored);
-        let summary = summary(&self.faults).map(|line| print::leveled(&line) + "\n");
+        let text = render(&self.faults, &self.sources, Format::Colored, lang());
+        let summary = summary(&self.faults, lang()).map(|line| print::leveled(&line) + "\n");
         print::message(&(text + &summary.unwrap_or_default()))?;
         Ok(())
     }

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use fc_diff::release::Releases;
 use fc_diff::{Against, Finding, Version, VersionError, diff, waive};
 use fc_spec::diagnostic::{Format, render};
+use fc_spec::model::Text;
 
+use crate::lang::{lang, said};
 use crate::outcome::Failure;
 use crate::place::Place;
 use crate::print;
@@ -39,7 +41,13 @@ impl Shelf {
     fn at(root: PathBuf, spec: PathBuf) -> Result<Self, Failure> {
         let releases = Releases::beside(&root.join(&spec)).map_err(|error| {
             let directory = root.join(&spec).join(fc_diff::release::DIRECTORY);
-            format!("cannot read `{}`: {error}", directory.display())
+            {
+                let directory = directory.display();
+                said!(
+                    "无法读取 `{directory}`：{error}",
+                    "cannot read `{directory}`: {error}"
+                )
+            }
         })?;
         Ok(Self {
             root,
@@ -53,9 +61,11 @@ impl Shelf {
         match self.releases.last() {
             Some((number, _)) => Ok(number.to_string()),
             None => Err(
-                "there is no release to compare with; name a version, such as git:main, \
-                         or make the first release with `fc release`"
-                    .into(),
+                said!(
+                    "没有可供比较的发布版本；请写明版本，例如 git:main，或用 `fc release` 发布第一个版本",
+                    "there is no release to compare with; name a version, such as git:main, or make the first release with `fc release`"
+                )
+                .into(),
             ),
         }
     }
@@ -67,10 +77,18 @@ impl Shelf {
         }
         let known: Vec<_> = self.releases.numbers().map(ToString::to_string).collect();
         let known = match known.as_slice() {
-            [] => "there is none yet".to_owned(),
-            known => format!("there are {}", known.join(", ")),
+            [] => said!("还没有发布版本", "there is none yet"),
+            known => said!(
+                "已有：{known}",
+                "there are {known}",
+                known = Text::listed(known)
+            ),
         };
-        Err(format!("there is no release `{name}`; {known}").into())
+        Err(said!(
+            "没有发布版本 `{name}`；{known}",
+            "there is no release `{name}`; {known}"
+        )
+        .into())
     }
 
     /// Name of the working tree.
@@ -87,8 +105,9 @@ impl Shelf {
                 sources,
                 faults,
             }) => {
-                print::message(&render(&faults, &sources, Format::Colored))?;
-                print::message(&print::leveled(&format!(
+                print::message(&render(&faults, &sources, Format::Colored, lang()))?;
+                print::message(&print::leveled(&said!(
+                    "错误：`{name}` 的规范有错误\n",
                     "error: the spec of `{name}` has errors\n"
                 )))?;
                 Ok(None)

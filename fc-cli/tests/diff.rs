@@ -232,13 +232,18 @@ fn what_cannot_be_compared_is_said() {
 #[test]
 fn a_rule_is_explained_in_both_languages() {
     let project = Project::empty();
-    let run = project.fc(&["explain", "FC0731"]).expect(0);
-    for part in [
-        "FC0731: a field has another key",
-        "键名",
-        "- Wire: breaks in both directions",
+    for (lang, title, mark) in [
+        (
+            "en",
+            "FC0731: a field has another key",
+            "- Wire: breaks in both directions",
+        ),
+        ("zh", "FC0731：", "- 报文：两个方向都不兼容"),
     ] {
-        assert!(run.stdout.contains(part), "{run:#?}");
+        let run = project.fc(&["explain", "FC0731", "--lang", lang]).expect(0);
+        for part in [title, mark] {
+            assert!(run.stdout.contains(part), "{run:#?}");
+        }
     }
     let list = project.fc(&["explain"]).expect(0);
     assert!(list.stdout.contains("\nFC0764  "), "{list:#?}");

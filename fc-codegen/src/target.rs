@@ -16,7 +16,7 @@
 
 use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
-use fc_spec::model::{Model, ProjectionError};
+use fc_spec::model::{Model, ProjectionError, Text};
 use serde::Deserialize;
 use serde_yaml::Value as Options;
 use std::borrow::Cow;
@@ -169,6 +169,32 @@ pub enum TargetError {
         /// Those that it has.
         known: String,
     },
+}
+
+impl TargetError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        let zh = match self {
+            Self::Audience(error) => return error.text(),
+            Self::Shape(error) => format!("`{FILE}`：{error}"),
+            Self::Unknown { name } => format!(
+                "`{FILE}`：没有产物 `{name}`；产物有：{}。其他名称的目标需要 `plugin`",
+                products()
+            ),
+            Self::Misplaced { name, key } => {
+                format!("`{FILE}`：目标 `{name}` 不能有 `{key}`")
+            }
+            Self::Missing { name, key } => format!("`{FILE}`：目标 `{name}` 需要 `{key}`"),
+            Self::Language { target, language } => format!(
+                "`{FILE}`：目标 `{target}` 的名称所用的语言是 `{language}`；语言有：{}",
+                languages()
+            ),
+            Self::NotThere { name, known } => format!("没有目标 `{name}`；目标有：{known}"),
+        };
+        let en = self.to_string();
+        Text { zh, en }
+    }
 }
 
 fn products() -> String {

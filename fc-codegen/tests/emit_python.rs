@@ -10,7 +10,7 @@ use fc_codegen::emit::python;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::{Sources, read_dir};
 use std::collections::HashMap;
 use std::fs;
@@ -26,7 +26,7 @@ fn with(text: &str) -> Model {
 fn model(sources: &Sources) -> Model {
     let mut faults = Faults::new();
     let model = load(sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text, Lang::En)))
 }
 
 fn files(model: &Model) -> HashMap<String, String> {

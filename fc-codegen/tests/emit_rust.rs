@@ -13,7 +13,7 @@ use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::read_dir;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ fn model(project: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(project, Path::new("spec"), &mut faults);
     let model = load(&sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
 #[test]

@@ -14,7 +14,7 @@ use fc_codegen::emit::typescript;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::Sources;
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ fn model(text: &str) -> Model {
     let sources = Sources::from_texts(good.into_iter().chain([more]));
     let mut faults = Faults::new();
     let model = load(&sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
 /// The files of the package, by their paths below `generated`.

@@ -11,6 +11,7 @@ use fc_codegen::inspect;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
+use fc_spec::model::Lang;
 use fc_spec::syntax::Sources;
 use proptest::prelude::*;
 
@@ -134,7 +135,7 @@ proptest! {
             prop_assert!(file.text.get(fault.primary.span.start..fault.primary.span.end).is_some());
         }
         // Rendering walks every label and fix.
-        let _ = render(&faults, &sources, Format::Json);
+        let _ = render(&faults, &sources, Format::Json, Lang::En);
         if let Some(model) = model {
             let _ = inspect::json(&model);
             let _ = emit::generate(&model, &Targets::default()).expect("no audience");

@@ -14,6 +14,7 @@ use fc_codegen::surface::language::{
 use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{load, places};
+use fc_spec::model::Lang;
 use fc_spec::syntax::Sources;
 use std::fs;
 use std::path::Path;
@@ -26,7 +27,7 @@ fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
     assert!(
         !faults.has_errors(),
         "{}",
-        render(&faults, &sources, Format::Text)
+        render(&faults, &sources, Format::Text, Lang::En)
     );
     let places = places(&sources);
     let model = loaded.model().expect("it has no errors");

@@ -2,7 +2,8 @@
 
 use crate::finding::{Deployment, Finding};
 use crate::release::VERSION;
-use crate::rule::Lang;
+use crate::rule::pick;
+use fc_spec::model::Lang;
 use fc_spec::model::Model;
 use std::fmt::Write as _;
 
@@ -28,12 +29,12 @@ pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> St
             return;
         }
         // Writing to a String cannot fail.
-        let _ = write!(out, "\n### {}\n\n", lang.pick(heading));
+        let _ = write!(out, "\n### {}\n\n", pick(lang, heading));
         for line in lines {
             let _ = writeln!(out, "- {line}");
         }
     };
-    let plain = |it: &&Finding| lang.of(&it.message).to_owned();
+    let plain = |it: &&Finding| lang.text(&it.message).to_owned();
     part(
         ["Breaking", "不兼容"],
         breaking.iter().map(|it| broken(it, lang)).collect(),
@@ -69,7 +70,7 @@ pub fn first_section(title: &str, model: &Model, lang: Lang) -> String {
 #[must_use]
 pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> String {
     let Some(changelog) = changelog else {
-        let title = lang.pick(["Changes of the protocol", "协议变更记录"]);
+        let title = pick(lang, ["Changes of the protocol", "协议变更记录"]);
         return format!("# {title}\n\n{section}");
     };
     match changelog.find("\n## ") {
@@ -84,10 +85,13 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
 /// A break, and for whom.
 fn broken(finding: &Finding, lang: Lang) -> String {
     let who = finding.wire.iter().map(|deployment| {
-        lang.pick(match deployment {
-            Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
-            Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
-        })
+        pick(
+            lang,
+            match deployment {
+                Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
+                Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
+            },
+        )
     });
     let who: Vec<_> = who.collect();
     let mut line = match lang {
@@ -95,8 +99,8 @@ fn broken(finding: &Finding, lang: Lang) -> String {
         Lang::Zh => format!("{}（影响：{}）", finding.message.zh, who.join("、")),
     };
     if let Some(waiver) = &finding.waived {
-        line += lang.pick([". ", "。"]);
-        line += lang.of(&waiver.reason);
+        line += pick(lang, [". ", "。"]);
+        line += lang.text(&waiver.reason);
     }
     line
 }
@@ -104,10 +108,10 @@ fn broken(finding: &Finding, lang: Lang) -> String {
 /// A new operation by its name, code and title.
 fn operation(finding: &Finding, new: &Model, lang: Lang) -> String {
     let Some(operation) = new.operation(&finding.subject) else {
-        return lang.of(&finding.message).to_owned();
+        return lang.text(&finding.message).to_owned();
     };
     let (name, code) = (&operation.name, &operation.code.spelling);
-    let title = lang.of(&operation.title);
+    let title = lang.text(&operation.title);
     match lang {
         Lang::En => format!("`{name}` ({code}): {title}"),
         Lang::Zh => format!("`{name}`（{code}）：{title}"),

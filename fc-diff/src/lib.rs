@@ -26,9 +26,10 @@ mod version;
 mod waive;
 
 pub use changelog::{first_section, section, with_section};
+pub use fc_spec::model::Lang;
 pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render};
-pub use rule::{Lang, Language, Rule, Wire};
+pub use rule::{Language, Rule, Wire};
 pub use version::{Version, VersionError};
 pub use waive::{Against, waive};
 

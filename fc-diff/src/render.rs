@@ -1,9 +1,10 @@
 //! Findings for people and for other programs.
 
 use crate::finding::{Deployment, Finding, Spot};
-use crate::rule::Lang;
+use crate::rule::pick;
 use crate::version::Version;
 use fc_spec::load::{Item, Places};
+use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
 use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};
@@ -66,40 +67,37 @@ fn breaks(finding: &Finding, lang: Lang) -> String {
             Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
             Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
         };
-        parts.push(lang.pick(word).to_owned());
+        parts.push(pick(lang, word).to_owned());
     }
     if !finding.source.is_empty() {
         let names: Vec<_> = finding.source.iter().map(|it| it.name()).collect();
-        let of = lang.pick(["sources in ", "源代码："]);
+        let of = pick(lang, ["sources in ", "源代码："]);
         parts.push(format!("{of}{}", names.join(", ")));
     }
     if finding.behaviour {
-        parts.push(
-            lang.pick(["programs behave differently", "程序行为"])
-                .to_owned(),
-        );
+        parts.push(pick(lang, ["programs behave differently", "程序行为"]).to_owned());
     }
     if finding.silent {
-        parts.push(lang.pick(["nothing fails", "不报错"]).to_owned());
+        parts.push(pick(lang, ["nothing fails", "不报错"]).to_owned());
     }
-    parts.join(lang.pick(["; ", "；"]))
+    parts.join(pick(lang, ["; ", "；"]))
 }
 
 fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> String {
     let mut text = String::new();
     for finding in findings {
-        let message = lang.of(&finding.message);
+        let message = lang.text(&finding.message);
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{} {message}", finding.rule.code());
         let breaks = breaks(finding, lang);
         if !breaks.is_empty() {
-            let _ = writeln!(text, "    {}{breaks}", lang.pick(["breaks: ", "影响："]));
+            let _ = writeln!(text, "    {}{breaks}", pick(lang, ["breaks: ", "影响："]));
             let _ = match &finding.waived {
                 Some(waiver) => writeln!(text, "    {}", waived(waiver, lang)),
                 None => writeln!(
                     text,
                     "    {}{}",
-                    lang.pick(["waiver: ", "豁免编号："]),
+                    pick(lang, ["waiver: ", "豁免编号："]),
                     finding.waiver_id()
                 ),
             };
@@ -126,7 +124,7 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
     let behaviour = count(&|it| it.behaviour);
     let all = findings.len();
     let _ = match lang {
-        _ if findings.is_empty() => writeln!(text, "{}", lang.pick(["no changes", "没有变更"])),
+        _ if findings.is_empty() => writeln!(text, "{}", pick(lang, ["no changes", "没有变更"])),
         Lang::En => writeln!(
             text,
             "\n{all} changes from {} to {}: {wire} on the wire, {source} in sources, {behaviour} in behaviour",
@@ -151,7 +149,7 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
 /// Who has accepted it, until when and why.
 fn waived(waiver: &Waiver, lang: Lang) -> String {
     let Waiver { by, until, .. } = waiver;
-    let reason = lang.of(&waiver.reason);
+    let reason = lang.text(&waiver.reason);
     match lang {
         Lang::En => format!("waived by {by} until {until}: {reason}"),
         Lang::Zh => format!("{by} 已豁免至 {until}：{reason}"),
@@ -162,7 +160,7 @@ fn json(findings: &[Finding], lang: Lang) -> String {
     struct Shown<'f>(&'f Finding, Lang);
     impl Serialize for Shown<'_> {
         fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            self.0.shown(self.1.of(&self.0.message), serializer)
+            self.0.shown(self.1.text(&self.0.message), serializer)
         }
     }
     let mut out = Vec::new();
@@ -179,13 +177,16 @@ fn json(findings: &[Finding], lang: Lang) -> String {
 
 fn markdown(findings: &[Finding], lang: Lang) -> String {
     if findings.is_empty() {
-        return lang.pick(["No changes.\n", "没有变更。\n"]).to_owned();
+        return pick(lang, ["No changes.\n", "没有变更。\n"]).to_owned();
     }
-    let head = lang.pick(["| rule | change | breaks |\n", "| 规则 | 变更 | 影响 |\n"]);
+    let head = pick(
+        lang,
+        ["| rule | change | breaks |\n", "| 规则 | 变更 | 影响 |\n"],
+    );
     let mut text = format!("{head}|---|---|---|\n");
     for finding in findings {
         let cell = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
-        let message = cell(lang.of(&finding.message));
+        let message = cell(lang.text(&finding.message));
         let breaks = match &finding.waived {
             Some(waiver) => format!("{} ({})", breaks(finding, lang), waived(waiver, lang)),
             None => breaks(finding, lang),
@@ -216,7 +217,11 @@ fn github(findings: &[Finding], new: &Version, lang: Lang) -> String {
         } else {
             "warning"
         };
-        let message = format!("{} ({})", lang.of(&finding.message), breaks(finding, lang));
+        let message = format!(
+            "{} ({})",
+            lang.text(&finding.message),
+            breaks(finding, lang)
+        );
         let message = message.trim_end_matches(" ()");
         let at = place(&finding.new, new)
             .map(|(path, line)| format!("file={},line={line},", property(&path)));
@@ -238,7 +243,7 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
     rules.dedup_by_key(|rule| rule.number);
     let rules: Vec<_> = rules
         .iter()
-        .map(|rule| json!({ "id": rule.code(), "name": rule.name, "shortDescription": { "text": lang.pick(rule.title) } }))
+        .map(|rule| json!({ "id": rule.code(), "name": rule.name, "shortDescription": { "text": pick(lang, rule.title) } }))
         .collect();
     let results: Vec<_> = findings
         .iter()
@@ -253,7 +258,7 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
             json!({
                 "ruleId": finding.rule.code(),
                 "level": if finding.is_fault() { "error" } else if finding.wire.is_empty() { "note" } else { "warning" },
-                "message": { "text": format!("{} ({})", lang.of(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
+                "message": { "text": format!("{} ({})", lang.text(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
                 "locations": at.into_iter().collect::<Vec<_>>(),
                 "partialFingerprints": { "fc/v1": finding.fingerprint },
                 // Code hosts show it as accepted, and count it no more.

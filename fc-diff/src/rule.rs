@@ -1,7 +1,7 @@
 //! What a rule says of itself: its code, whom it can break, its mirror, its texts.
 
 use crate::rules;
-use fc_spec::model::Text;
+use fc_spec::model::Lang;
 use serde::{Serialize, Serializer};
 
 /// A kind of change, and the most that it can break.
@@ -102,34 +102,9 @@ impl Language {
     }
 }
 
-/// A language of the texts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Lang {
-    /// English.
-    #[default]
-    En,
-    /// Chinese.
-    Zh,
-}
-
-impl Lang {
-    /// The text in this language.
-    #[must_use]
-    pub fn of(self, text: &Text) -> &str {
-        match self {
-            Self::En => &text.en,
-            Self::Zh => &text.zh,
-        }
-    }
-
-    /// The one of an English and a Chinese text in this language.
-    #[must_use]
-    pub fn pick(self, [en, zh]: [&str; 2]) -> &str {
-        match self {
-            Self::En => en,
-            Self::Zh => zh,
-        }
-    }
+/// The one of an English and a Chinese text in this language.
+pub(crate) fn pick<'t>(lang: Lang, [en, zh]: [&'t str; 2]) -> &'t str {
+    lang.pick(zh, en)
 }
 
 impl Rule {
@@ -155,16 +130,16 @@ impl Rule {
         Self::all().find(|rule| rule.code() == padded)
     }
 
-    /// What it means, whom it breaks and what finds its opposite, in English and in Chinese, as Markdown.
+    /// What it is about, in a few words.
     #[must_use]
-    pub fn explain(&self) -> String {
-        let [en, zh] = self.text;
-        format!(
-            "{en}\n\n{}\n\n{}：{zh}\n\n{}\n",
-            self.marks(Lang::En),
-            Lang::Zh.pick(self.title),
-            self.marks(Lang::Zh)
-        )
+    pub fn title_in(&self, lang: Lang) -> &'static str {
+        pick(lang, self.title)
+    }
+
+    /// What it means, whom it breaks and what finds its opposite, as Markdown.
+    #[must_use]
+    pub fn explain(&self, lang: Lang) -> String {
+        format!("{}\n\n{}\n", pick(lang, self.text), self.marks(lang))
     }
 
     /// The most that it can break, as a list.
@@ -183,12 +158,12 @@ impl Rule {
         };
         let names: Vec<_> = self.source.iter().map(|it| it.name()).collect();
         let source = match names.as_slice() {
-            [] => lang.pick(["nothing breaks", "不影响"]).to_owned(),
+            [] => pick(lang, ["nothing breaks", "不影响"]).to_owned(),
             names => names.join(", "),
         };
-        let yes = |is: bool| lang.pick(if is { ["yes", "是"] } else { ["no", "否"] });
+        let yes = |is: bool| pick(lang, if is { ["yes", "是"] } else { ["no", "否"] });
         let mirror = if self.mirror.is_empty() {
-            lang.pick(self.no_mirror).to_owned()
+            pick(lang, self.no_mirror).to_owned()
         } else {
             let codes: Vec<_> = self
                 .mirror
@@ -202,7 +177,7 @@ impl Rule {
             Lang::Zh => ["报文", "源代码", "行为", "无报错", "反向变更"],
         };
         let values = [
-            lang.pick(wire).to_owned(),
+            pick(lang, wire).to_owned(),
             source,
             yes(self.behaviour).to_owned(),
             yes(self.silent).to_owned(),

@@ -3,8 +3,10 @@
 use crate::release::Releases;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Places, load, places};
+use fc_spec::model::Text;
 use fc_spec::model::{Dump, DumpError, Model};
 use fc_spec::syntax::{Sources, read_dir};
+use fc_spec::text;
 use std::fmt;
 use std::io::Read as _;
 use std::path::Path;
@@ -52,19 +54,49 @@ pub enum VersionError {
     TooLarge(String),
 }
 
-impl fmt::Display for VersionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl VersionError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
         match self {
-            Self::Faulty { name, .. } => write!(f, "the spec of `{name}` has errors"),
-            Self::Dump(name, error) => write!(f, "`{name}`: {error}"),
-            Self::Unreadable(name, error) => write!(f, "cannot read `{name}`: {error}"),
-            Self::Git(name, why) => write!(f, "git does not give `{name}`: {why}"),
-            Self::NoSpec(name) => write!(
-                f,
+            Self::Faulty { name, .. } => {
+                text!("`{name}` 的规范有错误", "the spec of `{name}` has errors")
+            }
+            Self::Dump(name, error) => {
+                text!(
+                    "`{name}`：{error}",
+                    "`{name}`: {error}",
+                    error = error.text()
+                )
+            }
+            Self::Unreadable(name, error) => {
+                text!(
+                    "无法读取 `{name}`：{error}",
+                    "cannot read `{name}`: {error}"
+                )
+            }
+            Self::Git(name, why) => text!(
+                "git 没有给出 `{name}`：{why}",
+                "git does not give `{name}`: {why}"
+            ),
+            Self::NoSpec(name) => text!(
+                "`{name}` 不是有规范的目录，不是 `fc inspect` 的输出，不是发布版本，也不是 git:REF",
                 "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor a release, nor git:REF"
             ),
-            Self::TooLarge(name) => write!(f, "`{name}` is larger than {} MiB", MOST >> 20),
+            Self::TooLarge(name) => {
+                let most = MOST >> 20;
+                text!(
+                    "`{name}` 超过 {most} MiB",
+                    "`{name}` is larger than {most} MiB"
+                )
+            }
         }
+    }
+}
+
+impl fmt::Display for VersionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().en)
     }
 }
 

@@ -20,7 +20,7 @@ fn main() -> ExitCode {
         let mut faults = Faults::new();
         let reading = match parse(FileId(0), &text, &mut faults) {
             Some(tree) => json!({ "value": value(tree.root()) }),
-            None => json!({ "refused": faults.iter().next().map(|fault| &fault.message) }),
+            None => json!({ "refused": faults.iter().next().map(|fault| &fault.message.en) }),
         };
         files.insert(path, json!({ "fc": reading }));
     }

@@ -6,6 +6,7 @@ use crate::load::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::load::load;
 use crate::model::{Kind, Model, Text};
 use crate::syntax::{Edits, Entry, SourceFile, Sources, Span, Tree, parse, quoted};
+use crate::text;
 use std::fmt;
 
 /// Faults of what nothing uses any more; their place is its key.
@@ -49,21 +50,33 @@ pub enum RetireError {
     },
 }
 
-impl fmt::Display for RetireError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl RetireError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
         match self {
-            Self::Unknown { name, nearest } => {
-                write!(f, "there is no operation `{name}`")?;
-                match nearest {
-                    Some(nearest) => write!(f, "; did you mean `{nearest}`?"),
-                    None => Ok(()),
-                }
-            }
-            Self::Layout { path, what } => write!(
-                f,
+            Self::Unknown {
+                name,
+                nearest: Some(nearest),
+            } => text!(
+                "没有接口 `{name}`；是否想写 `{nearest}`？",
+                "there is no operation `{name}`; did you mean `{nearest}`?"
+            ),
+            Self::Unknown {
+                name,
+                nearest: None,
+            } => text!("没有接口 `{name}`", "there is no operation `{name}`"),
+            Self::Layout { path, what } => text!(
+                "{path} 中的 `{what}` 写在大括号或方括号中；改成逐行书写，或手工修改",
                 "`{what}` in {path} is written in braces or brackets; write it in block style, or change it by hand"
             ),
         }
+    }
+}
+
+impl fmt::Display for RetireError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().en)
     }
 }
 

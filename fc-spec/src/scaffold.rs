@@ -3,8 +3,9 @@
 use crate::diagnostic::Faults;
 use crate::load::grammar::FILE;
 use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
-use crate::model::{Kind, Location, Model, Operation, RangeUse};
+use crate::model::{Kind, Location, Model, Operation, RangeUse, Text};
 use crate::syntax::{Entry, Node, SourceFile, Sources, parse};
+use crate::text;
 use std::fmt;
 
 /// What is wanted.
@@ -61,7 +62,7 @@ pub enum ScaffoldError {
         /// The code.
         code: u16,
         /// Why, as the end of a sentence.
-        why: String,
+        why: Text,
         /// The next free one.
         next: Option<u16>,
     },
@@ -76,39 +77,54 @@ pub enum ScaffoldError {
     },
 }
 
-impl fmt::Display for ScaffoldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl ScaffoldError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
         match self {
-            Self::Name(name) => {
-                write!(f, "`{name}` is not a snake_case name such as `get_battery`")
-            }
-            Self::Group { wanted, known } => {
-                write!(
-                    f,
-                    "there is no group `{wanted}`; the groups are {}",
-                    known.join(", ")
-                )
-            }
-            Self::Taken { name, place } => {
-                write!(f, "there is a `{name}` already, in {place}")
-            }
-            Self::NotACommand(name) => write!(f, "there is no command `{name}`"),
-            Self::Code { code, why, next } => {
-                write!(f, "0x{code:04X} {why}")?;
-                match next {
-                    Some(next) => write!(f, "; the next free code is 0x{next:04X}"),
-                    None => Ok(()),
-                }
-            }
-            Self::Codes => f.write_str(
-                "no code is free in the ranges that new operations get theirs from; add a range to \
-                 `codes.ranges`, or name a code with --code",
+            Self::Name(name) => text!(
+                "`{name}` 不是 snake_case 名称，例如 `get_battery`",
+                "`{name}` is not a snake_case name such as `get_battery`"
             ),
-            Self::Layout { path, section } => write!(
-                f,
+            Self::Group { wanted, known } => text!(
+                "没有分组 `{wanted}`；分组有：{known}",
+                "there is no group `{wanted}`; the groups are {known}",
+                known = Text::listed(known)
+            ),
+            Self::Taken { name, place } => text!(
+                "已经有 `{name}`，在 {place}",
+                "there is a `{name}` already, in {place}"
+            ),
+            Self::NotACommand(name) => text!("没有指令 `{name}`", "there is no command `{name}`"),
+            Self::Code {
+                code,
+                why,
+                next: Some(next),
+            } => text!(
+                "0x{code:04X} {why}；下一个空闲的功能码是 0x{next:04X}",
+                "0x{code:04X} {why}; the next free code is 0x{next:04X}",
+                why = why
+            ),
+            Self::Code {
+                code,
+                why,
+                next: None,
+            } => text!("0x{code:04X} {why}", "0x{code:04X} {why}", why = why),
+            Self::Codes => text!(
+                "供新接口使用的范围内没有空闲的功能码；在 `codes.ranges` 中加一个范围，或用 --code 指定功能码",
+                "no code is free in the ranges that new operations get theirs from; add a range to `codes.ranges`, or name a code with --code"
+            ),
+            Self::Layout { path, section } => text!(
+                "{path} 中的 `{section}` 写在大括号中；改成逐行书写，或手工加上接口",
                 "`{section}` in {path} is written in braces; write it in block style, or add the operation by hand"
             ),
         }
+    }
+}
+
+impl fmt::Display for ScaffoldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().en)
     }
 }
 
@@ -201,33 +217,55 @@ fn place(location: &Location) -> String {
 }
 
 /// Why a new operation cannot have this code.
-fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<String> {
+fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
     let mut operations = model.operations.iter();
     let is_shared = |operation: &Operation| new.started_by == Some(operation.name.as_str());
     let other = operations.find(|it| it.code.value == Some(code) && !is_shared(it));
     if let Some(other) = other {
         let at = place(&other.location);
-        return Some(format!("is the code of `{}`, in {at}", other.name));
+        return Some(text!(
+            "是 `{name}` 的功能码，在 {at}",
+            "is the code of `{name}`, in {at}",
+            name = other.name
+        ));
     }
     if model.retired.iter().any(|retired| retired.code == code) {
-        return Some("was retired and must not be used again".to_owned());
+        return Some(text!(
+            "已经停用，不能再用",
+            "was retired and must not be used again"
+        ));
     }
     let mut ranges = model.ranges.iter();
     let Some(range) = ranges.find(|range| (range.first..=range.last).contains(&code)) else {
-        return Some("is in none of the ranges".to_owned());
+        return Some(text!("不在任何功能码范围内", "is in none of the ranges"));
     };
     let why = match (range.usage, new.kind) {
-        (RangeUse::Historic, Kind::Command | Kind::Report) => "is closed for new operations",
-        (RangeUse::Reserved, _) => "is reserved",
-        (RangeUse::Commands, Kind::Report) => "is for commands, and this is a report",
-        (RangeUse::Reports, Kind::Command) => "is for reports, and this is a command",
+        (RangeUse::Historic, Kind::Command | Kind::Report) => {
+            text!("不再接受新接口", "is closed for new operations")
+        }
+        (RangeUse::Reserved, _) => text!("是预留的", "is reserved"),
+        (RangeUse::Commands, Kind::Report) => text!(
+            "用于指令，而这是上报",
+            "is for commands, and this is a report"
+        ),
+        (RangeUse::Reports, Kind::Command) => text!(
+            "用于上报，而这是指令",
+            "is for reports, and this is a command"
+        ),
         (RangeUse::PassThrough, Kind::Report | Kind::Stream) => {
-            "is passed through to the upper body and only contains commands"
+            text!(
+                "透传给上身，只能有指令",
+                "is passed through to the upper body and only contains commands"
+            )
         }
         _ => return None,
     };
     let (first, last) = (&range.first_spelling, &range.last_spelling);
-    Some(format!("is in the range {first} to {last}, which {why}"))
+    Some(text!(
+        "在 {first} 到 {last} 的范围内，这个范围{why}",
+        "is in the range {first} to {last}, which {why}",
+        why = why
+    ))
 }
 
 /// Where an operation is put.

@@ -5,7 +5,7 @@
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::{
-    Asked, Condition, Dump, Example, Model, Number, ProjectionError, Scalar, TypeShape, Value,
+    Asked, Condition, Dump, Example, Lang, Model, Number, ProjectionError, Scalar, TypeShape, Value,
 };
 use fc_spec::syntax::Sources;
 use std::path::Path;
@@ -123,7 +123,7 @@ fn model() -> Model {
     let sources = Sources::from_texts(good.into_iter().chain([more]));
     let mut faults = Faults::new();
     let model = load(&sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
 fn part(audience: &str) -> Model {

@@ -15,6 +15,7 @@
 
 use fc_spec::diagnostic::{FaultCode, Faults};
 use fc_spec::load::load;
+use fc_spec::model::Lang;
 use fc_spec::syntax::Sources;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -363,7 +364,8 @@ fn the_bad_example_raises_its_code_and_the_good_one_does_not() {
         if code_name.starts_with("FC00") || SPREAD.contains(&code_name) {
             continue;
         }
-        let [bad, good] = ["bad", "good"].map(|kind| blocks(code.explain(), kind));
+        let text = code.explain(Lang::En);
+        let [bad, good] = ["bad", "good"].map(|kind| blocks(text, kind));
         assert!(!bad.is_empty() && !good.is_empty(), "{code_name}");
         let [bad, good] = [bad, good].map(|blocks| specs(&blocks));
         let shown = bad.into_iter().zip(good).any(|(bad, good)| {
@@ -386,7 +388,7 @@ fn every_example_is_yaml() {
         .filter(|code| !code.as_str().starts_with("FC00"))
     {
         for kind in ["bad", "good"] {
-            for text in blocks(code.explain(), kind) {
+            for text in blocks(code.explain(Lang::En), kind) {
                 // As a section of a file, which the syntax does not look into.
                 let text = if text.starts_with('-') {
                     format!("items:\n{text}")

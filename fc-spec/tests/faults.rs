@@ -18,8 +18,11 @@
     reason = "tests"
 )]
 
+mod both_languages;
+
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, render};
 use fc_spec::load::load;
+use fc_spec::model::Lang;
 use fc_spec::syntax::{Sources, Span};
 use std::collections::BTreeSet;
 use std::fs;
@@ -199,7 +202,7 @@ fn the_good_spec_has_no_faults() {
     assert!(
         faults.is_empty(),
         "{}",
-        render(&faults, &sources, Format::Text)
+        render(&faults, &sources, Format::Text, Lang::En)
     );
 }
 
@@ -214,7 +217,7 @@ fn every_fixture_has_exactly_the_faults_it_expects() {
             .collect();
         let expected = fixture.expected();
         if found != expected || expected.is_empty() {
-            let shown = render(&faults, &sources, Format::Text);
+            let shown = render(&faults, &sources, Format::Text, Lang::En);
             failed.push(format!(
                 "{}\nexpected {expected:#?}\nfound {found:#?}\n{shown}",
                 fixture.name
@@ -222,6 +225,18 @@ fn every_fixture_has_exactly_the_faults_it_expects() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn every_fault_is_said_in_both_languages() {
+    let objections: Vec<_> = fixtures()
+        .iter()
+        .flat_map(|fixture| {
+            let (_, faults) = fixture.faults(&fixture.text);
+            both_languages::objections(&fixture.name, &faults)
+        })
+        .collect();
+    assert!(objections.is_empty(), "{}", objections.join("\n"));
 }
 
 /// Of several fixes the first is the likeliest. A fix of a declaration may leave its uses to be mended.
@@ -243,7 +258,7 @@ fn the_first_fix_mends_its_fault() {
                     "{}: {} does not help:\n{}",
                     fixture.name,
                     fix.replacement,
-                    render(&mended, &mended_sources, Format::Text)
+                    render(&mended, &mended_sources, Format::Text, Lang::En)
                 );
             }
         }

@@ -15,7 +15,7 @@ mod format_support;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::format::format;
 use fc_spec::load::load;
-use fc_spec::model::Dump;
+use fc_spec::model::{Dump, Lang};
 use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
 use format_support::{Mutations, mutate};
 use proptest::prelude::*;
@@ -77,7 +77,7 @@ fn says(files: &[(String, String)]) -> Value {
     let sources = Sources::from_texts(files.iter().cloned());
     let mut faults = Faults::new();
     let model = load(&sources, &mut faults).model();
-    let faults = render(&faults, &sources, Format::Text);
+    let faults = render(&faults, &sources, Format::Text, Lang::En);
     let model = model.expect(&faults);
     let mut value = serde_json::to_value(Dump::from(&model)).expect("a model");
     strip(&mut value);

@@ -17,7 +17,7 @@ mod syntax_support;
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{Said, SettleError, Settled, load, settle};
-use fc_spec::model::{Confirmation, Model};
+use fc_spec::model::{Confirmation, Lang, Model};
 use fc_spec::syntax::Sources;
 use std::path::Path;
 
@@ -37,7 +37,7 @@ fn model(sources: &Sources) -> Model {
     assert!(
         faults.is_empty(),
         "{}",
-        render(&faults, sources, Format::Text)
+        render(&faults, sources, Format::Text, Lang::En)
     );
     model.expect("a spec without faults has a model")
 }

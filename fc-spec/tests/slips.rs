@@ -11,6 +11,7 @@
     reason = "tests"
 )]
 
+mod both_languages;
 mod syntax_support;
 
 use std::fmt::Write as _;
@@ -98,18 +99,22 @@ fn show(sources: &Sources, fault: &Diagnostic) -> String {
     let _ = writeln!(
         out,
         "> {}{level} {path}:{}:{} {}",
-        fault.code, at.line, at.column, fault.message
+        fault.code, at.line, at.column, fault.message.en
     );
     for label in &fault.secondary {
         let at = sources.line_col(label.span);
-        let _ = writeln!(out, ">   {}:{} {}", at.line, at.column, label.text);
+        let _ = writeln!(out, ">   {}:{} {}", at.line, at.column, label.text.en);
     }
     for note in &fault.notes {
-        let _ = writeln!(out, ">   note: {note}");
+        let _ = writeln!(out, ">   note: {}", note.en);
     }
     for fix in &fault.fixes {
         let old = sources.slice(fix.span);
-        let _ = writeln!(out, ">   {}: {old:?} -> {:?}", fix.message, fix.replacement);
+        let _ = writeln!(
+            out,
+            ">   {}: {old:?} -> {:?}",
+            fix.message.en, fix.replacement
+        );
     }
     out
 }
@@ -151,6 +156,18 @@ fn every_slip_is_named_for_what_it_is() {
     });
 }
 
+#[test]
+fn every_slip_is_named_in_both_languages() {
+    let mut objections = Vec::new();
+    each_file(|_, text| {
+        for slip in Slip::all(text) {
+            let faults = faults(&slip.sources());
+            objections.extend(both_languages::objections(&slip.title, &faults));
+        }
+    });
+    assert!(objections.is_empty(), "{}", objections.join("\n"));
+}
+
 /// The first of its fixes is the likeliest: with it the fault is gone, and no other has come in its place.
 #[test]
 fn the_first_fix_mends_a_slip() {
@@ -178,7 +195,7 @@ fn the_first_fix_mends_a_slip() {
                     panic!(
                         "{}: {} gives\n{}",
                         slip.title,
-                        fix.message,
+                        fix.message.en,
                         show(&mended, other)
                     );
                 }

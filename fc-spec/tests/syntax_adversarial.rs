@@ -2,11 +2,13 @@
 
 #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
+mod both_languages;
 mod syntax_support;
 
 use std::path::Path;
 
 use fc_spec::diagnostic::{Faults, Format, render, summary};
+use fc_spec::model::Lang;
 use fc_spec::syntax::read_dir;
 
 #[test]
@@ -19,13 +21,15 @@ fn every_fixture_has_its_faults() {
         let bytes = std::fs::read(&path).expect("the fixture can be read");
         let (sources, mut faults) = syntax_support::read(&[(name, &bytes)]);
         let trees = syntax_support::parse_all(&sources, &mut faults);
-        let text = render(&faults, &sources, Format::Text);
+        let objections = both_languages::objections(name, &faults);
+        assert!(objections.is_empty(), "{}", objections.join("\n"));
+        let text = render(&faults, &sources, Format::Text, Lang::En);
         let tree = if trees.iter().any(Option::is_some) {
             "a tree"
         } else {
             "no tree"
         };
-        let summary = summary(&faults).unwrap_or_else(|| "no fault".to_owned());
+        let summary = summary(&faults, Lang::En).unwrap_or_else(|| "no fault".to_owned());
         syntax_support::golden(
             &path.with_extension("txt"),
             &format!("{text}{summary}\n{tree}\n"),
@@ -40,14 +44,19 @@ fn columns_are_characters_in_every_format() {
     let bytes = std::fs::read(&path).expect("the fixture can be read");
     let (sources, mut faults) = syntax_support::read(&[("cjk.yaml", &bytes)]);
     syntax_support::parse_all(&sources, &mut faults);
-    for (format, extension) in [
-        (Format::Colored, "ansi"),
-        (Format::Json, "jsonl"),
-        (Format::Sarif, "sarif"),
-        (Format::Github, "github"),
+    for (format, lang, extension) in [
+        (Format::Colored, Lang::En, "ansi"),
+        (Format::Json, Lang::En, "jsonl"),
+        (Format::Sarif, Lang::En, "sarif"),
+        (Format::Github, Lang::En, "github"),
+        (Format::Text, Lang::Zh, "zh.txt"),
+        (Format::Colored, Lang::Zh, "zh.ansi"),
+        (Format::Json, Lang::Zh, "zh.jsonl"),
+        (Format::Sarif, Lang::Zh, "zh.sarif"),
+        (Format::Github, Lang::Zh, "zh.github"),
     ] {
         let actual =
-            render(&faults, &sources, format).replace(env!("CARGO_PKG_VERSION"), "VERSION");
+            render(&faults, &sources, format, lang).replace(env!("CARGO_PKG_VERSION"), "VERSION");
         syntax_support::golden(&path.with_extension(extension), &actual);
     }
 }

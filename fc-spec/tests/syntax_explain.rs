@@ -5,6 +5,7 @@
 mod syntax_support;
 
 use fc_spec::diagnostic::FaultCode;
+use fc_spec::model::Lang;
 
 /// The fenced blocks of an explanation: what stands behind the fence, and the lines inside.
 fn blocks(text: &str) -> Vec<(&str, String)> {
@@ -22,20 +23,38 @@ fn blocks(text: &str) -> Vec<(&str, String)> {
 #[test]
 fn every_code_has_a_bad_and_a_good_example() {
     for code in FaultCode::ALL {
-        let text = code.explain();
-        let kinds: Vec<_> = blocks(text)
-            .iter()
-            .filter_map(|(info, _)| info.split_once(' ').map(|(_, kind)| kind))
-            .collect();
-        assert!(
-            kinds.contains(&"bad") && kinds.contains(&"good"),
-            "{code}: {kinds:?}"
-        );
-        let first = text.lines().next().unwrap_or_default();
-        assert!(
-            first.ends_with(['.', '?']) && !first.starts_with("```") && !first.starts_with('#'),
-            "{code}: starts with a paragraph"
-        );
+        for lang in Lang::ALL {
+            let text = code.explain(lang);
+            let kinds: Vec<_> = blocks(text)
+                .iter()
+                .filter_map(|(info, _)| info.split_once(' ').map(|(_, kind)| kind))
+                .collect();
+            assert!(
+                kinds.contains(&"bad") && kinds.contains(&"good"),
+                "{code}: {kinds:?}"
+            );
+            let first = text.lines().next().unwrap_or_default();
+            assert!(
+                first.ends_with(['.', '?', '。', '？'])
+                    && !first.starts_with("```")
+                    && !first.starts_with('#'),
+                "{code}: starts with a paragraph"
+            );
+        }
+    }
+}
+
+/// What is told in one language and not in the other would be a second fault: the examples are the same.
+#[test]
+fn every_code_is_explained_in_both_languages() {
+    let is_chinese = |text: &str| text.contains(|c| matches!(c, '\u{4E00}'..='\u{9FFF}'));
+    for code in FaultCode::ALL {
+        let [zh, en] = Lang::ALL.map(|lang| code.explain(lang));
+        let first = zh.lines().next().unwrap_or_default();
+        assert!(is_chinese(first), "{code}: {first}");
+        assert!(is_chinese(code.title(Lang::Zh)), "{code}");
+        assert!(!is_chinese(code.title(Lang::En)), "{code}");
+        assert_eq!(blocks(zh), blocks(en), "{code}");
     }
 }
 
@@ -59,7 +78,7 @@ fn examples_of_the_syntax_codes_tell_the_truth() {
         .iter()
         .filter(|code| code.as_str().starts_with("FC00"))
     {
-        for (info, text) in blocks(code.explain()) {
+        for (info, text) in blocks(code.explain(Lang::En)) {
             let (_, _, faults) = syntax_support::parse_text(&text);
             match info {
                 "yaml bad" => assert!(

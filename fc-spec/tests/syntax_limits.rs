@@ -6,6 +6,7 @@ mod syntax_support;
 
 use std::fmt::Write as _;
 
+use fc_spec::model::Lang;
 use fc_spec::syntax::limits;
 
 fn codes(text: &str) -> Vec<&'static str> {
@@ -79,7 +80,7 @@ fn many_faults_are_counted_not_kept() {
     assert_eq!(faults.errors(), 299_999);
     assert!(faults.len() < 2000);
     assert_eq!(faults.len() + faults.omitted(), faults.errors());
-    let summary = fc_spec::diagnostic::summary(&faults).unwrap_or_default();
+    let summary = fc_spec::diagnostic::summary(&faults, Lang::En).unwrap_or_default();
     assert!(summary.starts_with("error: 299999 errors in 1 file, the first 1000 of them shown"));
     drop(sources);
 }
@@ -95,7 +96,7 @@ fn long_line() {
         fc_spec::diagnostic::Format::Sarif,
         fc_spec::diagnostic::Format::Github,
     ] {
-        let shown = fc_spec::diagnostic::render(&faults, &sources, format);
+        let shown = fc_spec::diagnostic::render(&faults, &sources, format, Lang::En);
         assert!(shown.len() < 2 << 20, "{format:?}");
     }
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use fc_spec::diagnostic::{Format, render, summary};
+use fc_spec::model::Lang;
 use fc_spec::syntax::{Node, NodeKind, Sources, Span, Style};
 use proptest::prelude::*;
 
@@ -107,7 +108,7 @@ fn check(bytes: &[u8]) {
             check_span(span, &sources);
         }
     }
-    assert_eq!(summary(&faults).is_none(), faults.is_empty());
+    assert_eq!(summary(&faults, Lang::En).is_none(), faults.is_empty());
     for format in [
         Format::Colored,
         Format::Text,
@@ -115,7 +116,7 @@ fn check(bytes: &[u8]) {
         Format::Sarif,
         Format::Github,
     ] {
-        let shown = render(&faults, &sources, format);
+        let shown = render(&faults, &sources, format, Lang::En);
         assert!(faults.is_empty() || shown.contains("a.yaml"));
     }
 }

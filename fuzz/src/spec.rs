@@ -6,6 +6,7 @@
 use fc_codegen::emit::generate;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::model::Lang;
 use fc_spec::load::load;
 use fc_spec::syntax::Sources;
 
@@ -31,7 +32,7 @@ pub fn spec(data: &[u8]) {
     let model = load(&sources, &mut faults).model();
     faults.sort();
     for format in [Format::Text, Format::Json, Format::Sarif, Format::Github] {
-        let _ = render(&faults, &sources, format);
+        let _ = render(&faults, &sources, format, Lang::En);
     }
     assert_eq!(
         model.is_none(),

@@ -91,7 +91,7 @@ impl Run {
     }
 }
 
-/// The command, without what the environment says about colors and the repository.
+/// The command, without what the environment says about colors, the repository and the language.
 pub fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fc"));
     command.args(args);
@@ -101,6 +101,9 @@ pub fn command(args: &[&str]) -> Command {
         "CLICOLOR_FORCE",
         "TERM",
         "GITHUB_WORKSPACE",
+        "LC_ALL",
+        "LC_MESSAGES",
+        "LANG",
     ] {
         command.env_remove(variable);
     }

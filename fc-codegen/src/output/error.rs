@@ -1,6 +1,7 @@
 //! What keeps output from being written.
 
 use super::manifest::MANIFEST;
+use fc_spec::model::Text;
 use std::io;
 
 /// What keeps output from being written. Unless it is an [`Io`](Self::Io) fault half-way, nothing
@@ -9,12 +10,12 @@ use std::io;
 #[non_exhaustive]
 pub enum OutputError {
     /// An artifact or the manifest names a path that may lead out of the root.
-    #[error("`{path}` cannot be written: {why}")]
+    #[error("`{path}` cannot be written: {}", why.en)]
     BadPath {
         /// The path.
         path: String,
         /// What is wrong with it.
-        why: &'static str,
+        why: Text,
     },
     /// Two artifacts have one path, or paths that differ in case alone.
     #[error("two artifacts are called `{path}`; rename one of the things they are made from")]
@@ -59,6 +60,39 @@ pub enum OutputError {
         /// Its reason.
         source: io::Error,
     },
+}
+
+impl OutputError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        let zh = match self {
+            Self::BadPath { path, why } => format!("无法写入 `{path}`：{}", why.zh),
+            Self::Duplicate { path } => {
+                format!("有两个产物都叫 `{path}`；请给其中一个的来源改名")
+            }
+            Self::Symlink { path } => {
+                format!("`{path}` 是符号链接；请换成它指向的内容，或将它删除")
+            }
+            Self::Foreign { paths } => {
+                let named = paths.iter().take(3).map(|path| format!("`{path}`"));
+                let named = named.collect::<Vec<_>>().join("、");
+                let more = match paths.len() {
+                    count @ 4.. => format!(" 等 {count} 个文件"),
+                    _ => String::new(),
+                };
+                format!(
+                    "必须覆盖 {named}{more}，但 `{MANIFEST}` 中没有列出：请移走或删除，再运行 `fc generate`"
+                )
+            }
+            Self::Manifest { why } => format!(
+                "无法读取 `{MANIFEST}`：{why}。请从版本库恢复，或将它删除：此后，与最新内容一致的生成文件会被接管，其余的要先删除"
+            ),
+            Self::Io { path, source, .. } => format!("无法读写 `{path}`：{source}"),
+        };
+        let en = self.to_string();
+        Text { zh, en }
+    }
 }
 
 /// Up to three paths by name, the rest by number.

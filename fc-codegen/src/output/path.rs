@@ -1,6 +1,7 @@
 //! Paths that stay below the root.
 
 use super::OutputError;
+use fc_spec::text;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,18 +33,29 @@ fn check(path: &str) -> Result<(), OutputError> {
         })
     };
     if path.is_empty() {
-        return bad("it is empty");
+        return bad(text!("路径为空", "it is empty"));
     }
     if path.starts_with('/') {
-        return bad("it must be relative to the root");
+        return bad(text!(
+            "必须是相对于根目录的路径",
+            "it must be relative to the root"
+        ));
     }
     if path.contains(['\\', ':', '\0']) {
-        return bad("it must not contain `\\`, `:` or NUL");
+        return bad(text!(
+            "不能含有 `\\`、`:` 或 NUL",
+            "it must not contain `\\`, `:` or NUL"
+        ));
     }
     for part in path.split('/') {
         match part {
-            "" => return bad("it has an empty part"),
-            "." | ".." => return bad("it must not contain `.` or `..`"),
+            "" => return bad(text!("路径中有空的一段", "it has an empty part")),
+            "." | ".." => {
+                return bad(text!(
+                    "不能含有 `.` 或 `..`",
+                    "it must not contain `.` or `..`"
+                ));
+            }
             _ => {}
         }
     }

@@ -3,7 +3,9 @@
 use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
 use fc_spec::load::{Item, Places};
+use fc_spec::model::Text;
 use fc_spec::syntax::Span;
+use fc_spec::text;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -109,30 +111,37 @@ impl Clash<'_> {
         let Self {
             language, spelling, ..
         } = self;
-        let same = |other: &Named<'_>, message: String| {
+        let same = |other: &Named<'_>, message: Text| {
             let fault = Diagnostic::error(FaultCode::DuplicateName, span, message);
             match other.span(places) {
-                Some(earlier) => fault.also(earlier, "first used here"),
+                Some(earlier) => fault.also(earlier, text!("首次出现在这里", "first used here")),
                 None => fault,
             }
         };
         let fault = match &self.reason {
             Reason::Taken => {
-                let message = format!("`{spelling}` already has a meaning in {language}");
+                let message = text!(
+                    "`{spelling}` 在 {language} 中已有含义",
+                    "`{spelling}` already has a meaning in {language}"
+                );
                 Diagnostic::error(FaultCode::ReservedName, span, message)
             }
             Reason::Same(other) => {
-                let message = format!("two names are both `{spelling}` in {language}");
+                let message = text!(
+                    "有两个名称在 {language} 中都是 `{spelling}`",
+                    "two names are both `{spelling}` in {language}"
+                );
                 same(other, message)
             }
             Reason::SameFile(other) => {
-                let message = format!(
+                let message = text!(
+                    "在 {language} 中 `{spelling}` 单独成为一个文件，其文件名与另一个只有大小写不同",
                     "in {language} `{spelling}` has a file of its own, whose name differs from another only in case"
                 );
                 same(other, message)
             }
         };
-        Some(fault.note("choose another name"))
+        Some(fault.note(text!("换一个名称", "choose another name")))
     }
 }
 

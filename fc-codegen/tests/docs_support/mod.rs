@@ -5,7 +5,7 @@
 use fc_codegen::product::Artifact;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::read_dir;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
     let model = load(&sources, &mut faults).model();
-    let shown = render(&faults, &sources, Format::Text);
+    let shown = render(&faults, &sources, Format::Text, Lang::En);
     model.unwrap_or_else(|| panic!("{shown}"))
 }
 

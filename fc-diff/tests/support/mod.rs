@@ -4,7 +4,7 @@
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::{Sources, read_dir};
 use std::path::{Path, PathBuf};
 
@@ -83,7 +83,7 @@ pub fn model(sources: &Sources) -> Result<Model, String> {
     let loaded = load(sources, &mut faults);
     loaded
         .model()
-        .ok_or_else(|| render(&faults, sources, Format::Text))
+        .ok_or_else(|| render(&faults, sources, Format::Text, Lang::En))
 }
 
 impl Edit {

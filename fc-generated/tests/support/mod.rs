@@ -6,7 +6,7 @@ use fc_generated::{Fc, for_each_message};
 use fc_runtime::{BodyError, Empty, Message, Protocol, read_enveloped, transcode, write_enveloped};
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::read_dir;
 use std::collections::BTreeMap;
 use std::fs;
@@ -25,7 +25,7 @@ pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
     let model = load(&sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
 /// What can be done with a message type that is known by name alone.

@@ -2,7 +2,7 @@
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::{Sources, read_dir};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,5 +53,5 @@ pub fn model_of(protocol: &str, commands: &str) -> Model {
 
 fn loaded(sources: &Sources, mut faults: Faults) -> Model {
     let model = load(sources, &mut faults).model();
-    model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text)))
+    model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text, Lang::En)))
 }

@@ -1,7 +1,7 @@
 //! Faults of a spec and how they are shown.
 //!
 //! A [`Diagnostic`] says what is wrong, where, and what to do; its [`FaultCode`] is fixed and has an
-//! explanation. Whoever finds a fault pushes it to [`Faults`] and goes on, so that one run shows all.
+//! explanation. All that it says is a [`Text`], in both languages. Whoever finds a fault pushes it to [`Faults`] and goes on, so that one run shows all.
 
 mod codes;
 mod render;
@@ -11,6 +11,7 @@ pub use codes::FaultCode;
 pub use render::{Format, render, summary};
 pub use suggest::nearest;
 
+use crate::model::Text;
 use crate::syntax::Span;
 
 /// How bad it is.
@@ -28,7 +29,7 @@ pub struct Label {
     /// The place.
     pub span: Span,
     /// A few words beside it; may be empty for the primary place.
-    pub text: String,
+    pub text: Text,
 }
 
 /// A change that mends the fault.
@@ -39,7 +40,7 @@ pub struct Fix {
     /// With what; empty to delete.
     pub replacement: String,
     /// What the change does, such as "a type with a similar name exists".
-    pub message: String,
+    pub message: Text,
 }
 
 /// A fault of the spec.
@@ -50,13 +51,13 @@ pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
     /// What is wrong: one sentence, no full stop, starting in lower case.
-    pub message: String,
+    pub message: Text,
     /// Where.
     pub primary: Label,
     /// Other places to blame ("first used here").
     pub secondary: Vec<Label>,
     /// What to do or to know.
-    pub notes: Vec<String>,
+    pub notes: Vec<Text>,
     /// Changes that mend it.
     pub fixes: Vec<Fix>,
 }
@@ -64,14 +65,14 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at `span`.
     #[must_use]
-    pub fn error(code: FaultCode, span: Span, message: impl Into<String>) -> Self {
+    pub fn error(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
             code,
             severity: Severity::Error,
-            message: message.into(),
+            message,
             primary: Label {
                 span,
-                text: String::new(),
+                text: Text::default(),
             },
             secondary: Vec::new(),
             notes: Vec::new(),
@@ -81,7 +82,7 @@ impl Diagnostic {
 
     /// A warning at `span`.
     #[must_use]
-    pub fn warning(code: FaultCode, span: Span, message: impl Into<String>) -> Self {
+    pub fn warning(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
             severity: Severity::Warning,
             ..Self::error(code, span, message)
@@ -90,40 +91,32 @@ impl Diagnostic {
 
     /// A few words at the primary place.
     #[must_use]
-    pub fn label(mut self, text: impl Into<String>) -> Self {
-        self.primary.text = text.into();
+    pub fn label(mut self, text: Text) -> Self {
+        self.primary.text = text;
         self
     }
 
     /// Another place to blame.
     #[must_use]
-    pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.secondary.push(Label {
-            span,
-            text: text.into(),
-        });
+    pub fn also(mut self, span: Span, text: Text) -> Self {
+        self.secondary.push(Label { span, text: text });
         self
     }
 
     /// What to do or to know.
     #[must_use]
-    pub fn note(mut self, text: impl Into<String>) -> Self {
-        self.notes.push(text.into());
+    pub fn note(mut self, text: Text) -> Self {
+        self.notes.push(text);
         self
     }
 
     /// A change that mends it.
     #[must_use]
-    pub fn fix(
-        mut self,
-        span: Span,
-        replacement: impl Into<String>,
-        message: impl Into<String>,
-    ) -> Self {
+    pub fn fix(mut self, span: Span, replacement: impl Into<String>, message: Text) -> Self {
         self.fixes.push(Fix {
             span,
             replacement: replacement.into(),
-            message: message.into(),
+            message,
         });
         self
     }

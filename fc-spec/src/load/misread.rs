@@ -2,7 +2,8 @@
 //! values and dates.
 
 use super::scalar::number_text;
-use crate::model::Number;
+use crate::model::{Number, Text};
+use crate::text;
 use regex_lite::Regex;
 use std::sync::LazyLock;
 
@@ -19,12 +20,12 @@ fn is_ambiguous(word: &str) -> bool {
 }
 
 /// What other YAML readers may take a plain text for that is a text, or a number, here.
-pub(super) fn misread(text: &str) -> Option<&'static str> {
+pub(super) fn misread(text: &str) -> Option<Text> {
     if is_ambiguous(text) || matches!(text, "True" | "TRUE" | "False" | "FALSE") {
-        return Some("a boolean");
+        return Some(text!("布尔值", "a boolean"));
     }
     if text == "=" {
-        return Some("a special value");
+        return Some(text!("特殊值", "a special value"));
     }
     // Most texts begin with a letter.
     if !text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '.' | '+' | '-')) {
@@ -39,13 +40,13 @@ pub(super) fn misread(text: &str) -> Option<&'static str> {
             mantissa.contains('.') && exponent.starts_with(['-', '+'])
         });
         let is_negative = matches!(number, Number::Int(value) if value < 0);
-        return (!is_agreed || (hexadecimal && is_negative)).then_some("text");
+        return (!is_agreed || (hexadecimal && is_negative)).then_some(text!("文本", "text"));
     }
     let is = |pattern: &Option<Regex>| pattern.as_ref().is_some_and(|regex| regex.is_match(text));
     if is(&OTHER_DATES) {
-        return Some("a date");
+        return Some(text!("日期", "a date"));
     }
-    is(&OTHER_NUMBERS).then_some("a number")
+    is(&OTHER_NUMBERS).then_some(text!("数值", "a number"))
 }
 
 /// A number that all readers take for one, for one that only some do.
@@ -115,7 +116,8 @@ mod tests {
             ("2 m", None),
             ("once", None),
         ] {
-            assert_eq!(misread(text), expected, "{text}");
+            let found = misread(text).map(|text| text.en);
+            assert_eq!(found.as_deref(), expected, "{text}");
         }
     }
 

@@ -4,7 +4,9 @@ use super::draft::Place;
 use super::grammar::{self, FILE, File, GROUP};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::model::Text;
 use crate::syntax::{self, Entry, Node, Span};
+use crate::text;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashMap;
 
@@ -108,7 +110,11 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
         for entry in entries.filter(grouped) {
-            let message = format!("`{}` belongs in a file under `commands/`", entry.name());
+            let message = text!(
+                "`{key}` 应当写在 `commands/` 下的文件中",
+                "`{key}` belongs in a file under `commands/`",
+                key = entry.name()
+            );
             faults.push(Diagnostic::error(
                 FaultCode::MisplacedSection,
                 entry.key.span(),
@@ -124,9 +130,15 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
         let fault = Diagnostic::error(
             FaultCode::SectionMissing,
             span,
-            "this file does not define the `group` of its operations",
+            text!(
+                "这个文件没有为其中的接口定义 `group`",
+                "this file does not define the `group` of its operations"
+            ),
         );
-        faults.push(fault.note("write `group: { id: …, zh: …, en: … }` at its top"));
+        faults.push(fault.note(text!(
+            "在文件开头写 `group: {{ id: …, zh: …, en: … }}`",
+            "write `group: {{ id: …, zh: …, en: … }}` at its top"
+        )));
     }
 }
 
@@ -143,10 +155,14 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
             first.insert(section.name, span);
             return true;
         };
-        let message = format!("`{}` is defined twice", section.name);
+        let message = text!(
+            "`{name}` 定义了两次",
+            "`{name}` is defined twice",
+            name = section.name
+        );
         faults.push(
             Diagnostic::error(FaultCode::SectionTwice, span, message)
-                .also(*earlier, "first defined here"),
+                .also(*earlier, text!("首次定义在这里", "first defined here")),
         );
         false
     });
@@ -158,7 +174,7 @@ fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults
         return true;
     };
     let before = faults.errors();
-    let mut missing = |message: &str, note: String| {
+    let mut missing = |message: Text, note: Text| {
         let span = Span::point(first.root().span().file, 0);
         faults.push(Diagnostic::error(FaultCode::SectionMissing, span, message).note(note));
     };
@@ -166,12 +182,31 @@ fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults
     let absent: Vec<_> = grammar::ONCE.iter().filter(absent).copied().collect();
     let has_protocol = trees.iter().any(|tree| file_name(tree) == PROTOCOL);
     if !has_protocol && !absent.is_empty() {
-        let note = format!("it defines `{}`", absent.join("`, `"));
-        missing(&format!("the spec has no file `{PROTOCOL}`"), note);
+        let note = text!(
+            "它定义 {absent}",
+            "it defines {absent}",
+            absent = Text::listed(absent.iter().map(|name| format!("`{name}`")))
+        );
+        missing(
+            text!(
+                "规范中没有文件 `{PROTOCOL}`",
+                "the spec has no file `{PROTOCOL}`"
+            ),
+            note,
+        );
     }
     if !trees.iter().any(holds_operations) {
-        let note = "each file in `commands/` defines a group of operations".to_owned();
-        missing("the spec has no file in `commands/`", note);
+        let note = text!(
+            "`commands/` 中每个文件定义一组接口",
+            "each file in `commands/` defines a group of operations"
+        );
+        missing(
+            text!(
+                "规范的 `commands/` 中没有文件",
+                "the spec has no file in `commands/`"
+            ),
+            note,
+        );
     }
     faults.errors() == before
 }
@@ -191,10 +226,12 @@ fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faul
     let span = Span::point(home.root().span().file, 0);
     for name in grammar::ONCE {
         if !sections.iter().any(|section| section.name == name) {
-            let message = format!("the spec has no `{name}`");
+            let message = text!("规范中没有 `{name}`", "the spec has no `{name}`");
             faults.push(
-                Diagnostic::error(FaultCode::SectionMissing, span, message)
-                    .note(format!("define `{name}` in `{PROTOCOL}`")),
+                Diagnostic::error(FaultCode::SectionMissing, span, message).note(text!(
+                    "在 `{PROTOCOL}` 中定义 `{name}`",
+                    "define `{name}` in `{PROTOCOL}`"
+                )),
             );
         }
     }

@@ -5,9 +5,10 @@ use super::edit::{Word, Writing};
 use super::govern::{Found, Governed, governed};
 use crate::diagnostic::{Faults, nearest};
 use crate::model::{
-    AnswerKind, BodyState, Confirmation, Fact, Location, Operation, Question, Subject,
+    AnswerKind, BodyState, Confirmation, Fact, Location, Operation, Question, Subject, Text,
 };
 use crate::syntax::{Sources, quoted};
+use crate::text;
 use crate::vocabulary::Word as _;
 use std::fmt;
 
@@ -88,42 +89,57 @@ pub enum SettleError {
     },
 }
 
-impl fmt::Display for SettleError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl SettleError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
         match self {
-            Self::Unknown { id, nearest } => {
-                write!(f, "there is no question {id}")?;
-                match nearest {
-                    Some(nearest) => write!(f, "; did you mean {nearest}?"),
-                    None => write!(f, "; `fc questions --state all --decisions` lists them"),
-                }
-            }
-            Self::Several { id, questions } => {
-                write!(f, "{id} is several questions: {}", questions.join(", "))
-            }
-            Self::Settled { id, by, date } => {
-                write!(f, "{id} has been settled by {by} on {date}")
-            }
-            Self::NotAbout { id, path, about } if about.is_empty() => write!(
-                f,
+            Self::Unknown {
+                id,
+                nearest: Some(nearest),
+            } => text!(
+                "没有问题 {id}；是否想写 {nearest}？",
+                "there is no question {id}; did you mean {nearest}?"
+            ),
+            Self::Unknown { id, nearest: None } => text!(
+                "没有问题 {id}；`fc questions --state all --decisions` 列出全部问题",
+                "there is no question {id}; `fc questions --state all --decisions` lists them"
+            ),
+            Self::Several { id, questions } => text!(
+                "{id} 是几个问题：{questions}",
+                "{id} is several questions: {questions}",
+                questions = Text::listed(questions)
+            ),
+            Self::Settled { id, by, date } => text!(
+                "{id} 已由 {by} 于 {date} 答复",
+                "{id} has been settled by {by} on {date}"
+            ),
+            Self::NotAbout { id, path, about } if about.is_empty() => text!(
+                "{id} 不涉及任何内容，没有 `{path}` 可写：用 `--confirm` 确认，再手工修改规范",
                 "{id} governs no fact, so there is no `{path}` to write: confirm it with `--confirm` and change the spec by hand"
             ),
-            Self::NotAbout { id, path, about } => write!(
-                f,
-                "{id} is not about `{path}`, but about {}",
-                about.join(", ")
+            Self::NotAbout { id, path, about } => text!(
+                "{id} 针对的不是 `{path}`，而是 {about}",
+                "{id} is not about `{path}`, but about {about}",
+                about = Text::listed(about)
             ),
-            Self::Layout { id, path, line } => write!(
-                f,
+            Self::Layout { id, path, line } => text!(
+                "{id} 针对的内容在 {path}:{line} 写在大括号或方括号中：改成每个键一行，再试一次",
                 "{id} is about what stands between braces or brackets at {path}:{line}: write it with a line for each key, and try again"
             ),
-            Self::Missing { id, paths } => write!(
-                f,
-                "{id} asks for {}: say it with `--set {}=VALUE`",
-                paths.join(", "),
-                paths.first().map_or("", String::as_str)
+            Self::Missing { id, paths } => text!(
+                "{id} 需要写明 {paths}：用 `--set {first}=VALUE`",
+                "{id} asks for {paths}: say it with `--set {first}=VALUE`",
+                paths = Text::listed(paths),
+                first = paths.first().map_or("", String::as_str)
             ),
         }
+    }
+}
+
+impl fmt::Display for SettleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().en)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::grammar::TEXT;
 use crate::syntax::{Node, Style, quoted};
+use crate::text;
 
 /// How the Chinese texts of an operation begin that has only been begun.
 pub(crate) const TO_BE_WRITTEN_ZH: &str = "（待写";
@@ -31,12 +32,15 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
             .is_some_and(|text| text.starts_with(beginning))
     });
     if let Some((first, _)) = to_be_written.next() {
-        let message = "this text is still to be written";
+        let message = text!("这段文本尚未写好", "this text is still to be written");
         let fault = Diagnostic::warning(FaultCode::Placeholder, first.span(), message);
         let fault = to_be_written.fold(fault, |fault, (node, _)| {
-            fault.also(node.span(), "and this one")
+            fault.also(node.span(), text!("还有这段", "and this one"))
         });
-        faults.push(fault.note("the documentation shows it as it is"));
+        faults.push(fault.note(text!(
+            "文档会原样显示它",
+            "the documentation shows it as it is"
+        )));
         return;
     }
     if zh_text == en_text {
@@ -44,15 +48,18 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::SameText,
                 en.span(),
-                "the English text is the same as the Chinese one",
+                text!(
+                    "英文与中文相同",
+                    "the English text is the same as the Chinese one"
+                ),
             )
-            .also(zh.span(), "the same text"),
+            .also(zh.span(), text!("相同的文本", "the same text")),
         );
     } else if has_chinese(en_text) && !has_latin(en_text) {
-        let message = "the English text is not English";
+        let message = text!("英文中没有英文", "the English text is not English");
         faults.push(Diagnostic::error(FaultCode::NotEnglish, en.span(), message));
     } else if !has_chinese(zh_text) && has_latin(zh_text) {
-        let message = "the Chinese text contains no Chinese";
+        let message = text!("中文中没有汉字", "the Chinese text contains no Chinese");
         faults.push(Diagnostic::warning(
             FaultCode::NotChinese,
             zh.span(),
@@ -71,7 +78,7 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
         Style::Plain | Style::Quoted => scalar.text,
     };
     if text.trim().is_empty() {
-        let message = "the text is empty";
+        let message = text!("文本为空", "the text is empty");
         faults.push(Diagnostic::error(
             FaultCode::EmptyText,
             node.span(),
@@ -83,11 +90,18 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
         let fault = Diagnostic::error(
             FaultCode::TextSpacing,
             node.span(),
-            "the text starts or ends with white space",
+            text!(
+                "文本的开头或结尾有空白",
+                "the text starts or ends with white space"
+            ),
         );
         let is_simple = scalar.style == Style::Quoted && !text.contains('\n');
         faults.push(if is_simple {
-            fault.fix(node.span(), quoted(text.trim()), "remove it")
+            fault.fix(
+                node.span(),
+                quoted(text.trim()),
+                text!("去掉它", "remove it"),
+            )
         } else {
             fault
         });

@@ -8,6 +8,7 @@ use super::{
     ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape,
     Types, Unlinked, Waiver,
 };
+use crate::text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashSet};
@@ -86,19 +87,33 @@ pub enum DumpError {
     Name(Unlinked),
 }
 
+impl DumpError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        match self {
+            Self::Shape(error) => text!(
+                "不是 `fc inspect` 的输出：{error}",
+                "not a dump of `fc inspect`: {error}"
+            ),
+            Self::Format(found) => {
+                let format = Dump::FORMAT;
+                text!(
+                    "输出的格式是 {found}；这个版本读取的格式是 {format}",
+                    "a dump of format {found}; this version reads format {format}"
+                )
+            }
+            Self::Name(Unlinked { missing, user }) => text!(
+                "{user} 用到了 {missing}，而输出中没有它",
+                "{user} names {missing}, which is not in the dump"
+            ),
+        }
+    }
+}
+
 impl std::fmt::Display for DumpError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Shape(error) => write!(f, "not a dump of `fc inspect`: {error}"),
-            Self::Format(found) => write!(
-                f,
-                "a dump of format {found}; this version reads format {}",
-                Dump::FORMAT
-            ),
-            Self::Name(Unlinked { missing, user }) => {
-                write!(f, "{user} names {missing}, which is not in the dump")
-            }
-        }
+        f.write_str(&self.text().en)
     }
 }
 

@@ -1,18 +1,139 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
-use super::{Confirmation, Governed};
+use super::{Confirmation, Governed, HeaderType, Type, Value};
 use crate::vocabulary::AnswerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A sentence in both languages.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+/// A language in which everything is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lang {
+    /// Chinese.
+    Zh,
+    /// English.
+    En,
+}
+
+impl Lang {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Zh, Self::En];
+
+    /// One of two things, by language.
+    pub fn pick<T>(self, zh: T, en: T) -> T {
+        match self {
+            Self::Zh => zh,
+            Self::En => en,
+        }
+    }
+
+    /// The sentence in this language.
+    #[must_use]
+    pub fn text(self, text: &Text) -> &str {
+        self.pick(&text.zh, &text.en)
+    }
+
+    /// The other words for a thing in this language.
+    #[must_use]
+    pub fn aliases(self, aliases: &Aliases) -> Vec<String> {
+        self.pick(&aliases.zh, &aliases.en).clone()
+    }
+}
+
+/// A sentence in both languages. [`text!`](crate::text) writes one.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Text {
     /// Chinese.
     pub zh: String,
     /// English.
     pub en: String,
 }
+
+/// A [`Text`] of two formats, the Chinese one first: `text!("没有 `{name}`", "there is no `{name}`")`. A part
+/// that is a text itself goes into each in its language: `text!("应为{kind}", "expected {kind}", kind = describe(kind))`.
+#[macro_export]
+macro_rules! text {
+    ($zh:literal, $en:literal $(,)?) => {
+        $crate::model::Text {
+            zh: ::std::fmt::format(::std::format_args!($zh)),
+            en: ::std::fmt::format(::std::format_args!($en)),
+        }
+    };
+    ($zh:literal, $en:literal, $($name:ident = $part:expr),+ $(,)?) => {
+        match ($(&$part,)+) {
+            ($($name,)+) => $crate::model::Text {
+                zh: {
+                    $(let $name = $crate::model::Part::part($name, $crate::model::Lang::Zh);)+
+                    $(let _ = &$name;)+
+                    ::std::fmt::format(::std::format_args!($zh))
+                },
+                en: {
+                    $(let $name = $crate::model::Part::part($name, $crate::model::Lang::En);)+
+                    $(let _ = &$name;)+
+                    ::std::fmt::format(::std::format_args!($en))
+                },
+            },
+        }
+    };
+}
+
+impl Text {
+    /// Several as one, with what stands between two of them in each language.
+    #[must_use]
+    pub fn joined(parts: impl IntoIterator<Item = Self>, zh: &str, en: &str) -> Self {
+        let (in_zh, in_en): (Vec<_>, Vec<_>) =
+            parts.into_iter().map(|part| (part.zh, part.en)).unzip();
+        Self {
+            zh: in_zh.join(zh),
+            en: in_en.join(en),
+        }
+    }
+
+    /// Words that are the same in both languages, as a sentence lists them.
+    #[must_use]
+    pub fn listed(words: impl IntoIterator<Item = impl std::fmt::Display>) -> Self {
+        let words = words.into_iter();
+        Self::joined(words.map(|word| text!("{word}", "{word}")), "、", ", ")
+    }
+
+    /// Whether nothing is said.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.zh.is_empty() && self.en.is_empty()
+    }
+}
+
+/// What [`text!`](crate::text) puts into a text.
+pub trait Part {
+    /// What stands for it in a text of this language.
+    fn part(&self, lang: Lang) -> impl std::fmt::Display + '_;
+}
+
+impl Part for Text {
+    fn part(&self, lang: Lang) -> impl std::fmt::Display + '_ {
+        lang.text(self)
+    }
+}
+
+impl<T: Part + ?Sized> Part for &T {
+    fn part(&self, lang: Lang) -> impl std::fmt::Display + '_ {
+        (**self).part(lang)
+    }
+}
+
+/// The same in both languages: names and numbers.
+macro_rules! same_in_both {
+    ($($Type:ty),+) => {
+        $(impl Part for $Type {
+            fn part(&self, _: Lang) -> impl std::fmt::Display + '_ {
+                self
+            }
+        })+
+    };
+}
+
+same_in_both!(
+    str, String, i64, i128, u8, u16, u32, u64, usize, Type, HeaderType, Value
+);
 
 /// Other words for a thing: `{ zh: […], en: […] }`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -3,6 +3,7 @@
 use super::quote::quoted;
 use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
+use crate::text;
 use std::ops::Range;
 
 /// The comments about what begins at byte `at` of a text, of all its `comments`: on its line and on those right
@@ -65,9 +66,22 @@ pub(super) fn cut(
     Diagnostic::error(
         FaultCode::TextCut,
         span,
-        "a `#` after a space cuts the text off",
+        text!(
+            "空格后面的 `#` 把文本截断了",
+            "a `#` after a space cuts the text off"
+        ),
     )
-    .label("the rest of the line is a comment")
-    .note("write a comment on its own line")
-    .fix(whole, wanted, "quote the text if the `#` is part of it")
+    .label(text!(
+        "这一行的其余部分成了注释",
+        "the rest of the line is a comment"
+    ))
+    .note(text!("注释请另起一行", "write a comment on its own line"))
+    .fix(
+        whole,
+        wanted,
+        text!(
+            "如果 `#` 是文本的一部分，给文本加上引号",
+            "quote the text if the `#` is part of it"
+        ),
+    )
 }

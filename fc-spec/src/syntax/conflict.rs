@@ -2,6 +2,7 @@
 
 use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::text;
 
 /// The lines that begin, divide and end a conflict.
 const MARKERS: [&str; 4] = ["<<<<<<<", "|||||||", "=======", ">>>>>>>"];
@@ -32,15 +33,21 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) -> bool {
         let Some((span, marker)) = places.next() else {
             continue;
         };
-        let message = format!("`{marker}` is a marker of an unresolved merge conflict");
+        let message = text!(
+            "`{marker}` 是未解决的合并冲突的标记",
+            "`{marker}` is a marker of an unresolved merge conflict"
+        );
         let fault = Diagnostic::error(FaultCode::ConflictMarker, *span, message)
-            .label("the conflict starts here")
-            .note("keep the lines of one side, or the right parts of both, and delete the markers");
+            .label(text!("冲突从这里开始", "the conflict starts here"))
+            .note(text!(
+                "保留其中一方的内容，或合并两方正确的部分，并删除标记",
+                "keep the lines of one side, or the right parts of both, and delete the markers"
+            ));
         faults.push(places.fold(fault, |fault, (span, marker)| {
             let side = match *marker {
-                "=======" => "the other side starts here",
-                ">>>>>>>" => "it ends here",
-                _ => "the common ancestor starts here",
+                "=======" => text!("另一方从这里开始", "the other side starts here"),
+                ">>>>>>>" => text!("冲突到这里结束", "it ends here"),
+                _ => text!("共同祖先从这里开始", "the common ancestor starts here"),
             };
             fault.also(*span, side)
         }));

@@ -2,6 +2,8 @@
 
 use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::model::Text;
+use crate::text;
 
 /// Faults every character that a reader of the file cannot see but that changes what it says:
 /// control characters, line ends that editors disagree about, and marks that turn the direction of text.
@@ -19,8 +21,11 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
             let code_point = u32::from(character);
             faults.push(
                 Diagnostic::error(FaultCode::ControlCharacter, span, name)
-                    .label(format!("U+{code_point:04X} here"))
-                    .fix(span, "", "delete it"),
+                    .label(text!(
+                        "这里是 U+{code_point:04X}",
+                        "U+{code_point:04X} here"
+                    ))
+                    .fix(span, "", text!("删除它", "delete it")),
             );
         }
     }
@@ -51,19 +56,28 @@ pub(super) fn faulted(text: &str, at: usize) -> bool {
         || here.is_some_and(|here| name(here, next).is_some())
 }
 
-fn name(character: char, next: Option<char>) -> Option<&'static str> {
+fn name(character: char, next: Option<char>) -> Option<Text> {
     match character {
         '\t' | '\n' => None,
         '\r' if next == Some('\n') => None,
-        '\r' => Some("a carriage return inside a line"),
-        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' => Some("a control character"),
-        '\u{2028}' | '\u{2029}' => Some("a Unicode line separator"),
+        '\r' => Some(text!("一行之中的回车符", "a carriage return inside a line")),
+        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' => Some(text!("控制字符", "a control character")),
+        '\u{2028}' | '\u{2029}' => Some(text!("Unicode 行分隔符", "a Unicode line separator")),
         '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}' => {
-            Some("a mark that changes the direction of text")
+            Some(text!(
+                "改变文字方向的标记",
+                "a mark that changes the direction of text"
+            ))
         }
-        '\u{200b}' | '\u{2060}' => Some("a zero-width space"),
-        '\u{fffe}' | '\u{ffff}' => Some("a code point that is not a character"),
-        '\u{feff}' => Some("a byte order mark that is not at the start of the file"),
+        '\u{200b}' | '\u{2060}' => Some(text!("零宽空格", "a zero-width space")),
+        '\u{fffe}' | '\u{ffff}' => Some(text!(
+            "不是字符的码位",
+            "a code point that is not a character"
+        )),
+        '\u{feff}' => Some(text!(
+            "不在文件开头的字节序标记",
+            "a byte order mark that is not at the start of the file"
+        )),
         _ => None,
     }
 }

@@ -1,5 +1,7 @@
 //! Which files a spec consists of.
 
+use crate::model::Text;
+use crate::text;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,7 +25,7 @@ pub(super) enum Found {
     /// A file of the spec.
     Spec(PathBuf),
     /// A file, or a directory of files, that someone may take for one; what to do about it.
-    Stray(String),
+    Stray(Text),
     /// A directory that is named like one.
     Directory,
     /// What cannot be looked at.
@@ -107,7 +109,9 @@ impl Directory {
         let (stem, extension) = name.rsplit_once('.')?;
         let found = match extension {
             "yaml" => Found::Spec(self.disk.join(name)),
-            _ if is_yaml(name) => Found::Stray(format!("name it `{stem}.yaml`")),
+            _ if is_yaml(name) => {
+                Found::Stray(text!("改名为 `{stem}.yaml`", "name it `{stem}.yaml`"))
+            }
             _ => return None,
         };
         Some(Item {
@@ -124,9 +128,12 @@ impl Directory {
         });
         let name = self.path.rsplit('/').next().unwrap_or_default();
         let advice = match nearest(name, [GROUPS]) {
-            Some(near) => format!("name it `{near}`"),
+            Some(near) => text!("改名为 `{near}`", "name it `{near}`"),
             None => {
-                format!("move its YAML files into the spec directory or into `{GROUPS}` below it")
+                text!(
+                    "把其中的 YAML 文件移到规范目录，或移到规范目录下的 `{GROUPS}`",
+                    "move its YAML files into the spec directory or into `{GROUPS}` below it"
+                )
             }
         };
         if files > 0 {

@@ -3,6 +3,8 @@
 use super::span::{FileId, Span};
 use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
+use crate::model::Text;
+use crate::text;
 use std::fmt;
 use std::ops::Range;
 
@@ -456,16 +458,16 @@ impl<'t> Node<'t> {
 
     /// What it is, for "expected a list, found {}".
     #[must_use]
-    pub fn describe(self) -> &'static str {
+    pub fn describe(self) -> Text {
         match self.kind() {
-            NodeKind::Null => "nothing",
+            NodeKind::Null => text!("空值", "nothing"),
             NodeKind::Scalar(scalar) => match scalar.style {
-                Style::Plain => "a plain value",
-                Style::Quoted => "a quoted text",
-                Style::Block => "a block text",
+                Style::Plain => text!("不加引号的值", "a plain value"),
+                Style::Quoted => text!("加引号的文本", "a quoted text"),
+                Style::Block => text!("多行文本", "a block text"),
             },
-            NodeKind::Sequence(_) => "a list",
-            NodeKind::Mapping(_) => "a mapping",
+            NodeKind::Sequence(_) => text!("列表", "a list"),
+            NodeKind::Mapping(_) => text!("映射", "a mapping"),
         }
     }
 }
@@ -473,7 +475,7 @@ impl<'t> Node<'t> {
 /// What it is and where, without all that is in it.
 impl fmt::Debug for Node<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} at {:?}", self.describe(), self.span())
+        write!(f, "{} at {:?}", self.describe().en, self.span())
     }
 }
 

@@ -5,6 +5,7 @@ use super::span::{FileId, Span};
 use super::tree::{Builder, Outcome};
 use super::{conflict, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::text;
 
 /// Errors of the YAML itself that are reported for one file; behind so many there is only noise.
 const ERRORS: usize = 20;
@@ -18,7 +19,11 @@ const ERRORS: usize = 20;
 /// the faults behind it show up in the same run.
 pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tree<'s>> {
     if text.len() > limits::FILE_BYTES {
-        let message = format!("the text is longer than {} MiB", limits::FILE_BYTES >> 20);
+        let message = text!(
+            "文本超过 {limit} MiB",
+            "the text is longer than {limit} MiB",
+            limit = limits::FILE_BYTES >> 20
+        );
         faults.push(Diagnostic::error(
             FaultCode::TooLarge,
             Span::point(file, 0),
@@ -34,10 +39,10 @@ pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tre
     let mut builder = Builder::new(file, text, 0..text.len());
     match builder.run(faults) {
         Outcome::Tree(tree) => tree.or_else(|| {
-            let message = "the file is empty";
+            let message = text!("文件为空", "the file is empty");
             faults.push(
                 Diagnostic::error(FaultCode::EmptyFile, Span::point(file, 0), message)
-                    .note("add content or delete it"),
+                    .note(text!("写入内容，或删除文件", "add content or delete it")),
             );
             None
         }),

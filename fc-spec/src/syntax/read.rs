@@ -1,5 +1,6 @@
 //! From the disk to [`Sources`].
 
+use crate::text;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -9,6 +10,7 @@ use super::limits;
 use super::source::{SourceFile, Sources};
 use super::span::Span;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::model::Text;
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.
 ///
@@ -25,19 +27,32 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
     for (index, item) in find(root, spec).into_iter().enumerate() {
         let path = item.path;
         if index == limits::FILES {
-            let message = format!("the spec has more than {} files", limits::FILES);
+            let message = text!(
+                "规范的文件超过 {limit} 个",
+                "the spec has more than {limit} files",
+                limit = limits::FILES
+            );
             reader.refuse(FaultCode::TooLarge, path, message, None);
             break;
         }
         match item.found {
             Found::Spec(disk) => reader.read(path, &disk),
             Found::Stray(advice) => {
-                let message = format!("`{path}` is not read as part of the spec");
-                reader.refuse(FaultCode::StrayFile, path, message, Some(&advice));
+                let message = text!(
+                    "`{path}` 不会作为规范的一部分读取",
+                    "`{path}` is not read as part of the spec"
+                );
+                reader.refuse(FaultCode::StrayFile, path, message, Some(advice));
             }
             Found::Directory => {
-                let message = format!("`{path}` is a directory, not a file");
-                let advice = "move the file out of it and delete the directory";
+                let message = text!(
+                    "`{path}` 是目录，不是文件",
+                    "`{path}` is a directory, not a file"
+                );
+                let advice = text!(
+                    "把文件移出来，再删除目录",
+                    "move the file out of it and delete the directory"
+                );
                 reader.refuse(FaultCode::StrayFile, path, message, Some(advice));
             }
             Found::Error(error) => reader.unreadable(path, &error),
@@ -60,7 +75,11 @@ pub fn read_files<'p>(
     };
     for (index, (path, disk)) in files.into_iter().enumerate() {
         if index == limits::FILES {
-            let message = format!("there are more than {} files", limits::FILES);
+            let message = text!(
+                "文件超过 {limit} 个",
+                "there are more than {limit} files",
+                limit = limits::FILES
+            );
             reader.refuse(FaultCode::TooLarge, path, message, None);
             break;
         }
@@ -77,7 +96,11 @@ pub fn read_bytes(path: String, bytes: Vec<u8>, faults: &mut Faults) -> Sources 
         bytes: limits::SPEC_BYTES,
     };
     if bytes.len() > limits::FILE_BYTES {
-        let message = format!("`{path}` is larger than {} MiB", limits::FILE_BYTES >> 20);
+        let message = text!(
+            "`{path}` 超过 {limit} MiB",
+            "`{path}` is larger than {limit} MiB",
+            limit = limits::FILE_BYTES >> 20
+        );
         reader.refuse(FaultCode::TooLarge, path, message, None);
     } else {
         reader.decode(path, bytes);
@@ -97,8 +120,15 @@ impl Reader<'_> {
         match read_at_most(disk, limits::FILE_BYTES) {
             Err(error) => self.unreadable(path, &error),
             Ok(None) => {
-                let message = format!("`{path}` is larger than {} MiB", limits::FILE_BYTES >> 20);
-                let advice = "split it: one file per command group";
+                let message = text!(
+                    "`{path}` 超过 {limit} MiB",
+                    "`{path}` is larger than {limit} MiB",
+                    limit = limits::FILE_BYTES >> 20
+                );
+                let advice = text!(
+                    "拆分它：每组接口一个文件",
+                    "split it: one file per command group"
+                );
                 self.refuse(FaultCode::TooLarge, path, message, Some(advice));
             }
             Ok(Some(bytes)) => {
@@ -107,7 +137,10 @@ impl Reader<'_> {
                     return self.decode(path, bytes);
                 }
                 let limit = limits::SPEC_BYTES >> 20;
-                let message = format!("the files up to `{path}` exceed {limit} MiB in total");
+                let message = text!(
+                    "到 `{path}` 为止，文件总共超过 {limit} MiB",
+                    "the files up to `{path}` exceed {limit} MiB in total"
+                );
                 self.refuse(FaultCode::TooLarge, path, message, None);
             }
         }
@@ -129,30 +162,39 @@ impl Reader<'_> {
         let wrong = bytes.get(at).copied().unwrap_or_default();
         let utf16 = bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]);
         let note = if utf16 {
-            "it looks like UTF-16; save it as UTF-8"
+            text!(
+                "看起来是 UTF-16；请保存为 UTF-8",
+                "it looks like UTF-16; save it as UTF-8"
+            )
         } else {
-            "save it as UTF-8"
+            text!("请保存为 UTF-8", "save it as UTF-8")
         };
-        let message = format!("`{path}` is not UTF-8");
+        let message = text!("`{path}` 不是 UTF-8", "`{path}` is not UTF-8");
         let text = String::from_utf8_lossy(bytes.get(..at).unwrap_or_default()).into_owned();
         let file = self.sources.push(SourceFile::partial(path, text));
         self.faults.push(
             Diagnostic::error(FaultCode::NotUtf8, Span::point(file, at), message)
-                .label(format!("the byte {wrong:#04X} here"))
+                .label(text!(
+                    "这里是字节 {wrong:#04X}",
+                    "the byte {wrong:#04X} here"
+                ))
                 .note(note),
         );
     }
 
     fn unreadable(&mut self, path: String, error: &io::Error) {
-        let message = format!("cannot read `{path}`: {error}");
+        let message = text!(
+            "无法读取 `{path}`：{error}",
+            "cannot read `{path}`: {error}"
+        );
         self.refuse(FaultCode::Unreadable, path, message, None);
     }
 
     /// A fault of a file as a whole; the file stands in the sources without text.
-    fn refuse(&mut self, code: FaultCode, path: String, message: String, advice: Option<&str>) {
+    fn refuse(&mut self, code: FaultCode, path: String, message: Text, advice: Option<Text>) {
         let file = self.sources.push(SourceFile::partial(path, ""));
         let mut fault = Diagnostic::error(code, Span::point(file, 0), message);
-        fault.notes.extend(advice.map(str::to_owned));
+        fault.notes.extend(advice);
         self.faults.push(fault);
     }
 }

@@ -1,5 +1,7 @@
 //! The parser's errors in this project's words.
 
+use crate::model::Text;
+use crate::text;
 use granit_parser::ErrorKind;
 
 use super::span::{FileId, Span};
@@ -69,17 +71,24 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             Diagnostic::error(
                 FaultCode::Unclosed,
                 place.here(),
-                format!("the `{open}` is never closed"),
+                text!("`{open}` 没有闭合", "the `{open}` is never closed"),
             )
-            .label("opened here")
-            .note(format!("write `{close}` where it ends"))
+            .label(text!("从这里开始", "opened here"))
+            .note(text!(
+                "在结束的地方写 `{close}`",
+                "write `{close}` where it ends"
+            ))
         }
         K::MismatchedFlowCollectionEnd { open, close } => {
-            let message = format!("the `{open}` is closed by a `{close}`");
+            let message = text!(
+                "`{open}` 的闭合写成了 `{close}`",
+                "the `{open}` is closed by a `{close}`"
+            );
             let close_right = if *open == '[' { ']' } else { '}' };
             let fault = Diagnostic::error(FaultCode::Unclosed, place.here(), message)
-                .label("opened here")
-                .note(format!(
+                .label(text!("从这里开始", "opened here"))
+                .note(text!(
+                    "改写为 `{close_right}`，或补上左括号",
                     "write `{close_right}` instead, or add the opening bracket"
                 ));
             match place
@@ -87,7 +96,10 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
                 .get(place.understood..)
                 .and_then(|rest| rest.find(*close))
             {
-                Some(at) => fault.also(place.character(place.understood + at), "closed here"),
+                Some(at) => fault.also(
+                    place.character(place.understood + at),
+                    text!("在这里闭合", "closed here"),
+                ),
                 None => fault,
             }
         }
@@ -99,23 +111,40 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
         | K::UnexpectedEofImplicitFlowMapping => in_bracket(place),
         K::UnexpectedCharacter { character } => {
             let character = match character {
-                '`' => "a backtick".to_owned(),
-                other => format!("`{}`", other.escape_default()),
+                '`' => text!("反引号", "a backtick"),
+                other => {
+                    let other = other.escape_default();
+                    text!("`{other}`", "`{other}`")
+                }
             };
             Diagnostic::error(
                 FaultCode::BadYaml,
                 place.here(),
-                format!("a text cannot start with {character}"),
+                text!(
+                    "文本的开头不能是：{character}",
+                    "a text cannot start with {character}",
+                    character = character
+                ),
             )
-            .note("put the text in quotes")
+            .note(text!("给文本加上引号", "put the text in quotes"))
         }
         K::DirectiveDisallowed => {
             let line = place.text.get(place.at..).unwrap_or_default();
             let line = line.lines().next().unwrap_or_default().trim_end();
             let span = Span::new(place.file, place.at, place.at + line.len());
-            Diagnostic::error(FaultCode::Directive, span, "a YAML directive")
-                .label("directives are not used in the spec")
-                .note("delete the line and the `---` below it")
+            Diagnostic::error(
+                FaultCode::Directive,
+                span,
+                text!("YAML 指示", "a YAML directive"),
+            )
+            .label(text!(
+                "规范中不用指示",
+                "directives are not used in the spec"
+            ))
+            .note(text!(
+                "删除这一行和下面的 `---`",
+                "delete the line and the `---` below it"
+            ))
         }
         _ => match words(kind) {
             Some((code, message, label, note)) => Diagnostic::error(code, place.here(), message)
@@ -124,21 +153,27 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             None => Diagnostic::error(
                 FaultCode::BadYaml,
                 place.here(),
-                format!("not YAML: {kind}"),
+                text!("不是 YAML：{kind}", "not YAML: {kind}"),
             ),
         },
     }
 }
 
 /// Code, message, label and note of the errors that need nothing but their place.
-fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'static str)> {
+fn words(kind: &ErrorKind) -> Option<(FaultCode, Text, Text, Text)> {
     use ErrorKind as K;
     Some(match kind {
         K::MisplacedFlowCollectionEnd => (
             FaultCode::BadYaml,
-            "a closing bracket without an opening one",
-            "does not match an opening bracket",
-            "delete it, or put the text in quotes",
+            text!(
+                "没有左括号的右括号",
+                "a closing bracket without an opening one"
+            ),
+            text!("没有对应的左括号", "does not match an opening bracket"),
+            text!(
+                "删除它，或给文本加上引号",
+                "delete it, or put the text in quotes"
+            ),
         ),
         K::UnknownQuotedScalarEscape
         | K::InvalidQuotedScalarHexEscape
@@ -148,9 +183,12 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::UnpairedLowSurrogate
         | K::InvalidUnicodeEscape => (
             FaultCode::BadEscape,
-            "an unknown escape",
-            "in the text that starts here",
-            "write `\\\\` for a backslash in \"…\", or use '…', in which a backslash is a backslash",
+            text!("未知的转义", "an unknown escape"),
+            text!("在从这里开始的文本中", "in the text that starts here"),
+            text!(
+                "在 \"…\" 中反斜杠写成 `\\\\`，或改用 '…'，其中反斜杠就是反斜杠",
+                "write `\\\\` for a backslash in \"…\", or use '…', in which a backslash is a backslash"
+            ),
         ),
         K::ExpectedBlockMappingKey
         | K::ExpectedBlockSequenceEntry
@@ -160,21 +198,33 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::UnexpectedEofBlockMapping
         | K::UnexpectedEofBlockSequence => (
             FaultCode::BadIndentation,
-            "the indentation of this line does not match any mapping or list it could belong to",
-            "starts here",
-            "indent it like the lines it belongs to: two spaces per level",
+            text!(
+                "这一行的缩进与它可能属于的映射或列表都对不上",
+                "the indentation of this line does not match any mapping or list it could belong to"
+            ),
+            text!("从这里开始", "starts here"),
+            text!(
+                "与同级的行对齐：每级两个空格",
+                "indent it like the lines it belongs to: two spaces per level"
+            ),
         ),
         K::BlockSequenceEntryNotAllowed | K::BlockEntryInFlowCollection => (
             FaultCode::BadYaml,
-            "a list item is not allowed here",
-            "this `-`",
-            "start each item on its own line below the key; in brackets, write items without `-`",
+            text!("这里不能写列表项", "a list item is not allowed here"),
+            text!("这个 `-`", "this `-`"),
+            text!(
+                "每项在键的下面另起一行；在方括号中不写 `-`",
+                "start each item on its own line below the key; in brackets, write items without `-`"
+            ),
         ),
         K::SimpleKeyExpected | K::InvalidSimpleKey => (
             FaultCode::BadYaml,
-            "expected a key followed by a colon",
-            "found this",
-            "write `key: value`, or `- value` with a space after the dash",
+            text!("应为键和冒号", "expected a key followed by a colon"),
+            text!("实际是这个", "found this"),
+            text!(
+                "写 `key: value`，或 `- value`，短横后面有空格",
+                "write `key: value`, or `- value` with a space after the dash"
+            ),
         ),
         K::ExpectedTagBang
         | K::InvalidGlobalTagCharacter
@@ -187,21 +237,30 @@ fn words(kind: &ErrorKind) -> Option<(FaultCode, &'static str, &'static str, &'s
         | K::InvalidTagUtf8
         | K::UndeclaredTagHandle => (
             FaultCode::Tag,
-            "an invalid tag",
-            "tags are not used in the spec",
-            "put the text in quotes if it starts with a `!`",
+            text!("无效的标签", "an invalid tag"),
+            text!("规范中不用标签", "tags are not used in the spec"),
+            text!(
+                "如果文本以 `!` 开头，给它加上引号",
+                "put the text in quotes if it starts with a `!`"
+            ),
         ),
         K::MissingAnchorOrAliasName => (
             FaultCode::BadYaml,
-            "a text cannot start with `&` or `*`",
-            "here",
-            "put the text in quotes",
+            text!(
+                "文本不能以 `&` 或 `*` 开头",
+                "a text cannot start with `&` or `*`"
+            ),
+            text!("在这里", "here"),
+            text!("给文本加上引号", "put the text in quotes"),
         ),
         K::CommentNotSeparated | K::CommentInterceptedScalar => (
             FaultCode::BadYaml,
-            "a comment is not allowed here",
-            "here",
-            "write a space before the `#`, or put the text in quotes if the `#` belongs to it",
+            text!("这里不能写注释", "a comment is not allowed here"),
+            text!("在这里", "here"),
+            text!(
+                "在 `#` 前面加空格；如果 `#` 是文本的一部分，给文本加上引号",
+                "write a space before the `#`, or put the text in quotes if the `#` belongs to it"
+            ),
         ),
         _ => return None,
     })
@@ -212,11 +271,20 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadYaml,
         place.here(),
-        "a colon is not allowed here",
+        text!("这里不能写冒号", "a colon is not allowed here"),
     )
-    .label("this colon would turn the text before it into a key")
-    .note("put the text in quotes if the colon belongs to it")
-    .note("if a new key was meant, check the indentation of its line");
+    .label(text!(
+        "这个冒号会把前面的文本变成键",
+        "this colon would turn the text before it into a key"
+    ))
+    .note(text!(
+        "如果冒号是文本的一部分，给文本加上引号",
+        "put the text in quotes if the colon belongs to it"
+    ))
+    .note(text!(
+        "如果想写一个新的键，检查这一行的缩进",
+        "if a new key was meant, check the indentation of its line"
+    ));
     let before = place.value.filter(|value| {
         let lines = place.text.get(value.start..value.end).unwrap_or_default();
         value.end <= place.at && lines.contains('\n')
@@ -224,7 +292,10 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     match before {
         Some(value) => fault.also(
             place.character(value.start),
-            "the line belongs to the value that starts here",
+            text!(
+                "这一行属于从这里开始的值",
+                "the line belongs to the value that starts here"
+            ),
         ),
         None => fault,
     }
@@ -232,37 +303,49 @@ fn colon(place: &Place<'_>) -> Diagnostic {
 
 /// A list or mapping in brackets that goes on with something else than `,` or its end.
 fn in_bracket(place: &Place<'_>) -> Diagnostic {
-    let note = "add the missing bracket, or put the text in quotes";
+    let note = text!(
+        "补上缺少的括号，或给文本加上引号",
+        "add the missing bracket, or put the text in quotes"
+    );
     let Some(bracket) = place.bracket else {
-        let message = "expected `,` or a closing bracket";
+        let message = text!("应为 `,` 或右括号", "expected `,` or a closing bracket");
         return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
-            .label("found this instead")
+            .label(text!("实际是这个", "found this instead"))
             .note(note);
     };
     let opened = place.character(bracket);
     let here = place.here();
     let between = place.text.get(opened.start..here.start).unwrap_or_default();
     let fault = if between.contains('\n') {
-        let message = "a bracket that is not closed";
+        let message = text!("没有闭合的括号", "a bracket that is not closed");
         Diagnostic::error(FaultCode::Unclosed, opened, message)
-            .label("opened here")
-            .also(here, "not closed before this point")
+            .label(text!("从这里开始", "opened here"))
+            .also(
+                here,
+                text!("到这里还没有闭合", "not closed before this point"),
+            )
     } else {
-        let message = "expected `,` or a closing bracket";
+        let message = text!("应为 `,` 或右括号", "expected `,` or a closing bracket");
         Diagnostic::error(FaultCode::Unclosed, here, message)
-            .label("found this instead")
-            .also(opened, "opened here")
+            .label(text!("实际是这个", "found this instead"))
+            .also(opened, text!("从这里开始", "opened here"))
     };
     fault.note(note)
 }
 
 fn behind_quote(place: &Place<'_>) -> Diagnostic {
-    let message = "text after a closing quote";
+    let message = text!("右引号后面还有文本", "text after a closing quote");
     let fault = Diagnostic::error(FaultCode::BadYaml, place.here(), message)
-        .label("not part of the quoted text")
-        .note("to write a quote inside quotes: `''` in '…', `\\\"` in \"…\"");
+        .label(text!("不在引号之内", "not part of the quoted text"))
+        .note(text!(
+            "引号中要写引号：'…' 中写 `''`，\"…\" 中写 `\\\"`",
+            "to write a quote inside quotes: `''` in '…', `\\\"` in \"…\""
+        ));
     match place.quote() {
-        Some(quote) => fault.also(quote, "the quoted text starts here"),
+        Some(quote) => fault.also(
+            quote,
+            text!("引号中的文本从这里开始", "the quoted text starts here"),
+        ),
         None => fault,
     }
 }
@@ -273,10 +356,16 @@ pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
     Diagnostic::error(
         FaultCode::TooDeep,
         place.here(),
-        format!("more than {limit} nested mappings and lists"),
+        text!(
+            "映射和列表嵌套超过 {limit} 层",
+            "more than {limit} nested mappings and lists"
+        ),
     )
-    .label("this one is too deep")
-    .note("define a type for the inner ones and refer to it")
+    .label(text!("这一层过深", "this one is too deep"))
+    .note(text!(
+        "为内层定义一个类型并引用它",
+        "define a type for the inner ones and refer to it"
+    ))
 }
 
 /// A tab that the parser stumbled over.
@@ -289,8 +378,9 @@ fn tab(place: &Place<'_>) -> Diagnostic {
         .chain(next)
         .find_map(|line| indenting_tab(place.file, place.text, line))
         .unwrap_or_else(|| {
-            let message = "a tab is not allowed here";
-            Diagnostic::error(FaultCode::Tab, place.here(), message).note("write spaces instead")
+            let message = text!("这里不能用制表符", "a tab is not allowed here");
+            Diagnostic::error(FaultCode::Tab, place.here(), message)
+                .note(text!("改用空格", "write spaces instead"))
         })
 }
 
@@ -301,26 +391,46 @@ pub(super) fn indenting_tab(file: FileId, text: &str, line: usize) -> Option<Dia
     let tabs = white.get(white.find('\t')?..)?;
     let span = Span::new(file, line + white.len() - tabs.len(), line + white.len());
     Some(
-        Diagnostic::error(FaultCode::Tab, span, "a tab used for indentation")
-            .label("starts with a tab")
-            .note("indent with spaces, two per level")
-            .fix(span, tabs.replace('\t', "  "), "write spaces instead"),
+        Diagnostic::error(
+            FaultCode::Tab,
+            span,
+            text!("用制表符缩进", "a tab used for indentation"),
+        )
+        .label(text!("以制表符开头", "starts with a tab"))
+        .note(text!(
+            "用空格缩进，每级两个",
+            "indent with spaces, two per level"
+        ))
+        .fix(
+            span,
+            tabs.replace('\t', "  "),
+            text!("改用空格", "write spaces instead"),
+        ),
     )
 }
 
 fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
-    let message = "a quoted text that is never closed";
-    let note = "write the closing quote, or indent the lines of the text deeper than its key";
+    let message = text!("引号没有闭合的文本", "a quoted text that is never closed");
+    let note = text!(
+        "补上右引号，或让文本各行的缩进比键更深",
+        "write the closing quote, or indent the lines of the text deeper than its key"
+    );
     let Some(quote) = place.quote() else {
         return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
-            .label("cannot continue here")
+            .label(text!("到这里无法继续", "cannot continue here"))
             .note(note);
     };
-    let fault = Diagnostic::error(FaultCode::Unclosed, quote, message).label("opened here");
+    let fault = Diagnostic::error(FaultCode::Unclosed, quote, message)
+        .label(text!("从这里开始", "opened here"));
     let rest = place.text.get(place.at..).unwrap_or_default();
     if rest.trim().is_empty() {
         fault.note(note)
     } else {
-        fault.also(place.here(), "cannot continue here").note(note)
+        fault
+            .also(
+                place.here(),
+                text!("到这里无法继续", "cannot continue here"),
+            )
+            .note(note)
     }
 }

@@ -3,6 +3,7 @@
 //! A line is looked through for what could be meant as YAML's own punctuation and is not. Whether it is to blame for
 //! a text that is no YAML is found out by fixing it: the parser must then get beyond the place where it gave up.
 
+use crate::text;
 use std::ops::Range;
 
 use super::comment;
@@ -126,28 +127,51 @@ fn fault(file: FileId, line: &str, offset: usize, slips: &[Slip]) -> Option<Diag
     let fault = if let Some(character) = character {
         let ascii = half_width(character).unwrap_or(character);
         let wanted = match ascii {
-            ' ' => "a space".to_owned(),
-            ascii => format!("`{ascii}`"),
+            ' ' => text!("空格", "a space"),
+            ascii => text!("半角的 `{ascii}`", "`{ascii}`"),
         };
-        let message = format!("{} where YAML needs {wanted}", describe(character));
+        let message = text!(
+            "YAML 在这里需要{wanted}，实际是{character}",
+            "{character} where YAML needs {wanted}",
+            character = describe(character),
+            wanted = wanted
+        );
         Diagnostic::error(FaultCode::FullWidth, place(&first.at), message)
-            .label("to YAML this is an ordinary character")
-            .fix(whole, replacement, "write it in half-width")
+            .label(text!(
+                "对 YAML 来说这只是普通字符",
+                "to YAML this is an ordinary character"
+            ))
+            .fix(
+                whole,
+                replacement,
+                text!("改为半角", "write it in half-width"),
+            )
     } else {
         let before = line.get(..first.at.start).unwrap_or_default();
         let mark = before.chars().next_back().unwrap_or(':');
         let mark_at = first.at.start.saturating_sub(mark.len_utf8());
-        let message = format!("a `{mark}` without a space after it");
+        let message = text!(
+            "`{mark}` 后面没有空格",
+            "a `{mark}` without a space after it"
+        );
         Diagnostic::error(
             FaultCode::MissingSpace,
             place(&(mark_at..first.at.start)),
             message,
         )
-        .label("part of the text around it")
-        .fix(whole, replacement, "write a space after it")
+        .label(text!("成了前后文本的一部分", "part of the text around it"))
+        .fix(
+            whole,
+            replacement,
+            text!("在后面加一个空格", "write a space after it"),
+        )
     };
     Some(if slips.len() > 1 {
-        fault.note(format!("{} places on this line", slips.len()))
+        fault.note(text!(
+            "这一行有 {places} 处",
+            "{places} places on this line",
+            places = slips.len()
+        ))
     } else {
         fault
     })

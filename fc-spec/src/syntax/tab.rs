@@ -3,6 +3,7 @@
 use super::node::{NodeKind, Style, Tree};
 use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::text;
 use std::ops::Range;
 
 /// Faults tabs that are neither quoted nor in a block text or comment, in the part of a file that a tree is of. Those
@@ -51,11 +52,18 @@ pub(super) fn check(
             continue;
         }
         let span = Span::new(file, at, at + length);
-        let fault = Diagnostic::error(FaultCode::Tab, span, "a tab that some YAML parsers reject");
+        let fault = Diagnostic::error(
+            FaultCode::Tab,
+            span,
+            text!(
+                "有的 YAML 解析器不接受的制表符",
+                "a tab that some YAML parsers reject"
+            ),
+        );
         faults.push(if ends_line && !behind.starts_with('#') {
-            fault.fix(span, "", "delete it")
+            fault.fix(span, "", text!("删除它", "delete it"))
         } else {
-            fault.fix(span, " ", "write a space instead")
+            fault.fix(span, " ", text!("改用空格", "write a space instead"))
         });
     }
 }

@@ -1,5 +1,6 @@
 //! Parser events to nodes. The only place that knows the parser's events.
 
+use crate::text;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -164,10 +165,13 @@ impl<'a> Builder<'a> {
                 Diagnostic::error(
                     FaultCode::Tag,
                     place,
-                    format!("the tag `{}`", tag.original()),
+                    text!("标签 `{tag}`", "the tag `{tag}`", tag = tag.original()),
                 )
-                .label("tags are not used in the spec")
-                .note("delete it, or put the text in quotes if it starts with a `!`"),
+                .label(text!("规范中不用标签", "tags are not used in the spec"))
+                .note(text!(
+                    "删除它；如果文本以 `!` 开头，给它加上引号",
+                    "delete it, or put the text in quotes if it starts with a `!`"
+                )),
             );
         }
         match event {
@@ -181,10 +185,23 @@ impl<'a> Builder<'a> {
             Event::Anchor(id, name) => {
                 self.anchors.insert(id, span);
                 faults.push(
-                    Diagnostic::error(FaultCode::Anchor, span, format!("the anchor `&{name}`"))
-                        .label("anchors and aliases are not used in the spec")
-                        .note("define a type, or write the value twice")
-                        .note("put the text in quotes if it starts with a `&`"),
+                    Diagnostic::error(
+                        FaultCode::Anchor,
+                        span,
+                        text!("锚点 `&{name}`", "the anchor `&{name}`"),
+                    )
+                    .label(text!(
+                        "规范中不用锚点和别名",
+                        "anchors and aliases are not used in the spec"
+                    ))
+                    .note(text!(
+                        "定义一个类型，或把值写两遍",
+                        "define a type, or write the value twice"
+                    ))
+                    .note(text!(
+                        "如果文本以 `&` 开头，给它加上引号",
+                        "put the text in quotes if it starts with a `&`"
+                    )),
                 );
                 Ok(())
             }
@@ -208,10 +225,14 @@ impl<'a> Builder<'a> {
         self.check_tabs(span, faults);
         if text.len() > limits::SCALAR_BYTES {
             let limit = limits::SCALAR_BYTES >> 20;
-            let message = format!("this text is longer than {limit} MiB");
+            let message = text!(
+                "这段文本超过 {limit} MiB",
+                "this text is longer than {limit} MiB"
+            );
             let start = Span::new(self.file, span.start, self.next_boundary(span.start));
             faults.push(
-                Diagnostic::error(FaultCode::ScalarTooLong, start, message).label("starts here"),
+                Diagnostic::error(FaultCode::ScalarTooLong, start, message)
+                    .label(text!("从这里开始", "starts here")),
             );
             self.faithful = false;
             return self.placeholder(span, faults);
@@ -244,12 +265,25 @@ impl<'a> Builder<'a> {
     fn alias(&mut self, span: Span, anchor: Option<Span>, faults: &mut Faults) -> Result<(), Stop> {
         self.alias = Some(span.start);
         let name = self.text.get(span.start..span.end).unwrap_or_default();
-        let mut fault = Diagnostic::error(FaultCode::Alias, span, format!("the alias `{name}`"))
-            .label("anchors and aliases are not used in the spec")
-            .note("write the value here, or define a type and refer to it in both places")
-            .note("put the text in quotes if it starts with a `*`");
+        let mut fault = Diagnostic::error(
+            FaultCode::Alias,
+            span,
+            text!("别名 `{name}`", "the alias `{name}`"),
+        )
+        .label(text!(
+            "规范中不用锚点和别名",
+            "anchors and aliases are not used in the spec"
+        ))
+        .note(text!(
+            "在这里写出值，或定义一个类型，在两处引用",
+            "write the value here, or define a type and refer to it in both places"
+        ))
+        .note(text!(
+            "如果文本以 `*` 开头，给它加上引号",
+            "put the text in quotes if it starts with a `*`"
+        ));
         if let Some(anchor) = anchor {
-            fault = fault.also(anchor, "refers to this value");
+            fault = fault.also(anchor, text!("指的是这个值", "refers to this value"));
         }
         faults.push(fault);
         self.faithful = false;
@@ -306,7 +340,10 @@ impl<'a> Builder<'a> {
         self.nodes += 1;
         if self.nodes > limits::NODES {
             let limit = limits::NODES;
-            let message = format!("the file contains more than {limit} values");
+            let message = text!(
+                "文件中的值超过 {limit} 个",
+                "the file contains more than {limit} values"
+            );
             faults.push(Diagnostic::error(
                 FaultCode::TooManyNodes,
                 node.span(),
@@ -340,23 +377,32 @@ impl<'a> Builder<'a> {
             Diagnostic::error(
                 FaultCode::SeveralDocuments,
                 second,
-                "a second document in one file",
+                text!("一个文件中有第二个文档", "a second document in one file"),
             )
-            .label("starts here")
-            .also(first, "the first one starts here")
-            .note("delete the `---`, or move the rest into its own file"),
+            .label(text!("从这里开始", "starts here"))
+            .also(
+                first,
+                text!("第一个从这里开始", "the first one starts here"),
+            )
+            .note(text!(
+                "删除 `---`，或把后面的内容移到单独的文件",
+                "delete the `---`, or move the rest into its own file"
+            )),
         );
     }
 
     /// In brackets some readers end a plain text at its `?`.
     fn check_question_mark(&self, text: &str, span: Span, faults: &mut Faults) {
         if text.contains('?') && self.open.last().is_some_and(|open| open.flow) {
-            let message = "some YAML parsers reject an unquoted `?` in brackets";
+            let message = text!(
+                "有的 YAML 解析器不接受括号中不加引号的 `?`",
+                "some YAML parsers reject an unquoted `?` in brackets"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::AmbiguousWord, span, message).fix(
                     span,
                     quoted(text),
-                    "quote it",
+                    text!("加上引号", "quote it"),
                 ),
             );
         }
@@ -438,24 +484,37 @@ fn check_key(key: Node<'_>, faults: &mut Faults) -> bool {
     match key.kind() {
         NodeKind::Scalar(_) if is_merge(key) => {
             faults.push(
-                Diagnostic::error(FaultCode::MergeKey, key.span(), "the merge key `<<`")
-                    .label("merge keys are not used in the spec")
-                    .note("write the keys out, or define a type and refer to it"),
+                Diagnostic::error(
+                    FaultCode::MergeKey,
+                    key.span(),
+                    text!("合并键 `<<`", "the merge key `<<`"),
+                )
+                .label(text!(
+                    "规范中不用合并键",
+                    "merge keys are not used in the spec"
+                ))
+                .note(text!(
+                    "逐个写出键，或定义一个类型并引用它",
+                    "write the keys out, or define a type and refer to it"
+                )),
             );
             false
         }
         NodeKind::Scalar(_) => true,
         other => {
             let found = match other {
-                NodeKind::Sequence(_) => "a list",
-                NodeKind::Mapping(_) => "a mapping",
-                _ => "empty or null",
+                NodeKind::Sequence(_) => text!("列表", "a list"),
+                NodeKind::Mapping(_) => text!("映射", "a mapping"),
+                _ => text!("空值", "empty or null"),
             };
-            let message = format!("a key that is {found}");
+            let message = text!("键不能是{found}", "a key that is {found}", found = found);
             faults.push(
                 Diagnostic::error(FaultCode::KeyNotScalar, key.span(), message)
-                    .label("a key must be a word")
-                    .note("put it in quotes if it is text, as in `\"null\"`"),
+                    .label(text!("键必须是一个词", "a key must be a word"))
+                    .note(text!(
+                        "如果是文本，加上引号，例如 `\"null\"`",
+                        "put it in quotes if it is text, as in `\"null\"`"
+                    )),
             );
             false
         }
@@ -487,11 +546,14 @@ fn repeated(entries: Entries<'_>, faults: &mut Faults) -> Vec<usize> {
             Diagnostic::error(
                 FaultCode::DuplicateKey,
                 key.span(),
-                format!("the key `{name}` occurs twice"),
+                text!("键 `{name}` 出现两次", "the key `{name}` occurs twice"),
             )
-            .label("again here")
-            .also(*first, "first here")
-            .note("delete one of them or rename it"),
+            .label(text!("又出现在这里", "again here"))
+            .also(*first, text!("第一次在这里", "first here"))
+            .note(text!(
+                "删除其中一个，或改名",
+                "delete one of them or rename it"
+            )),
         );
     }
     again.iter().map(|(key, _)| key.at()).collect()

@@ -1,5 +1,8 @@
 //! Characters that are easily taken for those of YAML.
 
+use crate::model::Text;
+use crate::text;
+
 /// The ASCII character that one of a Chinese keyboard or a word processor stands for.
 pub(crate) fn half_width(character: char) -> Option<char> {
     Some(match character {
@@ -27,12 +30,15 @@ pub(crate) fn half_width_text(text: &str) -> String {
 }
 
 /// A character and what it is, for a message.
-pub(crate) fn describe(character: char) -> String {
+pub(crate) fn describe(character: char) -> Text {
     match character {
-        '\u{3000}' => "a full-width space (U+3000)".to_owned(),
-        '\u{a0}' => "a no-break space (U+00A0)".to_owned(),
-        '“' | '”' | '„' | '‘' | '’' => format!("a typographic quote `{character}`"),
-        '–' | '—' | '−' => format!("a dash `{character}`"),
-        _ => format!("a full-width `{character}`"),
+        '\u{3000}' => text!("全角空格（U+3000）", "a full-width space (U+3000)"),
+        '\u{a0}' => text!("不换行空格（U+00A0）", "a no-break space (U+00A0)"),
+        '“' | '”' | '„' | '‘' | '’' => text!(
+            "排版引号 `{character}`",
+            "a typographic quote `{character}`"
+        ),
+        '–' | '—' | '−' => text!("破折号 `{character}`", "a dash `{character}`"),
+        _ => text!("全角字符 `{character}`", "a full-width `{character}`"),
     }
 }

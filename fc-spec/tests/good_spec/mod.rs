@@ -4,7 +4,7 @@
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
-use fc_spec::model::Model;
+use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::Sources;
 use std::fs;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub fn model() -> Model {
     assert!(
         faults.is_empty(),
         "{}",
-        render(&faults, &sources, Format::Text)
+        render(&faults, &sources, Format::Text, Lang::En)
     );
     model.expect("a spec without faults has a model")
 }

@@ -1,6 +1,6 @@
 //! For whom a thing is, on which machines and in which releases, in the words of a page.
 
-use super::lang::Lang;
+use fc_spec::model::Lang;
 use fc_spec::model::{Available, Declared, Model};
 use serde::Serialize;
 

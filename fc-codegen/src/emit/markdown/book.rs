@@ -1,12 +1,12 @@
 //! What the pages of both languages ask of the model, indexed once.
 
-use super::lang::Lang;
 use super::links::{Anchor, Page};
 use super::tabs::{Tabs, TabsOf};
 use super::terms::Terms;
 use super::words;
 use crate::sample::Samples;
 use fc_reflect::Reflector;
+use fc_spec::model::Lang;
 use fc_spec::model::{
     Answer, Direction, Field, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
 };

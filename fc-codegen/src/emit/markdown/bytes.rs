@@ -1,9 +1,9 @@
 //! Frames for human eyes: the ruler of the header, the dump and the table of a real frame.
 
-use super::lang::Lang;
 use super::words;
 use crate::emit::json::hex_digits;
 use fc_reflect::{Frame, HeaderContent, HeaderValue, Reflector};
+use fc_spec::model::Lang;
 use fc_spec::model::{Frame as Layout, HeaderRole, Kind};
 use serde::Serialize;
 use std::fmt::Write as _;

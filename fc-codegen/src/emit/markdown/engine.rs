@@ -5,8 +5,8 @@
 //! strictest place, and is not taken for a sentence of the spec. Printing nothing, a list or an object is a fault of the template.
 
 use super::escape;
-use super::lang::Lang;
 use super::terms::marked;
+use fc_spec::model::Lang;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Serde, Value, ValueKind};
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior};

@@ -3,7 +3,7 @@
 //! Anchors are `<a id="…"></a>` of our own: slugs of headings differ between renderers, and
 //! headings between languages.
 
-use super::lang::Lang;
+use fc_spec::model::Lang;
 use fc_spec::model::{Kind, Location, Operation};
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -14,7 +14,6 @@ mod conditions;
 mod engine;
 mod enums;
 mod escape;
-mod lang;
 mod links;
 mod mentions;
 mod navigation;
@@ -27,7 +26,7 @@ mod terms;
 mod words;
 
 pub(crate) use book::Book;
-pub use lang::Lang;
+pub use fc_spec::model::Lang;
 pub(crate) use links::Page;
 pub(crate) use tabs::TabsOf;
 pub(crate) use words::{Word, confirmed};

@@ -3,11 +3,11 @@
 use super::available::AvailableView;
 use super::book::Book;
 use super::conditions::ConditionView;
-use super::lang::Lang;
 use super::links::{Anchor, Link, Page};
 use super::mentions::linked;
 use super::places::{Given, Kept};
 use super::words::{self, Word as _};
+use fc_spec::model::Lang;
 use fc_spec::model::{
     Available, Deprecation, Direction, EnvelopeField, Example, Field, OneOf, Scalar, StructType,
     Text, Type, TypeDef, TypeRef, TypeShape, Value,

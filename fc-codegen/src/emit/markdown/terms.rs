@@ -4,8 +4,8 @@
 //! apart from the phrases of the templates, which mean what they say in any protocol.
 
 use super::escape;
-use super::lang::Lang;
 use super::links::{Anchor, Page};
+use fc_spec::model::Lang;
 use fc_spec::model::Term;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};

@@ -1,6 +1,6 @@
 //! The model's enums as words of the pages.
 
-use super::lang::Lang;
+use fc_spec::model::Lang;
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, Confirmation, Direction, Effect, EncodingRole, EnvelopeRole,
     HeaderRole, Impact, JsonRule, Kind, KindRole, Number, PortRole, Quirk, RangeUse, ResultRole,

@@ -2,19 +2,19 @@
 
 use std::fmt::Write as _;
 
-use super::super::{Faults, Severity};
+use super::super::Faults;
+use crate::model::Lang;
 use crate::syntax::Sources;
 
-pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
+pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     let mut out = String::new();
     for fault in faults {
         let (first, last) = sources.ends(fault.primary.span);
-        let command = match fault.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        };
+        let command = fault.severity.name();
         let path = property(sources.path(fault.primary.span));
-        let title = property(&format!("{}: {}", fault.code, fault.code.title()));
+        let colon = lang.pick("：", ": ");
+        let title = fault.code.title(lang);
+        let title = property(&format!("{}{colon}{title}", fault.code));
         let place = if first.line == last.line {
             format!(
                 "line={},col={},endColumn={}",
@@ -25,21 +25,27 @@ pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
             format!("line={},endLine={}", first.line, last.line)
         };
 
-        let mut text = fault.message.clone();
+        let mut text = lang.text(&fault.message).to_owned();
         if !fault.primary.text.is_empty() {
-            text = format!("{text}: {}", fault.primary.text);
+            text += colon;
+            text += lang.text(&fault.primary.text);
         }
         for label in &fault.secondary {
             let at = sources.line_col(label.span);
             let path = sources.path(label.span);
-            text = format!("{text}\n{path}:{}:{}: {}", at.line, at.column, label.text);
+            text = format!(
+                "{text}\n{path}:{}:{}: {}",
+                at.line,
+                at.column,
+                lang.text(&label.text)
+            );
         }
         for note in fault
             .notes
             .iter()
             .chain(fault.fixes.iter().map(|fix| &fix.message))
         {
-            text = format!("{text}\n{note}");
+            text = format!("{text}\n{}", lang.text(note));
         }
         let text = data(&text);
         // Writing to a String cannot fail.

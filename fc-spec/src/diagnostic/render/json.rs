@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
-use super::super::{Diagnostic, Faults, Severity};
+use super::super::{Diagnostic, Faults};
+use crate::model::Lang;
 use crate::syntax::{Sources, Span};
 
-pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
+pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     let mut out = String::new();
     for fault in faults {
         // Strings and numbers always serialize.
-        let line = serde_json::to_string(&Fault::new(fault, sources)).unwrap_or_default();
+        let line = serde_json::to_string(&Fault::new(fault, sources, lang)).unwrap_or_default();
         out.push_str(&line);
         out.push('\n');
     }
@@ -24,7 +25,7 @@ struct Fault<'a> {
     message: &'a str,
     primary: Place<'a>,
     secondary: Vec<Place<'a>>,
-    notes: &'a [String],
+    notes: Vec<&'a str>,
     fixes: Vec<Fix<'a>>,
 }
 
@@ -48,27 +49,24 @@ struct Fix<'a> {
 }
 
 impl<'a> Fault<'a> {
-    fn new(fault: &'a Diagnostic, sources: &'a Sources) -> Self {
+    fn new(fault: &'a Diagnostic, sources: &'a Sources, lang: Lang) -> Self {
         Self {
             code: fault.code.as_str(),
-            severity: match fault.severity {
-                Severity::Error => "error",
-                Severity::Warning => "warning",
-            },
-            title: fault.code.title(),
-            message: &fault.message,
-            primary: Place::new(fault.primary.span, &fault.primary.text, sources),
+            severity: fault.severity.name(),
+            title: fault.code.title(lang),
+            message: lang.text(&fault.message),
+            primary: Place::new(fault.primary.span, lang.text(&fault.primary.text), sources),
             secondary: fault
                 .secondary
                 .iter()
-                .map(|label| Place::new(label.span, &label.text, sources))
+                .map(|label| Place::new(label.span, lang.text(&label.text), sources))
                 .collect(),
-            notes: &fault.notes,
+            notes: fault.notes.iter().map(|note| lang.text(note)).collect(),
             fixes: fault
                 .fixes
                 .iter()
                 .map(|fix| Fix {
-                    message: &fix.message,
+                    message: lang.text(&fix.message),
                     replacement: &fix.replacement,
                     place: Place::new(fix.span, "", sources),
                 })

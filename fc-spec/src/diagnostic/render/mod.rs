@@ -8,7 +8,8 @@ mod text;
 
 pub use summary::summary;
 
-use super::Faults;
+use super::{Faults, Severity};
+use crate::model::Lang;
 use crate::syntax::Sources;
 
 /// A way to show faults.
@@ -26,7 +27,7 @@ pub enum Format {
     Github,
 }
 
-/// All faults in one format, ending with a newline if there are any. SARIF also has a log of nothing.
+/// All faults in one format and language, ending with a newline if there are any. SARIF also has a log of nothing.
 ///
 /// # JSON
 ///
@@ -39,14 +40,32 @@ pub enum Format {
 ///
 /// A place has `path` (from the project's root), `line`, `column`, `end_line`, `end_column` (counted from 1,
 /// columns in Unicode characters, the end not included), `start`, `end` (bytes, counted from behind a byte order mark) and
-/// `label`.
+/// `label`. The texts are in `lang`; keys, codes and severities are not.
 #[must_use]
-pub fn render(faults: &Faults, sources: &Sources, format: Format) -> String {
+pub fn render(faults: &Faults, sources: &Sources, format: Format, lang: Lang) -> String {
     match format {
-        Format::Colored => text::render(faults, sources, true),
-        Format::Text => text::render(faults, sources, false),
-        Format::Json => json::render(faults, sources),
-        Format::Sarif => sarif::render(faults, sources),
-        Format::Github => github::render(faults, sources),
+        Format::Colored => text::render(faults, sources, true, lang),
+        Format::Text => text::render(faults, sources, false, lang),
+        Format::Json => json::render(faults, sources, lang),
+        Format::Sarif => sarif::render(faults, sources, lang),
+        Format::Github => github::render(faults, sources, lang),
+    }
+}
+
+impl Severity {
+    /// Its word in formats for machines.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        }
+    }
+
+    /// Its word for people.
+    fn word(self, lang: Lang) -> &'static str {
+        match self {
+            Self::Error => lang.pick("错误", "error"),
+            Self::Warning => lang.pick("警告", "warning"),
+        }
     }
 }

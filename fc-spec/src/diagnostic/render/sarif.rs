@@ -4,19 +4,20 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::super::{Diagnostic, FaultCode, Faults, Severity};
+use super::super::{Diagnostic, FaultCode, Faults};
+use crate::model::Lang;
 use crate::syntax::{Sources, Span};
 
 const SCHEMA: &str =
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json";
 
-pub(super) fn render(faults: &Faults, sources: &Sources) -> String {
+pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     let rules = rules(faults);
     let results: Vec<_> = faults
         .iter()
-        .map(|fault| result(fault, &rules, sources))
+        .map(|fault| result(fault, &rules, sources, lang))
         .collect();
-    let rules: Vec<_> = rules.into_iter().map(rule).collect();
+    let rules: Vec<_> = rules.into_iter().map(|code| rule(code, lang)).collect();
     let log = json!({
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -41,23 +42,26 @@ fn rules(faults: &Faults) -> Vec<FaultCode> {
     codes
 }
 
-fn rule(code: FaultCode) -> Value {
+fn rule(code: FaultCode, lang: Lang) -> Value {
     json!({
         "id": code.as_str(),
-        "shortDescription": { "text": code.title() },
+        "shortDescription": { "text": code.title(lang) },
         "help": {
-            "text": format!("Run `fc explain {code}`."),
-            "markdown": code.explain(),
+            "text": match lang {
+                Lang::Zh => format!("运行 `fc explain {code}`。"),
+                Lang::En => format!("Run `fc explain {code}`."),
+            },
+            "markdown": code.explain(lang),
         },
     })
 }
 
-fn result(fault: &Diagnostic, rules: &[FaultCode], sources: &Sources) -> Value {
-    let mut text = fault.message.clone();
+fn result(fault: &Diagnostic, rules: &[FaultCode], sources: &Sources, lang: Lang) -> Value {
+    let mut text = lang.text(&fault.message).to_owned();
     for line in std::iter::once(&fault.primary.text).chain(&fault.notes) {
         if !line.is_empty() {
             text.push('\n');
-            text.push_str(line);
+            text.push_str(lang.text(line));
         }
     }
     let related: Vec<_> = fault
@@ -66,7 +70,7 @@ fn result(fault: &Diagnostic, rules: &[FaultCode], sources: &Sources) -> Value {
         .map(|label| {
             json!({
                 "physicalLocation": location(label.span, sources),
-                "message": { "text": label.text },
+                "message": { "text": lang.text(&label.text) },
             })
         })
         .collect();
@@ -75,7 +79,7 @@ fn result(fault: &Diagnostic, rules: &[FaultCode], sources: &Sources) -> Value {
         .iter()
         .map(|fix| {
             json!({
-                "description": { "text": fix.message },
+                "description": { "text": lang.text(&fix.message) },
                 "artifactChanges": [{
                     "artifactLocation": artifact(fix.span, sources),
                     "replacements": [{
@@ -89,10 +93,7 @@ fn result(fault: &Diagnostic, rules: &[FaultCode], sources: &Sources) -> Value {
     json!({
         "ruleId": fault.code.as_str(),
         "ruleIndex": rules.binary_search(&fault.code).unwrap_or_default(),
-        "level": match fault.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        },
+        "level": fault.severity.name(),
         "message": { "text": text },
         "locations": [{ "physicalLocation": location(fault.primary.span, sources) }],
         "relatedLocations": related,

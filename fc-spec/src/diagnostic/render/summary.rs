@@ -1,43 +1,57 @@
 //! The last line.
 
-use super::super::{Faults, Severity};
+use super::super::Faults;
+use crate::model::Lang;
 
 /// How many faults there are, in how many files, and how to read more about the first one. `None` if
 /// there are none.
 #[must_use]
-pub fn summary(faults: &Faults) -> Option<String> {
+pub fn summary(faults: &Faults, lang: Lang) -> Option<String> {
     let first = faults
         .iter()
         .min_by_key(|fault| (fault.severity, fault.primary.span))?;
     let mut files: Vec<_> = faults.iter().map(|fault| fault.primary.span.file).collect();
     files.sort_unstable();
     files.dedup();
+    let files = files.len();
+    let level = first.severity.word(lang);
+    let code = first.code;
 
-    let mut counts = Vec::new();
-    for (count, one) in [(faults.errors(), "error"), (faults.warnings(), "warning")] {
-        if count > 0 {
-            counts.push(counted(count, one));
+    let counts = [
+        (faults.errors(), lang.pick("个错误", "error")),
+        (faults.warnings(), lang.pick("个警告", "warning")),
+    ];
+    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let counts: Vec<_> = counts
+        .map(|(count, what)| counted(count, what, lang))
+        .collect();
+    let counts = counts.join(lang.pick("、", " and "));
+    Some(match lang {
+        Lang::Zh => {
+            let shown = match faults.omitted() {
+                0 => String::new(),
+                _ => format!("，只显示前 {} 个", faults.len()),
+            };
+            format!(
+                "{level}：{files} 个文件中有 {counts}{shown}；运行 `fc explain {code}` 查看第一个的详细说明"
+            )
         }
-    }
-    let level = match first.severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    };
-    let shown = match faults.omitted() {
-        0 => String::new(),
-        _ => format!(", the first {} of them shown", faults.len()),
-    };
-    Some(format!(
-        "{level}: {} in {}{shown}; run `fc explain {}` to read more about the first",
-        counts.join(" and "),
-        counted(files.len(), "file"),
-        first.code,
-    ))
+        Lang::En => {
+            let shown = match faults.omitted() {
+                0 => String::new(),
+                _ => format!(", the first {} of them shown", faults.len()),
+            };
+            let files = counted(files, "file", lang);
+            format!(
+                "{level}: {counts} in {files}{shown}; run `fc explain {code}` to read more about the first"
+            )
+        }
+    })
 }
 
-fn counted(count: usize, one: &str) -> String {
-    match count {
-        1 => format!("1 {one}"),
-        _ => format!("{count} {one}s"),
+fn counted(count: usize, one: &str, lang: Lang) -> String {
+    match lang {
+        Lang::En if count != 1 => format!("{count} {one}s"),
+        _ => format!("{count} {one}"),
     }
 }

@@ -7,6 +7,7 @@ use annotate_snippets::{
 };
 
 use super::super::{Diagnostic, Faults, Fix, Label, Severity};
+use crate::model::Lang;
 use crate::syntax::{FileId, Sources, Span};
 
 /// Longest line that is shown; of longer ones only the place is named.
@@ -14,7 +15,7 @@ const LINE_BYTES: usize = 2000;
 /// Places at most so many lines apart share a snippet.
 const NEAR: usize = 20;
 
-pub(super) fn render(faults: &Faults, sources: &Sources, colored: bool) -> String {
+pub(super) fn render(faults: &Faults, sources: &Sources, colored: bool, lang: Lang) -> String {
     let renderer = if colored {
         Renderer::styled()
     } else {
@@ -22,29 +23,30 @@ pub(super) fn render(faults: &Faults, sources: &Sources, colored: bool) -> Strin
     };
     let mut out = String::new();
     for fault in faults {
-        out.push_str(&renderer.render(&report(fault, sources)));
+        out.push_str(&renderer.render(&report(fault, sources, lang)));
         out.push_str("\n\n");
     }
     out
 }
 
-fn report<'a>(fault: &'a Diagnostic, sources: &'a Sources) -> Vec<Group<'a>> {
+fn report<'a>(fault: &'a Diagnostic, sources: &'a Sources, lang: Lang) -> Vec<Group<'a>> {
     let level = match fault.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
     let mut main = level
-        .primary_title(fault.message.as_str())
+        .with_name(fault.severity.word(lang))
+        .primary_title(lang.text(&fault.message))
         .id(fault.code.as_str())
         .elements([] as [Snippet<'_, Annotation<'_>>; 0]);
     for cluster in clusters(fault, sources) {
-        main = cluster.show(main, sources);
+        main = cluster.show(main, sources, lang);
     }
     for note in &fault.notes {
-        main = main.element(Level::NOTE.message(untrusted(note)));
+        main = main.element(note_level(lang).message(untrusted(lang.text(note))));
     }
     std::iter::once(main)
-        .chain(fault.fixes.iter().map(|fix| help(fix, sources)))
+        .chain(fault.fixes.iter().map(|fix| help(fix, sources, lang)))
         .collect()
 }
 
@@ -88,12 +90,12 @@ fn clusters<'a>(fault: &'a Diagnostic, sources: &Sources) -> Vec<Cluster<'a>> {
 }
 
 impl<'a> Cluster<'a> {
-    fn show(&self, group: Group<'a>, sources: &'a Sources) -> Group<'a> {
+    fn show(&self, group: Group<'a>, sources: &'a Sources, lang: Lang) -> Group<'a> {
         let Some(excerpt) = Excerpt::new(sources, self.file, &self.lines) else {
-            return self.name(group, sources);
+            return self.name(group, sources, lang);
         };
         let annotations = self.labels.iter().map(|(kind, label)| {
-            let text = (!label.text.is_empty()).then_some(label.text.as_str());
+            let text = (!label.text.is_empty()).then(|| lang.text(&label.text));
             kind.span(excerpt.range(label.span)).label(text)
         });
         let snippet = Snippet::source(excerpt.text)
@@ -104,7 +106,7 @@ impl<'a> Cluster<'a> {
     }
 
     /// Only says where the places are.
-    fn name(&self, mut group: Group<'a>, sources: &'a Sources) -> Group<'a> {
+    fn name(&self, mut group: Group<'a>, sources: &'a Sources, lang: Lang) -> Group<'a> {
         for (_, label) in &self.labels {
             let mut origin = Origin::path(sources.path(label.span));
             if sources
@@ -116,15 +118,22 @@ impl<'a> Cluster<'a> {
             }
             group = group.element(origin);
             if !label.text.is_empty() {
-                group = group.element(Level::NOTE.message(untrusted(&label.text)));
+                group = group.element(note_level(lang).message(untrusted(lang.text(&label.text))));
             }
         }
         group
     }
 }
 
-fn help<'a>(fix: &'a Fix, sources: &'a Sources) -> Group<'a> {
-    let title = Level::HELP.secondary_title(untrusted(&fix.message));
+/// The level of what there is to know.
+fn note_level(lang: Lang) -> Level<'static> {
+    Level::NOTE.with_name(lang.pick("说明", "note"))
+}
+
+fn help<'a>(fix: &'a Fix, sources: &'a Sources, lang: Lang) -> Group<'a> {
+    let title = Level::HELP
+        .with_name(lang.pick("建议", "help"))
+        .secondary_title(untrusted(lang.text(&fix.message)));
     let first = sources.line_col(fix.span).line;
     let last = sources.end_line_col(fix.span).line;
     let excerpt = Excerpt::new(sources, fix.span.file, &(first..last));

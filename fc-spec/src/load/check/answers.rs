@@ -6,6 +6,7 @@ use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
 use crate::load::scalar::{is_conflict_id, small_int};
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
 use crate::syntax::Span;
+use crate::text;
 use crate::vocabulary::Word as _;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -22,7 +23,10 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 Fact::Code => (
                     item.code.state,
                     place.key_at(OPERATION.code),
-                    "write `unassigned`, or `{ value: …, state: inferred }`",
+                    text!(
+                        "改写为 `unassigned`，或 `{{ value: …, state: inferred }}`",
+                        "write `unassigned`, or `{{ value: …, state: inferred }}`"
+                    ),
                 ),
                 Fact::Request if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Request),
@@ -30,21 +34,36 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                         Kind::Report => place.key_at(REPORT.body),
                         _ => place.key_at(COMMAND.request),
                     },
-                    "say so with `request_state: inferred` or `open`",
+                    text!(
+                        "用 `request_state: inferred` 或 `open` 注明",
+                        "say so with `request_state: inferred` or `open`"
+                    ),
                 ),
                 Fact::Response if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Response),
                     place.key_at(COMMAND.response),
-                    "say so with `response_state: inferred` or `open`",
+                    text!(
+                        "用 `response_state: inferred` 或 `open` 注明",
+                        "say so with `response_state: inferred` or `open`"
+                    ),
                 ),
                 _ => continue,
             };
             if state == BodyState::Stated {
                 let what = what.name();
-                let message = format!("the {what} is marked as missing from the source document");
+                let message = text!(
+                    "这里注明源文档缺失 {what}",
+                    "the {what} is marked as missing from the source document"
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::LostButStated, node.span(), message)
-                        .also(stated_at, "but it is marked as stated here")
+                        .also(
+                            stated_at,
+                            text!(
+                                "这里却按源文档写明的内容书写",
+                                "but it is marked as stated here"
+                            ),
+                        )
                         .note(remedy),
                 );
             }
@@ -61,15 +80,21 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         .collect();
     if let (true, Some(first)) = (known.is_empty(), draft.answers.first()) {
         let answers = draft.answers.len();
-        let message = format!("the spec has answers ({answers}) but no `conflicts`");
+        let message = text!(
+            "规范有答复（{answers} 条），却没有 `conflicts`",
+            "the spec has answers ({answers}) but no `conflicts`"
+        );
         faults.push(
             Diagnostic::error(
                 FaultCode::UnknownConflict,
                 first.place.at(ANSWER.ids),
                 message,
             )
-            .label("this is the first")
-            .note("conflicts are declared under `conflicts:`; is their file missing?"),
+            .label(text!("这是第一条", "this is the first"))
+            .note(text!(
+                "疑问在 `conflicts:` 下声明；是不是缺少那个文件？",
+                "conflicts are declared under `conflicts:`; is their file missing?"
+            )),
         );
         return;
     }
@@ -79,10 +104,12 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
             if known.contains(id) || !is_conflict_id(id) {
                 continue;
             }
-            let message = format!("there is no conflict {id}");
+            let message = text!("没有疑问 {id}", "there is no conflict {id}");
             faults.push(
-                Diagnostic::error(FaultCode::UnknownConflict, node.span(), message)
-                    .note("conflicts are declared under `conflicts:`"),
+                Diagnostic::error(FaultCode::UnknownConflict, node.span(), message).note(text!(
+                    "疑问在 `conflicts:` 下声明",
+                    "conflicts are declared under `conflicts:`"
+                )),
             );
         }
     }
@@ -100,10 +127,10 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
     }
     for conflict in &draft.conflicts {
         if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
-            let message = format!("{} has no answer", conflict.item.id);
+            let message = text!("{id} 没有答复", "{id} has no answer", id = conflict.item.id);
             faults.push(
                 Diagnostic::error(FaultCode::UnansweredConflict, conflict.place.name(), message)
-                    .note("answer it under `answers:` where it belongs; `as: question` means that the answer is not known yet"),
+                    .note(text!("在相关内容的 `answers:` 下答复；还不知道答案时写 `as: question`", "answer it under `answers:` where it belongs; `as: question` means that the answer is not known yet")),
             );
         }
     }
@@ -141,11 +168,13 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     for section in &draft.sections {
         let number = section.item.section;
         if let Some(claim) = claimed.get(&number) {
-            let message =
-                format!("section {number} is not missing: an operation names it as its source");
+            let message = text!(
+                "第 {number} 节并未缺失：有接口写明出自这一节",
+                "section {number} is not missing: an operation names it as its source"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::SectionRetained, section.place.name(), message)
-                    .also(*claim, "here"),
+                    .also(*claim, text!("在这里", "here")),
             );
         }
     }
@@ -156,14 +185,18 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
         if section > before + 1 {
             let first = before + 1;
             let gap = match section - 1 {
-                last if last == first => format!("section {first} is"),
-                last => format!("sections {first} to {last} are"),
+                last if last == first => text!("第 {first} 节", "section {first} is"),
+                last => text!("第 {first} 至 {last} 节", "sections {first} to {last} are"),
             };
-            let message = format!("{gap} neither used by an operation nor listed as missing");
+            let message = text!(
+                "{gap}既没有接口用到，也没有列为缺失",
+                "{gap} neither used by an operation nor listed as missing",
+                gap = gap
+            );
             faults.push(
                 Diagnostic::error(FaultCode::SectionGap, span, message)
-                    .label("the next known section")
-                    .note("name it in the `source` of its operation, or under `sections:` in `protocol.yaml`"),
+                    .label(text!("下一个已知的章节", "the next known section"))
+                    .note(text!("写进相应接口的 `source`，或列在 `protocol.yaml` 的 `sections:` 下", "name it in the `source` of its operation, or under `sections:` in `protocol.yaml`")),
             );
         }
         before = section;

@@ -5,8 +5,9 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
 use crate::load::names;
-use crate::model::{Available, Declared, Scalar, TypeShape};
+use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::syntax::{Node, Span};
+use crate::text;
 use std::collections::HashSet;
 
 /// A limit and where it stands.
@@ -63,7 +64,7 @@ type Named<'a> = Vec<(&'a str, Span)>;
 /// Words of one kind.
 struct Words<'d, 'a> {
     /// What one is called.
-    kind: &'static str,
+    kind: Text,
     /// The key under which they are declared.
     section: &'static str,
     declared: &'d [Placed<'a, Declared>],
@@ -75,19 +76,19 @@ struct Words<'d, 'a> {
 fn words<'d, 'a>(draft: &'d Draft<'a>) -> [Words<'d, 'a>; 3] {
     let words = &draft.availability;
     let audiences = Words {
-        kind: "audience",
+        kind: text!("受众", "audience"),
         section: AVAILABILITY.audiences.name,
         declared: &words.audiences,
         named: |node| named(AVAILABLE.r#for.items(node)),
     };
     let hardware = Words {
-        kind: "line of machines",
+        kind: text!("机型", "line of machines"),
         section: AVAILABILITY.hardware.name,
         declared: &words.hardware,
         named: |node| named(AVAILABLE.hardware.items(node)),
     };
     let releases = Words {
-        kind: "series of releases",
+        kind: text!("版本系列", "series of releases"),
         section: AVAILABILITY.releases.name,
         declared: &words.releases,
         named: |node| {
@@ -126,11 +127,22 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
                 if known.contains(name) {
                     continue;
                 }
-                let message = format!("there is no {kind} `{name}`");
+                let message = text!(
+                    "没有名为 `{name}` 的{kind}",
+                    "there is no {kind} `{name}`",
+                    kind = kind
+                );
                 let fault = Diagnostic::error(FaultCode::UnknownAvailability, span, message);
                 faults.push(match nearest(name, known.iter().copied()) {
-                    Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-                    None => fault.note(format!("declare it under `availability: {{ {section} }}`")),
+                    Some(near) => fault.fix(
+                        span,
+                        near,
+                        text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+                    ),
+                    None => fault.note(text!(
+                        "在 `availability: {{ {section} }}` 下声明",
+                        "declare it under `availability: {{ {section} }}`"
+                    )),
                 });
             }
         }
@@ -161,13 +173,18 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             unused.clear();
         }
         for word in unused {
-            let message = format!("nothing is limited to the {kind} `{}`", word.item.name);
+            let message = text!(
+                "没有任何内容限于{kind} `{name}`",
+                "nothing is limited to the {kind} `{name}`",
+                name = word.item.name,
+                kind = kind
+            );
             let span = word.place.name();
             let fault = Diagnostic::error(FaultCode::UnusedAvailability, span, message);
             faults.push(if is_audiences {
-                fault.note("nothing tells it from the other audiences without a limit; write `available: { for: … }` on what only it has, or delete it")
+                fault.note(text!("没有限制，就与其他受众没有区别；在只面向它的内容上写 `available: {{ for: … }}`，或将它删除", "nothing tells it from the other audiences without a limit; write `available: {{ for: … }}` on what only it has, or delete it"))
             } else {
-                fault.note("name it in an `available`, or delete it")
+                fault.note(text!("在某个 `available` 中用到它，或将它删除", "name it in an `available`, or delete it"))
             });
         }
     }
@@ -184,16 +201,25 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
             .as_mapping()
             .is_some_and(|entries| entries.count() == 0)
         {
-            let message = "this limits nothing";
+            let message = text!("这里没有作任何限制", "this limits nothing");
             let fault = Diagnostic::error(FaultCode::LimitsNothing, node.span(), message);
-            faults.push(fault.note("delete it, or say for whom it is"));
+            faults.push(fault.note(text!(
+                "删除它，或写明面向谁",
+                "delete it, or say for whom it is"
+            )));
         }
         let said: HashSet<&str> = available.audiences.iter().map(String::as_str).collect();
         if !said.is_empty() && !all.is_empty() && all.is_subset(&said) {
             let span = AVAILABLE.r#for.of(node).map_or(node.span(), Node::span);
-            let message = "this names every audience, which limits nothing";
+            let message = text!(
+                "这里列出了所有受众，等于没有限制",
+                "this names every audience, which limits nothing"
+            );
             let fault = Diagnostic::error(FaultCode::LimitsNothing, span, message);
-            faults.push(fault.note("delete it: what says nothing is for all"));
+            faults.push(fault.note(text!(
+                "删除它：不写就是面向所有受众",
+                "delete it: what says nothing is for all"
+            )));
         }
     }
 }
@@ -204,13 +230,17 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
         if field.optional || field.details().available.is_none() {
             continue;
         }
-        let message = format!("`{}` is required, but not everyone has it", field.wire);
+        let message = text!(
+            "`{field}` 必填，却不是人人都有",
+            "`{field}` is required, but not everyone has it",
+            field = field.wire
+        );
         let span = part.place.key_at(COMMON.available);
         let fault = Diagnostic::error(FaultCode::LimitedButRequired, span, message);
         faults.push(
             fault
-                .also(part.ty, "required here")
-                .note("make it optional"),
+                .also(part.ty, text!("在这里写成必填", "required here"))
+                .note(text!("改为可选", "make it optional")),
         );
     }
 }
@@ -231,10 +261,14 @@ pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
             if outer.is_for(name) || !names_of(&draft.availability.audiences).contains(name) {
                 continue;
             }
-            let message = format!("`{}` is not for `{name}`", operation.item.name);
+            let message = text!(
+                "`{operation}` 不面向 `{name}`",
+                "`{operation}` is not for `{name}`",
+                operation = operation.item.name
+            );
             let fault = Diagnostic::error(FaultCode::LimitBeyondOperation, span, message);
             let span = operation.place.key_at(COMMON.available);
-            faults.push(fault.also(span, "the operation's own limit"));
+            faults.push(fault.also(span, text!("接口自身的限制", "the operation's own limit")));
         }
     }
 }
@@ -246,8 +280,12 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
     };
     for audience in &draft.availability.audiences {
         let name = audience.item.name.as_str();
-        let mut report = |span: Span, what: &str| {
-            let message = format!("the audience `{name}` is left without {what}");
+        let mut report = |span: Span, what: Text| {
+            let message = text!(
+                "受众 `{name}` 得不到{what}",
+                "the audience `{name}` is left without {what}",
+                what = what
+            );
             faults.push(Diagnostic::error(FaultCode::NothingLeft, span, message));
         };
         for ty in &draft.types {
@@ -262,14 +300,17 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
                 TypeShape::Enum(shape) if !shape.values.is_empty() => {
                     let mut values = shape.values.iter();
                     if !values.any(|value| has(value.available.as_ref(), name)) {
-                        report(span, "a value of this enum");
+                        report(span, text!("这个枚举的任何取值", "a value of this enum"));
                     }
                 }
                 TypeShape::OneOf(choice) => {
                     let all = choice.variants.iter();
                     let left = all.filter(|it| has(it.available.as_ref(), name)).count();
                     if left < 2 && left < choice.variants.len() {
-                        report(span, "two variants of this choice");
+                        report(
+                            span,
+                            text!("这个多选一的两个选项", "two variants of this choice"),
+                        );
                     }
                 }
                 TypeShape::Enum(_) | TypeShape::Struct(_) => {}
@@ -291,7 +332,10 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             let details = field.details();
             let is_for = has(details.available.as_ref(), name);
             if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
-                report(part.place.at(FIELD.only), "a value that this field takes");
+                report(
+                    part.place.at(FIELD.only),
+                    text!("这个字段可取的任何值", "a value that this field takes"),
+                );
             }
         }
     }
@@ -303,10 +347,13 @@ pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
         let (from, until) = (AVAILABLE.from.get(node), AVAILABLE.until.get(node));
         for release in from.clone().chain(until.clone()).map(|entry| entry.value) {
             if release.as_str().is_some_and(|text| numbers(text).is_none()) {
-                let message = "a release is written as numbers with dots between them";
+                let message = text!(
+                    "版本号由数字和点组成",
+                    "a release is written as numbers with dots between them"
+                );
                 let span = release.span();
                 let fault = Diagnostic::error(FaultCode::BadRelease, span, message);
-                faults.push(fault.note("such as \"3.8\""));
+                faults.push(fault.note(text!("例如 \"3.8\"", "such as \"3.8\"")));
             }
         }
         for last in until {
@@ -316,10 +363,13 @@ pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
                 && let (Some(earliest), Some(latest)) = (number(first.value), number(last.value))
                 && latest < earliest
             {
-                let message = "the last release that has it comes before the first";
+                let message = text!(
+                    "最后一个有它的版本早于第一个",
+                    "the last release that has it comes before the first"
+                );
                 let span = last.value.span();
                 let fault = Diagnostic::error(FaultCode::ReleasesOutOfOrder, span, message);
-                faults.push(fault.also(first.value.span(), "the first"));
+                faults.push(fault.also(first.value.span(), text!("第一个", "the first")));
             }
         }
     }

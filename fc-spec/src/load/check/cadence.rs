@@ -3,8 +3,9 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Part, TypeDraft};
 use crate::load::grammar::{CADENCE, REPORT, STEP};
-use crate::model::{Field, Kind, Number, Operation, Type, TypeShape};
+use crate::model::{Field, Kind, Number, Operation, Text, Type, TypeShape};
 use crate::syntax::Node;
+use crate::text;
 use std::collections::HashSet;
 
 /// Each report that says when it is sent, and where it does.
@@ -29,14 +30,22 @@ pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
         let fault = match (rules.next(), rules.next()) {
             (Some(_), None) => continue,
             (Some(first), Some(second)) => {
-                let message = "a report is sent by one rule, and there is one already";
+                let message = text!(
+                    "一个上报只能有一种上报时机，这里已经有一种",
+                    "a report is sent by one rule, and there is one already"
+                );
                 Diagnostic::error(FaultCode::CadenceRules, second.key.span(), message)
-                    .also(first.key.span(), "here")
+                    .also(first.key.span(), text!("在这里", "here"))
             }
             (None, _) => {
-                let message = "this does not say when the report is sent";
-                Diagnostic::error(FaultCode::CadenceRules, node.span(), message)
-                    .note("leave `cadence` out where it is not known")
+                let message = text!(
+                    "没有写明什么时候上报",
+                    "this does not say when the report is sent"
+                );
+                Diagnostic::error(FaultCode::CadenceRules, node.span(), message).note(text!(
+                    "不清楚时不写 `cadence`",
+                    "leave `cadence` out where it is not known"
+                ))
             }
         };
         faults.push(fault);
@@ -57,13 +66,18 @@ pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
             names.map(|set_off| set_off.report.as_str()).collect()
         });
         if !set_off.contains(report.name.as_str()) {
-            let message = format!(
-                "no command sets `{}` off, so the time runs from nothing",
-                report.name
+            let message = text!(
+                "没有指令会引起 `{report}`，时限无从算起",
+                "no command sets `{report}` off, so the time runs from nothing",
+                report = report.name
             );
             faults.push(
-                Diagnostic::error(FaultCode::DeadlineOfNothing, entry.key.span(), message)
-                    .note("name the report in `sets_off:` of a command"),
+                Diagnostic::error(FaultCode::DeadlineOfNothing, entry.key.span(), message).note(
+                    text!(
+                        "在某条指令的 `sets_off:` 中写上这个上报",
+                        "name the report in `sets_off:` of a command"
+                    ),
+                ),
             );
         }
     }
@@ -97,9 +111,13 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
     };
     let ty = field.ty.item();
     if !matches!(ty, Type::Int(_) | Type::Float(_)) {
-        let message = format!("a step is one of a number, which `{}` is not", field.wire);
+        let message = text!(
+            "只有数值才有变化幅度，而 `{field}` 不是数值",
+            "a step is one of a number, which `{field}` is not",
+            field = field.wire
+        );
         let fault = Diagnostic::error(FaultCode::StepOnWrongType, path.span(), message);
-        faults.push(fault.also(part.ty, "the type"));
+        faults.push(fault.also(part.ty, text!("类型", "the type")));
         return;
     }
     let fits = match (ty, &by) {
@@ -111,9 +129,13 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
         _ => false,
     };
     if !fits {
-        let message = format!("`{}` does not move by such a step", field.wire);
+        let message = text!(
+            "`{field}` 的变化不可能是这个幅度",
+            "`{field}` does not move by such a step",
+            field = field.wire
+        );
         let fault = Diagnostic::error(FaultCode::StepOfNothing, node.span(), message);
-        faults.push(fault.also(part.ty, "the type"));
+        faults.push(fault.also(part.ty, text!("类型", "the type")));
     }
 }
 
@@ -137,9 +159,12 @@ fn find<'d, 'a>(
             return Some((field, part));
         }
         let Type::Named(named) = field.ty.item() else {
-            let message = format!("`{key}` is no object, so nothing is in it");
+            let message = text!(
+                "`{key}` 不是对象，里面没有内容",
+                "`{key}` is no object, so nothing is in it"
+            );
             let fault = Diagnostic::error(FaultCode::UnknownField, path.span(), message);
-            faults.push(fault.also(part.ty, "the type"));
+            faults.push(fault.also(part.ty, text!("类型", "the type")));
             return None;
         };
         holder = draft.type_named(named.name())?;
@@ -183,14 +208,20 @@ fn has_broken(draft: &Draft<'_>, holder: &TypeDraft<'_>) -> bool {
 }
 
 fn unknown(draft: &Draft<'_>, holder: &TypeDraft<'_>, key: &str, path: Node<'_>) -> Diagnostic {
-    let message = format!("there is no field `{key}`");
+    let message = text!("没有字段 `{key}`", "there is no field `{key}`");
     let fault = Diagnostic::error(FaultCode::UnknownField, path.span(), message);
     let structs = structs(draft, holder);
     let keys = structs.into_iter().flat_map(fields_of);
     let keys: Vec<&str> = keys.map(|(field, _)| field.wire.as_str()).collect();
     match nearest(key, keys.iter().copied()) {
-        Some(near) => fault.note(format!("did you mean `{near}`?")),
-        None if keys.is_empty() => fault.note("no field is known there"),
-        None => fault.note(format!("the fields there are {}", keys.join(", "))),
+        Some(near) => fault.note(text!("是否想写 `{near}`？", "did you mean `{near}`?")),
+        None if keys.is_empty() => {
+            fault.note(text!("那里没有已知的字段", "no field is known there"))
+        }
+        None => fault.note(text!(
+            "那里的字段有：{keys}",
+            "the fields there are {keys}",
+            keys = Text::listed(keys)
+        )),
     }
 }

@@ -3,8 +3,9 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{CODE, OPERATION, RANGE, RETIRED};
-use crate::model::{CodeRange, Kind, Operation, RangeUse};
+use crate::model::{CodeRange, Kind, Operation, RangeUse, Text};
 use crate::syntax::{Node, Span};
+use crate::text;
 use std::collections::HashMap;
 
 /// Ranges count upwards and do not overlap. `false` if they are not like that.
@@ -18,18 +19,28 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                 Diagnostic::error(
                     FaultCode::RangeInverted,
                     range.place.at(RANGE.to),
-                    format!("the range ends at {}, before it starts", item.last_spelling),
+                    text!(
+                        "范围到 {last} 为止，早于起点",
+                        "the range ends at {last}, before it starts",
+                        last = item.last_spelling
+                    ),
                 )
-                .also(range.place.at(RANGE.from), "it starts here"),
+                .also(
+                    range.place.at(RANGE.from),
+                    text!("起点在这里", "it starts here"),
+                ),
             );
             continue;
         }
         if let Some(earlier) = reached
             && item.first <= earlier.item.last
         {
-            let message = format!(
-                "{} is also in the range {} to {}",
-                item.first_spelling, earlier.item.first_spelling, earlier.item.last_spelling
+            let message = text!(
+                "{first} 也在 {from} 到 {to} 的范围内",
+                "{first} is also in the range {from} to {to}",
+                first = item.first_spelling,
+                from = earlier.item.first_spelling,
+                to = earlier.item.last_spelling
             );
             faults.push(
                 Diagnostic::error(
@@ -37,7 +48,10 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                     range.place.at(RANGE.from),
                     message,
                 )
-                .also(earlier.place.at(RANGE.to), "the other range ends here"),
+                .also(
+                    earlier.place.at(RANGE.to),
+                    text!("另一个范围到这里为止", "the other range ends here"),
+                ),
             );
         }
         if reached.is_none_or(|earlier| earlier.item.last < item.last) {
@@ -53,10 +67,14 @@ pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     for retired in &draft.retired {
         let span = retired.place.at(RETIRED.code);
         if let Some(earlier) = first.insert(retired.item.code, span) {
-            let message = format!("{} is retired twice", retired.item.spelling);
+            let message = text!(
+                "{code} 停用了两次",
+                "{code} is retired twice",
+                code = retired.item.spelling
+            );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateRetired, span, message)
-                    .also(earlier, "first here"),
+                    .also(earlier, text!("第一次在这里", "first here")),
             );
         }
     }
@@ -82,26 +100,39 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             .iter()
             .find(|user| !belong_together(&user.item, &operation.item));
         if let Some(earlier) = other {
-            let message = format!("{spelling} is already the code of `{}`", earlier.item.name);
+            let message = text!(
+                "{spelling} 已经是 `{name}` 的功能码",
+                "{spelling} is already the code of `{name}`",
+                name = earlier.item.name
+            );
             let kinds = [earlier.item.kind(), operation.item.kind()];
             let remedy = if kinds.contains(&Kind::Stream) && kinds.contains(&Kind::Command) {
-                "only a stream may have the code of a command: that which `started_by:` of the stream names"
+                text!(
+                    "只有数据流可以与指令共用功能码：即数据流的 `started_by:` 所写的那条指令",
+                    "only a stream may have the code of a command: that which `started_by:` of the stream names"
+                )
             } else {
-                "write `unassigned` until it has its own code"
+                text!(
+                    "在有自己的功能码之前写 `unassigned`",
+                    "write `unassigned` until it has its own code"
+                )
             };
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateCode, span, message)
-                    .also(code_span(earlier), "first used here")
+                    .also(
+                        code_span(earlier),
+                        text!("首次出现在这里", "first used here"),
+                    )
                     .note(remedy),
             );
         } else {
             users.push(operation);
         }
         if let Some(retired) = retired.get(&code) {
-            let message = format!("{spelling} must not be used again");
+            let message = text!("{spelling} 不能再用", "{spelling} must not be used again");
             faults.push(
                 Diagnostic::error(FaultCode::RetiredCode, span, message)
-                    .also(*retired, "retired here"),
+                    .also(*retired, text!("在这里停用", "retired here")),
             );
         }
     }
@@ -137,9 +168,15 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::CodeOutsideRanges,
                     span,
-                    format!("{spelling} is outside all code ranges"),
+                    text!(
+                        "{spelling} 不在任何功能码范围内",
+                        "{spelling} is outside all code ranges"
+                    ),
                 )
-                .note("every code belongs to a range with a purpose; see `codes.ranges`"),
+                .note(text!(
+                    "每个功能码都属于一个有用途的范围；见 `codes.ranges`",
+                    "every code belongs to a range with a purpose; see `codes.ranges`"
+                )),
             );
             continue;
         };
@@ -147,13 +184,24 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
             let fault = Diagnostic::error(
                 FaultCode::CodeInWrongRange,
                 span,
-                format!("{spelling} is in a range {reason}"),
+                text!(
+                    "{spelling} 所在的范围{reason}",
+                    "{spelling} is in a range {reason}",
+                    reason = reason
+                ),
             )
-            .also(range.place.at(RANGE.r#use), "the purpose of the range");
+            .also(
+                range.place.at(RANGE.r#use),
+                text!("范围的用途", "the purpose of the range"),
+            );
             let next = next_code(draft, operation.item.kind());
             // The code of an operation of the source is a fact; that of a new one is a choice.
             faults.push(match next.filter(|_| operation.item.sections.is_empty()) {
-                Some(next) => fault.fix(span, format!("0x{next:04X}"), "take the next free code"),
+                Some(next) => fault.fix(
+                    span,
+                    format!("0x{next:04X}"),
+                    text!("改用下一个空闲的功能码", "take the next free code"),
+                ),
                 None => fault,
             });
         }
@@ -178,18 +226,26 @@ fn next_code(draft: &Draft<'_>, kind: Kind) -> Option<u16> {
 /// Why an operation cannot have a code of such a range.
 ///
 /// One that the source does not have is new: what is new gets its code from the ranges that count up.
-fn objection(operation: &Operation, usage: RangeUse) -> Option<&'static str> {
+fn objection(operation: &Operation, usage: RangeUse) -> Option<Text> {
     let is_new = operation.sections.is_empty();
     match (operation.kind(), usage) {
-        (Kind::Command | Kind::Report, RangeUse::Historic) if is_new => {
-            Some("that is closed for new operations, and this one is not from the source")
-        }
-        (_, RangeUse::Reserved) => Some("that is reserved"),
-        (Kind::Report, RangeUse::Commands) => Some("for commands, and this is a report"),
-        (Kind::Command, RangeUse::Reports) => Some("for reports, and this is a command"),
-        (Kind::Report | Kind::Stream, RangeUse::PassThrough) => {
-            Some("that is passed through to the upper body and only contains commands")
-        }
+        (Kind::Command | Kind::Report, RangeUse::Historic) if is_new => Some(text!(
+            "不再接受新接口，而这个接口并非出自源文档",
+            "that is closed for new operations, and this one is not from the source"
+        )),
+        (_, RangeUse::Reserved) => Some(text!("是预留的", "that is reserved")),
+        (Kind::Report, RangeUse::Commands) => Some(text!(
+            "用于指令，而这是上报",
+            "for commands, and this is a report"
+        )),
+        (Kind::Command, RangeUse::Reports) => Some(text!(
+            "用于上报，而这是指令",
+            "for reports, and this is a command"
+        )),
+        (Kind::Report | Kind::Stream, RangeUse::PassThrough) => Some(text!(
+            "透传给上身，只能有指令",
+            "that is passed through to the upper body and only contains commands"
+        )),
         _ => None,
     }
 }

@@ -6,8 +6,9 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Part};
 use crate::load::grammar::FIELD;
 use crate::load::scalar;
-use crate::model::{Field, Type, TypeShape};
+use crate::model::{Field, Text, Type, TypeShape};
 use crate::syntax::{Entry, Node};
+use crate::text;
 
 /// A field has one condition.
 pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
@@ -17,10 +18,14 @@ pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
         }
         let node = part.place.node;
         if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
-            let message = format!("`{}` has both a `when` and an `unless`", field.wire);
+            let message = text!(
+                "`{field}` 同时有 `when` 和 `unless`",
+                "`{field}` has both a `when` and an `unless`",
+                field = field.wire
+            );
             let span = unless.key.span();
             let fault = Diagnostic::error(FaultCode::WhenAndUnless, span, message);
-            faults.push(fault.also(when.key.span(), "the other condition"));
+            faults.push(fault.also(when.key.span(), text!("另一个条件", "the other condition")));
         }
     }
 }
@@ -30,30 +35,48 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     for question in questions(draft) {
         let Question { own, entry, .. } = question;
         let (key, span) = (entry.name(), entry.key.span());
-        let fault = |code, message: String| Diagnostic::error(code, span, message);
+        let fault = |code, message: Text| Diagnostic::error(code, span, message);
         let Some((asked, part)) = question.asked else {
-            let message = format!("there is no field `{key}` beside `{}`", own.wire);
+            let message = text!(
+                "`{own}` 旁边没有字段 `{key}`",
+                "there is no field `{key}` beside `{own}`",
+                own = own.wire
+            );
             let unknown = fault(FaultCode::UnknownSibling, message);
             let others = question.beside.iter().map(|field| field.wire.as_str());
             faults.push(match nearest(key, others) {
-                Some(near) => unknown.fix(span, near, format!("did you mean `{near}`?")),
-                None => unknown.note(
-                    "a condition asks fields of the same object; keys of the envelope are none",
+                Some(near) => unknown.fix(
+                    span,
+                    near,
+                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
                 ),
+                None => unknown.note(text!(
+                    "条件只看同一个对象中的字段；公共字段不算",
+                    "a condition asks fields of the same object; keys of the envelope are none"
+                )),
             });
             continue;
         };
         if asked.wire == own.wire {
-            let message = format!("`{key}` cannot depend on its own value");
+            let message = text!(
+                "`{key}` 不能取决于自己的值",
+                "`{key}` cannot depend on its own value"
+            );
             faults.push(fault(FaultCode::OwnCondition, message));
         } else if asked.optional {
-            let message = format!("`{key}` is optional, so there may be no value to ask for");
+            let message = text!(
+                "`{key}` 是可选的，可能没有值可以判断",
+                "`{key}` is optional, so there may be no value to ask for"
+            );
             let fault = fault(FaultCode::ConditionOnOptional, message);
-            faults.push(fault.also(part.ty, "it may be absent"));
+            faults.push(fault.also(part.ty, text!("它可能不出现", "it may be absent")));
         } else if !has_single_values(draft, &asked.ty) {
-            let message = format!("`{key}` is no enum, integer, text or bool");
+            let message = text!(
+                "`{key}` 不是枚举、整数、文本或布尔值",
+                "`{key}` is no enum, integer, text or bool"
+            );
             let fault = fault(FaultCode::ConditionOnWrongType, message);
-            faults.push(fault.also(part.ty, "the type"));
+            faults.push(fault.also(part.ty, text!("类型", "the type")));
         }
     }
 }
@@ -75,14 +98,20 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
             faults.extend(found.into_iter().map(|mismatch| {
                 let code = FaultCode::ConditionValue;
                 let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(part.ty, "the type of the field that is asked")
+                fault.also(
+                    part.ty,
+                    text!(
+                        "作为条件的字段的类型",
+                        "the type of the field that is asked"
+                    ),
+                )
             }));
             let wire = scalar::scalar(node);
             match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
                 Some(first) => {
-                    let message = "this value is asked for already";
+                    let message = text!("条件中已经有这个值", "this value is asked for already");
                     let fault = Diagnostic::error(FaultCode::ConditionTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), "here"));
+                    faults.push(fault.also(first.span(), text!("在这里", "here")));
                 }
                 None => earlier.push(node),
             }

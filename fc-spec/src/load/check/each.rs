@@ -1,7 +1,8 @@
 //! What most checks go through: each field and its place.
 
 use crate::load::draft::{Draft, Part, TypeDraft};
-use crate::model::{Field, Type, TypeShape};
+use crate::model::{Field, Kind, Text, Type, TypeShape};
+use crate::text;
 
 /// Every field that is sound enough to be checked, with its place and the type that holds it.
 pub(super) fn fields<'d, 'a>(
@@ -27,4 +28,13 @@ pub(super) fn typed_fields<'d, 'a>(
         Type::Named(named) => draft.type_named(named.name()).is_some(),
         _ => true,
     })
+}
+
+/// What an operation of this kind is called.
+pub(super) fn called(kind: Kind) -> Text {
+    match kind {
+        Kind::Command => text!("指令", "command"),
+        Kind::Report => text!("上报", "report"),
+        Kind::Stream => text!("数据流", "stream"),
+    }
 }

@@ -7,6 +7,7 @@ use crate::load::grammar::FIELD;
 use crate::load::names;
 use crate::model::{Type, TypeShape};
 use crate::syntax::Span;
+use crate::text;
 use std::collections::{HashMap, HashSet};
 
 /// `refers` stands on what can be an id: integers, strings and lists of them.
@@ -20,13 +21,15 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
         if named.is_some_and(|named| draft.type_named(named.name()).is_none()) {
             continue;
         }
-        let message = format!(
-            "`{}` is for an integer, a string or a list of them, which `{}` is not",
-            FIELD.refers.name, field.wire
+        let message = text!(
+            "`{refers}` 只用于整数、字符串或它们的列表，而 `{field}` 不是",
+            "`{refers}` is for an integer, a string or a list of them, which `{field}` is not",
+            refers = FIELD.refers.name,
+            field = field.wire
         );
         let span = part.place.at(FIELD.refers);
         let fault = Diagnostic::error(FaultCode::RefersOnWrongType, span, message);
-        faults.push(fault.also(part.ty, "the type"));
+        faults.push(fault.also(part.ty, text!("类型", "the type")));
     }
 }
 
@@ -41,9 +44,12 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let (known, span) = *first.entry(entity).or_insert((ty, part.ty));
         if known != ty {
-            let message = format!("ids of `{entity}` have the type `{known}` elsewhere");
+            let message = text!(
+                "`{entity}` 的 ID 在别处的类型是 `{known}`",
+                "ids of `{entity}` have the type `{known}` elsewhere"
+            );
             let fault = Diagnostic::error(FaultCode::IdTypes, part.ty, message);
-            faults.push(fault.also(span, "first used here"));
+            faults.push(fault.also(span, text!("首次出现在这里", "first used here")));
         }
     }
 }
@@ -59,11 +65,18 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         let span = part.place.at(FIELD.refers);
-        let message = format!("there is no entity `{name}`");
+        let message = text!("没有实体 `{name}`", "there is no entity `{name}`");
         let fault = Diagnostic::error(FaultCode::UnknownEntity, span, message);
         faults.push(match nearest(name, declared.iter().copied()) {
-            Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-            None => fault.note("declare it under `entities:`"),
+            Some(near) => fault.fix(
+                span,
+                near,
+                text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+            ),
+            None => fault.note(text!(
+                "在 `entities:` 下声明",
+                "declare it under `entities:`"
+            )),
         });
     }
 }
@@ -85,10 +98,16 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     for entity in &draft.entities {
         let name = entity.item.name.as_str();
         if !used.contains(name) {
-            let message = format!("no field refers to the entity `{name}`");
+            let message = text!(
+                "没有字段指向实体 `{name}`",
+                "no field refers to the entity `{name}`"
+            );
             let span = entity.place.name();
             let fault = Diagnostic::error(FaultCode::UnusedEntity, span, message);
-            faults.push(fault.note("write `refers` on a field that holds its id, or delete it"));
+            faults.push(fault.note(text!(
+                "在装有它的 ID 的字段上写 `refers`，或将它删除",
+                "write `refers` on a field that holds its id, or delete it"
+            )));
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::load::grammar::{CHOICE, ENUM, ENUM_VALUE};
 use crate::model::{EnumRepr, Number, Scalar, TypeShape};
+use crate::text;
 use std::collections::HashSet;
 
 /// An enum has values, and its type holds each; a choice has variants to choose from.
@@ -14,7 +15,11 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
             TypeShape::Enum(shape) => {
                 if shape.values.is_empty() {
                     let span = ty.place.at(ENUM.values);
-                    let message = format!("`{}` has no values", ty.def.name);
+                    let message = text!(
+                        "`{name}` 没有取值",
+                        "`{name}` has no values",
+                        name = ty.def.name
+                    );
                     faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
                 }
                 if let EnumRepr::Int(kind) = shape.repr {
@@ -23,11 +28,17 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                         let fits = matches!(value.wire, Scalar::Number(Number::Int(value))
                             if (least..=most).contains(&value));
                         if !fits && !part.broken {
-                            let message = format!("this is not a value of {}", kind.name());
+                            let message = text!(
+                                "这不是 {kind} 的值",
+                                "this is not a value of {kind}",
+                                kind = kind.name()
+                            );
                             let span = part.place.name();
                             faults.push(
-                                Diagnostic::error(FaultCode::EnumValueType, span, message)
-                                    .also(ty.place.at(ENUM.r#enum), "what travels"),
+                                Diagnostic::error(FaultCode::EnumValueType, span, message).also(
+                                    ty.place.at(ENUM.r#enum),
+                                    text!("发送时的类型", "what travels"),
+                                ),
                             );
                         }
                     }
@@ -35,7 +46,10 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
             }
             TypeShape::OneOf(choice) if choice.variants.len() < 2 => {
                 let span = ty.place.at(CHOICE.one_of);
-                let message = "a choice needs at least two variants";
+                let message = text!(
+                    "多选一至少要有两个选项",
+                    "a choice needs at least two variants"
+                );
                 faults.push(Diagnostic::error(FaultCode::EmptyEnum, span, message));
             }
             TypeShape::OneOf(_) | TypeShape::Struct(_) => {}
@@ -51,12 +65,12 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
                 let parts = shape.values.iter().zip(&ty.parts);
                 let names = parts
                     .map(|(value, part)| (value.name.as_str(), part.place.at(ENUM_VALUE.name)));
-                check_distinct("values of the enum", names, faults);
+                check_distinct(&text!("枚举值", "values of the enum"), names, faults);
             }
             TypeShape::OneOf(choice) => {
                 let parts = choice.variants.iter().zip(&ty.parts);
                 let names = parts.map(|(variant, part)| (variant.name.as_str(), part.place.name()));
-                check_distinct("variants of the choice", names, faults);
+                check_distinct(&text!("选项", "variants of the choice"), names, faults);
             }
             TypeShape::Struct(_) => {}
         }
@@ -80,14 +94,18 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
                 .iter()
                 .find(|(_, keys, _)| keys.is_subset(&required));
             if let Some((name, _, at)) = hiding {
-                let message = format!(
-                    "every `{}` would be read as `{name}`, because it has all its required keys",
-                    variant.name
+                let message = text!(
+                    "每个 `{variant}` 都会当成 `{name}`，因为后者的必填键它全都有",
+                    "every `{variant}` would be read as `{name}`, because it has all its required keys",
+                    variant = variant.name
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::SameVariants, span, message)
-                        .also(*at, "tried first")
-                        .note("put the variant with more required keys first"),
+                        .also(*at, text!("先尝试这个", "tried first"))
+                        .note(text!(
+                            "把必填键更多的选项放在前面",
+                            "put the variant with more required keys first"
+                        )),
                 );
             }
             earlier.push((&variant.name, required, span));

@@ -8,6 +8,7 @@ use crate::load::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::lower::envelope_type_fits;
 use crate::load::names;
 use crate::model::EnvelopeRole;
+use crate::text;
 use std::collections::HashMap;
 
 /// Requests may carry a time, responses a time and a result, each once; a text is beside the code that it explains.
@@ -30,7 +31,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
             needed,
             &used,
             envelope.place.key_at(key),
-            "envelope key",
+            &text!("公共字段的键", "envelope key"),
             faults,
         );
     }
@@ -39,7 +40,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(
                 FaultCode::ResultInRequest,
                 field.place.at(ENVELOPE_FIELD.role),
-                "a request carries no result",
+                text!("请求不带结果", "a request carries no result"),
             ));
         }
     }
@@ -54,12 +55,18 @@ pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
     if calls.item.max_age_ms.is_some()
         && !request.any(|field| field.item.role == EnvelopeRole::Time)
     {
-        let message = "requests carry no time, so that none could be found too old";
+        let message = text!(
+            "请求不带时间，无从判断是否过期",
+            "requests carry no time, so that none could be found too old"
+        );
         let span = calls.place.at(CALLS.max_age_ms);
         faults.push(
             Diagnostic::error(FaultCode::AgeWithoutTime, span, message)
-                .also(envelope.place.key_at(ENVELOPE.request), "their envelope")
-                .fix(span, "never", "write `never`"),
+                .also(
+                    envelope.place.key_at(ENVELOPE.request),
+                    text!("请求的公共字段", "their envelope"),
+                )
+                .fix(span, "never", text!("改写为 `never`", "write `never`")),
         );
     }
 }
@@ -75,18 +82,22 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             let (item, place) = (&field.item, field.place);
             if !envelope_type_fits(item.role, &item.ty) {
                 let expected = match item.role {
-                    EnvelopeRole::Time => "timestamp_ms",
-                    EnvelopeRole::ResultCode => "an integer",
-                    EnvelopeRole::ResultText => "string",
+                    EnvelopeRole::Time => text!("timestamp_ms", "timestamp_ms"),
+                    EnvelopeRole::ResultCode => text!("整数", "an integer"),
+                    EnvelopeRole::ResultText => text!("string", "string"),
                 };
-                let message = format!("an envelope key of this role is {expected}");
+                let message = text!(
+                    "这种角色的公共字段的键，类型应为：{expected}",
+                    "an envelope key of this role is {expected}",
+                    expected = expected
+                );
                 faults.push(
                     Diagnostic::error(
                         FaultCode::EnvelopeType,
                         place.at(ENVELOPE_FIELD.r#type),
                         message,
                     )
-                    .also(place.at(ENVELOPE_FIELD.role), "the role"),
+                    .also(place.at(ENVELOPE_FIELD.role), text!("角色", "the role")),
                 );
             } else if let Some(node) = ENVELOPE_FIELD.example.of(place.node) {
                 value::check_plain(draft, &item.ty, node, faults);
@@ -95,10 +106,14 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             if !names::is_snake(&item.name) {
                 faults.push(super::names::unusable(&item.wire, place.name()));
             } else if let Some(earlier) = first.insert(item.name.as_str(), span) {
-                let message = format!("two envelope keys are called `{}` in code", item.name);
+                let message = text!(
+                    "有两个公共字段的键在代码中都叫 `{name}`",
+                    "two envelope keys are called `{name}` in code",
+                    name = item.name
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also(earlier, "first used here"),
+                        .also(earlier, text!("首次出现在这里", "first used here")),
                 );
             }
         }

@@ -8,6 +8,7 @@ use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TABLE};
 use crate::load::resolve::is_derivable;
 use crate::model::{Example, Type, TypeRef};
+use crate::text;
 
 /// Every required field has an example, or one can be derived.
 pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
@@ -17,12 +18,19 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::AbsentRequired,
                     part.place.at(FIELD.example),
-                    format!(
-                        "`{}` is never absent, so no example can leave it out",
-                        field.wire
+                    text!(
+                        "`{field}` 必定出现，示例不能省略它",
+                        "`{field}` is never absent, so no example can leave it out",
+                        field = field.wire
                     ),
                 )
-                .also(part.ty, "a `?` after the type makes it optional"),
+                .also(
+                    part.ty,
+                    text!(
+                        "类型后面加 `?` 表示可选",
+                        "a `?` after the type makes it optional"
+                    ),
+                ),
             );
         } else if field.example == Example::Derived
             && !is_derivable(&field.ty)
@@ -32,9 +40,16 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::MissingExample,
                     part.place.name(),
-                    format!("`{}` has no example", field.wire),
+                    text!(
+                        "`{field}` 没有示例",
+                        "`{field}` has no example",
+                        field = field.wire
+                    ),
                 )
-                .note("numbers and strings need one: documentation, mock and test vectors show it"),
+                .note(text!(
+                    "数值和字符串必须有示例：文档、模拟机器人和测试向量都要用",
+                    "numbers and strings need one: documentation, mock and test vectors show it"
+                )),
             );
         }
     }
@@ -65,7 +80,11 @@ pub(super) fn check_rows(draft: &Draft<'_>, faults: &mut Faults) {
                     code: FaultCode::RowMismatch,
                     ..mismatch
                 };
-                faults.push(mismatch.into_fault().also(at, "the struct of a row"));
+                faults.push(
+                    mismatch
+                        .into_fault()
+                        .also(at, text!("一行的结构", "the struct of a row")),
+                );
             }
         }
     }

@@ -3,8 +3,9 @@
 use super::reach::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
-use crate::model::TypeShape;
+use crate::model::{Text, TypeShape};
 use crate::syntax::Span;
+use crate::text;
 
 /// Most fields of a body, all types in it written out.
 const FIELDS: u64 = 10_000;
@@ -81,16 +82,26 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
     let others: Vec<_> = types
         .iter()
         .skip(1)
-        .map(|ty| format!("`{}`", ty.def.name))
+        .map(|ty| text!("`{name}`", "`{name}`", name = ty.def.name))
         .collect();
-    let way = if others.is_empty() { "" } else { " by way of " };
-    let message = format!("`{name}` contains itself{way}{}", others.join(", "));
+    let message = if others.is_empty() {
+        text!("`{name}` 包含自身", "`{name}` contains itself")
+    } else {
+        text!(
+            "`{name}` 通过 {others} 包含自身",
+            "`{name}` contains itself by way of {others}",
+            others = Text::joined(others, "、", ", ")
+        )
+    };
     let last = *types.last()?;
     let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
     Some(
         fault
-            .also(first.place.name(), "declared here")
-            .note("for values of arbitrary depth, use `json`"),
+            .also(first.place.name(), text!("在这里声明", "declared here"))
+            .note(text!(
+                "层数不定的值用 `json`",
+                "for values of arbitrary depth, use `json`"
+            )),
     )
 }
 
@@ -129,9 +140,15 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         let message = if fields > FIELDS {
-            format!("with all its types expanded, this body has more than {FIELDS} fields")
+            text!(
+                "所有类型展开后，这个消息体的字段超过 {FIELDS} 个",
+                "with all its types expanded, this body has more than {FIELDS} fields"
+            )
         } else if depth > DEPTH {
-            format!("the types of this body are nested more than {DEPTH} levels deep")
+            text!(
+                "这个消息体的类型嵌套超过 {DEPTH} 层",
+                "the types of this body are nested more than {DEPTH} levels deep"
+            )
         } else {
             continue;
         };

@@ -7,19 +7,24 @@ use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
 use crate::load::scalar;
 use crate::model::{
-    BodyState, Example, Field, Number, Quirk, Scalar, Type, TypeShape, Value, WireForm,
+    BodyState, Example, Field, Number, Quirk, Scalar, Text, Type, TypeShape, Value, WireForm,
 };
 use crate::syntax::{Node, Span};
+use crate::text;
 use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
 pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if part.borrows_text && !matches!(field.ty, Type::Named(_)) {
-            let message = format!("`{}` has no description", field.wire);
+            let message = text!(
+                "`{field}` 没有说明",
+                "`{field}` has no description",
+                field = field.wire
+            );
             faults.push(
                 Diagnostic::error(FaultCode::ShortForm, part.ty, message)
-                    .note("write `{ type: …, zh: …, en: … }`; the short form is for named types, whose title describes the field"),
+                    .note(text!("写成 `{{ type: …, zh: …, en: … }}`；简写只用于命名类型，以类型的标题说明字段", "write `{{ type: …, zh: …, en: … }}`; the short form is for named types, whose title describes the field")),
             );
         }
     }
@@ -37,13 +42,25 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
         let zh = field.text.zh.is_empty() && TEXT.zh.of(node).is_none();
         let en = field.text.en.is_empty() && TEXT.en.of(node).is_none();
         let message = match (zh, en) {
-            (true, true) => "this inline object has neither a Chinese nor an English text",
-            (true, false) => "the Chinese text `zh` of this inline object is missing",
-            (false, true) => "the English text `en` of this inline object is missing",
+            (true, true) => text!(
+                "这个内嵌对象既没有中文，也没有英文",
+                "this inline object has neither a Chinese nor an English text"
+            ),
+            (true, false) => text!(
+                "这个内嵌对象缺少中文 `zh`",
+                "the Chinese text `zh` of this inline object is missing"
+            ),
+            (false, true) => text!(
+                "这个内嵌对象缺少英文 `en`",
+                "the English text `en` of this inline object is missing"
+            ),
             (false, false) => continue,
         };
         let fault = Diagnostic::error(FaultCode::MissingTranslation, span, message);
-        faults.push(fault.note("write `{ fields: { … }, zh: …, en: … }`"));
+        faults.push(fault.note(text!(
+            "写成 `{{ fields: {{ … }}, zh: …, en: … }}`",
+            "write `{{ fields: {{ … }}, zh: …, en: … }}`"
+        )));
     }
 }
 
@@ -64,10 +81,14 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                     let fits =
                         matches!(bound, Number::Int(value) if (least..=most).contains(value));
                     if !fits {
-                        let message = format!("this is not a value of {}", kind.name());
+                        let message = text!(
+                            "这不是 {kind} 的值",
+                            "this is not a value of {kind}",
+                            kind = kind.name()
+                        );
                         faults.push(
                             Diagnostic::error(FaultCode::BoundsBeyondType, span, message)
-                                .also(part.ty, "the type"),
+                                .also(part.ty, text!("类型", "the type")),
                         );
                     }
                 }
@@ -75,7 +96,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 _ => faults.push(wrong_type(
                     FaultCode::BoundsOnWrongType,
                     key.name,
-                    "a number",
+                    &text!("数值", "a number"),
                     field,
                     (span, part.ty),
                 )),
@@ -88,9 +109,9 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::MinAboveMax,
                     part.place.at(FIELD.min),
-                    "`min` is larger than `max`",
+                    text!("`min` 大于 `max`", "`min` is larger than `max`"),
                 )
-                .also(part.place.at(FIELD.max), "the largest"),
+                .also(part.place.at(FIELD.max), text!("最大值", "the largest")),
             );
         }
     }
@@ -100,12 +121,17 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
 fn wrong_type(
     code: FaultCode,
     key: &str,
-    expected: &str,
+    expected: &Text,
     field: &Field,
     (span, ty): (Span, Span),
 ) -> Diagnostic {
-    let message = format!("`{key}` is for {expected}, which `{}` is not", field.wire);
-    Diagnostic::error(code, span, message).also(ty, "the type")
+    let message = text!(
+        "`{key}` 不适用于 `{field}`，只适用于：{expected}",
+        "`{key}` is for {expected}, which `{field}` is not",
+        field = field.wire,
+        expected = expected
+    );
+    Diagnostic::error(code, span, message).also(ty, text!("类型", "the type"))
 }
 
 /// `length` stands on strings, bytes and lists, in order.
@@ -116,7 +142,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let span = part.place.at(FIELD.length);
         if !matches!(field.ty, Type::String | Type::Base64 | Type::Array(_)) {
-            let expected = "a string, base64 or list";
+            let expected = &text!("字符串、base64 或列表", "a string, base64 or list");
             let spans = (span, part.ty);
             faults.push(wrong_type(
                 FaultCode::LengthOnWrongType,
@@ -131,9 +157,16 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::LengthInverted,
                     span,
-                    format!("the minimum length, {least}, is larger than the maximum, {most}"),
+                    text!(
+                        "最小长度 {least} 大于最大长度 {most}",
+                        "the minimum length, {least}, is larger than the maximum, {most}"
+                    ),
                 )
-                .fix(span, format!("[{most}, {least}]"), "swap them"),
+                .fix(
+                    span,
+                    format!("[{most}, {least}]"),
+                    text!("交换两者", "swap them"),
+                ),
             );
         }
     }
@@ -151,15 +184,16 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(wrong_type(
                 FaultCode::PatternOnWrongType,
                 FIELD.pattern.name,
-                "a string",
+                &text!("字符串", "a string"),
                 field,
                 spans,
             ));
         }
         if let Err(error) = Regex::new(&format!("^(?:{pattern})$")) {
-            let message = "this is not a regular expression";
+            let message = text!("这不是正则表达式", "this is not a regular expression");
             faults.push(
-                Diagnostic::error(FaultCode::BadPattern, span, message).note(error.to_string()),
+                Diagnostic::error(FaultCode::BadPattern, span, message)
+                    .note(text!("正则表达式库的说明：{error}", "{error}")),
             );
         }
     }
@@ -176,7 +210,7 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(wrong_type(
                 FaultCode::OnlyOnWrongType,
                 FIELD.only.name,
-                "an enum",
+                &text!("枚举", "an enum"),
                 field,
                 spans,
             ));
@@ -189,14 +223,14 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             faults.extend(found.into_iter().map(|mismatch| {
                 let code = FaultCode::OnlyValue;
                 let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(part.ty, "the enum")
+                fault.also(part.ty, text!("枚举", "the enum"))
             }));
             let wire = scalar::scalar(node);
             match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
                 Some(first) => {
-                    let message = "this value is taken already";
+                    let message = text!("这个值已经列出", "this value is taken already");
                     let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), "here"));
+                    faults.push(fault.also(first.span(), text!("在这里", "here")));
                 }
                 None => earlier.push(node),
             }
@@ -223,12 +257,19 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DefaultOnRequired,
                     span,
-                    format!(
-                        "`{}` is never absent, so it cannot have a default",
-                        field.wire
+                    text!(
+                        "`{field}` 必定出现，不能有默认值",
+                        "`{field}` is never absent, so it cannot have a default",
+                        field = field.wire
                     ),
                 )
-                .also(part.ty, "a `?` after the type makes it optional"),
+                .also(
+                    part.ty,
+                    text!(
+                        "类型后面加 `?` 表示可选",
+                        "a `?` after the type makes it optional"
+                    ),
+                ),
             );
         }
         if is_default(draft, &field.ty, default) {
@@ -245,9 +286,13 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DefaultType,
                     span,
-                    format!("this is not a value of the type of `{}`", field.wire),
+                    text!(
+                        "这个值不符合 `{field}` 的类型",
+                        "this is not a value of the type of `{field}`",
+                        field = field.wire
+                    ),
                 )
-                .also(part.ty, "the type"),
+                .also(part.ty, text!("类型", "the type")),
             );
         }
     }
@@ -285,22 +330,22 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
         }
         for (quirk, node) in quirks.iter().zip(FIELD.quirk.items(part.place.node)) {
             let (expected, fits) = match quirk {
-                Quirk::EmptyIsAbsent => ("an optional field", field.optional),
+                Quirk::EmptyIsAbsent => (text!("可选字段", "an optional field"), field.optional),
                 Quirk::LenientNumber => (
-                    "a number",
+                    text!("数值", "a number"),
                     matches!(
                         field.ty,
                         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS
                     ),
                 ),
-                Quirk::LenientBool => ("a bool", field.ty == Type::Bool),
+                Quirk::LenientBool => (text!("布尔值", "a bool"), field.ty == Type::Bool),
             };
             if !fits {
                 let spans = (node.span(), part.ty);
                 faults.push(wrong_type(
                     FaultCode::QuirkOnWrongType,
                     quirk.name(),
-                    expected,
+                    &expected,
                     field,
                     spans,
                 ));
@@ -315,7 +360,7 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
         let (expected, fits) = match field.wire_form {
             WireForm::Plain => continue,
             WireForm::String => (
-                "a number or bool",
+                text!("数值或布尔值", "a number or bool"),
                 matches!(
                     field.ty,
                     Type::Bool
@@ -325,7 +370,7 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
                         | Type::TimestampS
                 ),
             ),
-            WireForm::Number => ("a bool", field.ty == Type::Bool),
+            WireForm::Number => (text!("布尔值", "a bool"), field.ty == Type::Bool),
         };
         if !fits {
             let spans = (part.place.at(FIELD.wire), part.ty);
@@ -333,7 +378,7 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(wrong_type(
                 FaultCode::WireOnWrongType,
                 &said,
-                expected,
+                &expected,
                 field,
                 spans,
             ));
@@ -352,9 +397,15 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::OpenBodyFields,
                     part.place.name(),
-                    "an open body cannot have fields: nothing is known about it",
+                    text!(
+                        "缺失的消息体不能有字段：其内容一概不知",
+                        "an open body cannot have fields: nothing is known about it"
+                    ),
                 )
-                .note("use `inferred` if the source document gives evidence for these fields"),
+                .note(text!(
+                    "如果这些字段在源文档中有依据，写 `inferred`",
+                    "use `inferred` if the source document gives evidence for these fields"
+                )),
             );
         }
     }

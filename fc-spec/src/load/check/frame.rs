@@ -7,9 +7,10 @@ use crate::load::grammar::{
 };
 use crate::load::names;
 use crate::model::{
-    EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole,
+    EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
 };
 use crate::syntax::{Node, Span};
+use crate::text;
 use crate::vocabulary::Word;
 use std::collections::HashMap;
 
@@ -31,9 +32,16 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::SamePort,
                 span(PortRole::Data),
-                format!("both ports have the number {}", second.number),
+                text!(
+                    "两个端口的号码都是 {number}",
+                    "both ports have the number {number}",
+                    number = second.number
+                ),
             )
-            .also(span(PortRole::Command), "first used here"),
+            .also(
+                span(PortRole::Command),
+                text!("首次出现在这里", "first used here"),
+            ),
         );
     }
 }
@@ -47,9 +55,12 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::BadHeaderType,
                     span,
-                    "this is not a header field type",
+                    text!("这不是包头字段的类型", "this is not a header field type"),
                 )
-                .note("the types are u8, u16, u32, u64 and `bytes(N)`"),
+                .note(text!(
+                    "类型有 u8、u16、u32、u64 和 `bytes(N)`",
+                    "the types are u8, u16, u32, u64 and `bytes(N)`"
+                )),
             );
             continue;
         }
@@ -77,16 +88,22 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
         };
         if field.item.ty != expected {
             let spelling = expected.to_string();
-            let or = match field.item.role {
-                Some(HeaderRole::Id) => "u16 or ",
-                Some(HeaderRole::Status) => "an integer, such as ",
-                _ => "",
+            let wanted = match field.item.role {
+                Some(HeaderRole::Id) => text!("u16 或 {spelling}", "u16 or {spelling}"),
+                Some(HeaderRole::Status) => {
+                    text!("整数，例如 {spelling}", "an integer, such as {spelling}")
+                }
+                _ => text!("{spelling}", "{spelling}"),
             };
-            let message = format!("a header field with this role must be {or}{spelling}");
-            let fix = format!("write `{spelling}`");
+            let message = text!(
+                "这种角色的包头字段，类型应为：{wanted}",
+                "a header field with this role must be {wanted}",
+                wanted = wanted
+            );
+            let fix = text!("改写为 `{spelling}`", "write `{spelling}`");
             faults.push(
                 Diagnostic::error(FaultCode::HeaderWidth, span, message)
-                    .also(field.place.at(HEADER_FIELD.role), "the role")
+                    .also(field.place.at(HEADER_FIELD.role), text!("角色", "the role"))
                     .fix(span, spelling, fix),
             );
         }
@@ -118,7 +135,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
         needed,
         &used,
         frame.place.key_at(FRAME.header),
-        "header field",
+        &text!("包头字段", "header field"),
         faults,
     );
     if let Some(head) = frame
@@ -131,7 +148,10 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(Diagnostic::error(
             FaultCode::HeadNotFirst,
             field.place.name(),
-            "the head is not the first header field, so frames could not be recognised by it",
+            text!(
+                "帧头不是第一个包头字段，无法靠它识别一帧",
+                "the head is not the first header field, so frames could not be recognised by it"
+            ),
         ));
     }
 }
@@ -141,7 +161,7 @@ pub(super) fn check_each_once<R: Word>(
     needed: impl Fn(R) -> bool,
     used: &[(R, Span)],
     at: Span,
-    what: &str,
+    what: &Text,
     faults: &mut Faults,
 ) {
     for role in R::SET.iter().copied() {
@@ -149,16 +169,24 @@ pub(super) fn check_each_once<R: Word>(
         let mut places = used.iter().filter(|(used, _)| *used == role);
         let Some((_, first)) = places.next() else {
             if needed(role) {
-                let message = format!("no {what} has the role `{name}`");
+                let message = text!(
+                    "缺少角色为 `{name}` 的{what}",
+                    "no {what} has the role `{name}`",
+                    what = what
+                );
                 faults.push(Diagnostic::error(FaultCode::RoleMissing, at, message));
             }
             continue;
         };
         for (_, again) in places {
-            let message = format!("a second {what} has the role `{name}`");
+            let message = text!(
+                "又有一个角色为 `{name}` 的{what}",
+                "a second {what} has the role `{name}`",
+                what = what
+            );
             faults.push(
                 Diagnostic::error(FaultCode::RoleTwice, *again, message)
-                    .also(*first, "first used here"),
+                    .also(*first, text!("首次出现在这里", "first used here")),
             );
         }
     }
@@ -173,14 +201,20 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(
                 FaultCode::HeaderQuirk,
                 field.place.at(HEADER_FIELD.quirk),
-                "`zero_when_plain` only applies to the field with the role `plain_length`",
+                text!(
+                    "`zero_when_plain` 只适用于角色为 `plain_length` 的字段",
+                    "`zero_when_plain` only applies to the field with the role `plain_length`"
+                ),
             ));
         }
         if HEADER_FIELD.algorithm.of(field.place.node).is_some() && item.digest().is_none() {
             faults.push(Diagnostic::error(
                 FaultCode::AlgorithmWithoutDigest,
                 field.place.at(HEADER_FIELD.algorithm),
-                "only the field with the role `digest` has an algorithm",
+                text!(
+                    "只有角色为 `digest` 的字段才有算法",
+                    "only the field with the role `digest` has an algorithm"
+                ),
             ));
         }
         if HEADER_FIELD.value.of(field.place.node).is_none() {
@@ -189,11 +223,22 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         let span = field.place.at(HEADER_FIELD.value);
         let bits = u32::try_from(item.ty.size().saturating_mul(8)).unwrap_or(u32::MAX);
         let message = if !item.is_sent_as_value() {
-            "the role of this field decides what is sent".to_owned()
+            text!(
+                "这个字段发送什么由它的角色决定",
+                "the role of this field decides what is sent"
+            )
         } else if matches!(item.ty, HeaderType::Bytes(_)) {
-            "a byte field is sent as zeros and cannot have a value".to_owned()
+            text!(
+                "字节字段发送全零，不能有值",
+                "a byte field is sent as zeros and cannot have a value"
+            )
         } else if bits < 64 && item.value >> bits != 0 {
-            format!("{} does not fit into {}", item.value, item.ty)
+            text!(
+                "{ty} 放不下 {value}",
+                "{value} does not fit into {ty}",
+                value = item.value,
+                ty = item.ty
+            )
         } else {
             continue;
         };
@@ -210,11 +255,14 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
         if !names::is_snake(name) {
             faults.push(super::names::unusable(&field.item.wire, field.place.name()));
         } else if let Some(earlier) = first.insert(name, span) {
-            let message = format!("two header fields are named `{name}` in code");
+            let message = text!(
+                "有两个包头字段在代码中都叫 `{name}`",
+                "two header fields are named `{name}` in code"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                    .also(earlier, "first used here")
-                    .note("give one of them a `name`"),
+                    .also(earlier, text!("首次出现在这里", "first used here"))
+                    .note(text!("给其中一个写上 `name`", "give one of them a `name`")),
             );
         }
     }
@@ -240,14 +288,17 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
         if let Some(field) = field
             && head.len() != field.item.ty.size()
         {
-            let message = format!(
-                "this head has {} bytes and the header's head field {}",
-                head.len(),
-                field.item.ty.size()
+            let message = text!(
+                "这个帧头有 {bytes} 字节，包头中的帧头字段却有 {size} 字节",
+                "this head has {bytes} bytes and the header's head field {size}",
+                bytes = head.len(),
+                size = field.item.ty.size()
             );
             faults.push(
-                Diagnostic::error(FaultCode::HeadLength, span(key), message)
-                    .also(field.place.at(HEADER_FIELD.r#type), "the head field"),
+                Diagnostic::error(FaultCode::HeadLength, span(key), message).also(
+                    field.place.at(HEADER_FIELD.r#type),
+                    text!("帧头字段", "the head field"),
+                ),
             );
         }
     }
@@ -256,9 +307,15 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::HeadsEqual,
                 span(HEADS.response),
-                "requests and responses have the same head and cannot be distinguished",
+                text!(
+                    "请求和响应的帧头相同，无法区分",
+                    "requests and responses have the same head and cannot be distinguished"
+                ),
             )
-            .also(span(HEADS.request), "the head of a request"),
+            .also(
+                span(HEADS.request),
+                text!("请求的帧头", "the head of a request"),
+            ),
         );
     }
 }
@@ -278,11 +335,11 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         |role| role != KindRole::Reserved,
         &used,
         frame.place.key_at(FRAME.kinds),
-        "frame kind",
+        &text!("数据类型", "frame kind"),
         faults,
     );
     super::names::check_distinct(
-        "frame kinds",
+        &text!("数据类型", "frame kinds"),
         frame
             .kinds
             .iter()
@@ -291,19 +348,26 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     );
     for kind in &frame.kinds {
         let expected = match kind.item.role {
-            KindRole::Stream => (PortRole::Data, "streams"),
-            KindRole::Command | KindRole::Report => (PortRole::Command, "commands and reports"),
+            KindRole::Stream => (PortRole::Data, text!("数据流", "streams")),
+            KindRole::Command | KindRole::Report => (
+                PortRole::Command,
+                text!("指令和上报", "commands and reports"),
+            ),
             KindRole::Reserved => continue,
         };
         let (port, what) = expected;
         if kind.item.port != port {
             let word = port.name();
-            let message = format!("{what} are sent on the port `{word}`");
+            let message = text!(
+                "{what}在端口 `{word}` 上发送",
+                "{what} are sent on the port `{word}`",
+                what = what
+            );
             let span = kind.place.at(FRAME_KIND.port);
             faults.push(Diagnostic::error(FaultCode::KindPort, span, message).fix(
                 span,
                 word,
-                format!("write `{word}`"),
+                text!("改写为 `{word}`", "write `{word}`"),
             ));
         }
     }
@@ -321,23 +385,37 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
         .collect::<Vec<_>>();
     let place = frame.place.key_at(FRAME.encodings);
     let has = |role| (frame.header.iter()).any(|field| field.item.role == Some(role));
-    let mut lacking = |role: HeaderRole, why: &str| {
-        let message = format!("no header field has the role `{}`, {why}", role.name());
+    let mut lacking = |role: HeaderRole, why: &Text| {
+        let message = text!(
+            "没有角色为 `{role}` 的包头字段，{why}",
+            "no header field has the role `{role}`, {why}",
+            role = role.name(),
+            why = why
+        );
         let fault = Diagnostic::error(FaultCode::RoleMissing, place, message);
-        faults.push(fault.also(frame.place.key_at(FRAME.header), "the header"));
+        faults.push(fault.also(
+            frame.place.key_at(FRAME.header),
+            text!("包头", "the header"),
+        ));
     };
     if !has(HeaderRole::Encoding) && !used.is_empty() {
-        let why = "so that no frame could say which of these it has";
+        let why = &text!(
+            "一帧无从说明用了其中哪一种",
+            "so that no frame could say which of these it has"
+        );
         lacking(HeaderRole::Encoding, why);
     } else if !has(HeaderRole::PlainLength)
         && used.iter().any(|(role, _)| *role == EncodingRole::Gzip)
     {
-        lacking(HeaderRole::PlainLength, "which compressed data needs");
+        lacking(
+            HeaderRole::PlainLength,
+            &text!("而压缩的数据需要它", "which compressed data needs"),
+        );
     }
     let needed = |role| role == EncodingRole::Plain && has(HeaderRole::Encoding);
-    check_each_once(needed, &used, place, "encoding", faults);
+    check_each_once(needed, &used, place, &text!("压缩方式", "encoding"), faults);
     super::names::check_distinct(
-        "encodings",
+        &text!("压缩方式", "encodings"),
         encodings.map(|encoding| {
             (
                 encoding.item.name.as_str(),
@@ -359,9 +437,15 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
             Diagnostic::error(
                 FaultCode::LimitTooSmall,
                 limits.place.at(LIMITS.frame_bytes),
-                format!("no frame can fit: the header alone has {header} bytes"),
+                text!(
+                    "任何帧都放不下：包头本身就有 {header} 字节",
+                    "no frame can fit: the header alone has {header} bytes"
+                ),
             )
-            .also(frame.place.key_at(FRAME.header), "the header"),
+            .also(
+                frame.place.key_at(FRAME.header),
+                text!("包头", "the header"),
+            ),
         );
     }
 }

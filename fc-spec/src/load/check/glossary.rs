@@ -4,6 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
 use crate::syntax::{Node, Span};
+use crate::text;
 use std::collections::HashMap;
 
 /// In each language a word stands for one term, which has it once. Words that differ in case alone are one: readers
@@ -62,10 +63,18 @@ fn check_language(
 
 fn shared(node: Node<'_>, word: &str, earlier: &Seen<'_>, is_same_term: bool) -> Diagnostic {
     let message = if is_same_term {
-        format!("`{}` has the word `{word}` already", earlier.term)
+        text!(
+            "`{term}` 已经有 `{word}` 这个词",
+            "`{term}` has the word `{word}` already",
+            term = earlier.term
+        )
     } else {
-        format!("`{word}` already stands for `{}`", earlier.term)
+        text!(
+            "`{word}` 已经用来表示 `{term}`",
+            "`{word}` already stands for `{term}`",
+            term = earlier.term
+        )
     };
     Diagnostic::error(FaultCode::SharedWord, node.span(), message)
-        .also(earlier.span, "first used here")
+        .also(earlier.span, text!("首次出现在这里", "first used here"))
 }

@@ -5,6 +5,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place};
 use crate::load::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
 use crate::load::scalar;
+use crate::text;
 
 /// Nothing is withdrawn before it appeared.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
@@ -29,8 +30,11 @@ fn order(place: Place<'_>) -> Option<Diagnostic> {
         Diagnostic::error(
             FaultCode::DatesOutOfOrder,
             withdrawn.span(),
-            "this is deprecated before it was added",
+            text!(
+                "停用的时间早于加入的时间",
+                "this is deprecated before it was added"
+            ),
         )
-        .also(since.span(), "added here")
+        .also(since.span(), text!("在这里加入", "added here"))
     })
 }

@@ -4,8 +4,9 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place, Placed};
 use crate::load::grammar::{COMMON, FIELD, GROUP};
 use crate::load::names;
-use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, TypeShape};
+use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text, TypeShape};
 use crate::syntax::{Node, Span};
+use crate::text;
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
@@ -16,10 +17,13 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
         let id = group.item.id.as_str();
         let span = group.place.at(GROUP.id);
         if let Some(earlier) = first.insert(id, span) {
-            let message = format!("two files define a group `{id}`");
+            let message = text!(
+                "有两个文件定义了分组 `{id}`",
+                "two files define a group `{id}`"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateGroup, span, message)
-                    .also(earlier, "first used here"),
+                    .also(earlier, text!("首次出现在这里", "first used here")),
             );
         }
     }
@@ -37,7 +41,10 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
         if RESERVED_OPERATIONS.contains(&name) {
             faults.push(reserved(
                 span,
-                format!("`{name}.json` is a file of vectors without an operation"),
+                text!(
+                    "`{name}.json` 是一个不属于任何接口的测试向量文件",
+                    "`{name}.json` is a file of vectors without an operation"
+                ),
             ));
         }
         match first.get(name) {
@@ -45,9 +52,12 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::DuplicateOperation,
                     span,
-                    format!("two operations are named `{name}`"),
+                    text!(
+                        "有两个接口都叫 `{name}`",
+                        "two operations are named `{name}`"
+                    ),
                 )
-                .also(*earlier, "first used here"),
+                .also(*earlier, text!("首次出现在这里", "first used here")),
             ),
             None => {
                 first.insert(name, span);
@@ -62,10 +72,14 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let span = table.place.name();
         if let Some(earlier) = first.insert(&table.item.id, span) {
-            let message = format!("two tables are named `{}`", table.item.id);
+            let message = text!(
+                "有两个常量表都叫 `{id}`",
+                "two tables are named `{id}`",
+                id = table.item.id
+            );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateTable, span, message)
-                    .also(earlier, "first used here"),
+                    .also(earlier, text!("首次出现在这里", "first used here")),
             );
         }
     }
@@ -100,20 +114,21 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         let fault = Diagnostic::error(
             FaultCode::DuplicateType,
             ty.place.name(),
-            format!("two types are named `{name}`"),
+            text!("有两个类型都叫 `{name}`", "two types are named `{name}`"),
         )
-        .also(earlier.place.name(), "the first one");
+        .also(earlier.place.name(), text!("第一个", "the first one"));
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
-            fault.note("types of bodies and inline objects are named after the operation and the keys that lead to them; an inline object may have a `type_name`")
+            fault.note(text!("消息体和内嵌对象的类型，以接口和通向它们的键命名；内嵌对象可以写 `type_name`", "types of bodies and inline objects are named after the operation and the keys that lead to them; an inline object may have a `type_name`"))
         } else {
             fault
         });
     }
 }
 
-fn reserved(span: Span, message: String) -> Diagnostic {
-    Diagnostic::error(FaultCode::ReservedName, span, message).note("choose another name")
+fn reserved(span: Span, message: Text) -> Diagnostic {
+    Diagnostic::error(FaultCode::ReservedName, span, message)
+        .note(text!("换一个名称", "choose another name"))
 }
 
 /// Fields of a struct have names in code, each its own.
@@ -134,14 +149,17 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 continue;
             }
             if let Some((earlier, at)) = first.get(field.name.as_str()) {
-                let message = format!(
-                    "`{}` and `{}` are both named `{}` in code",
-                    earlier.wire, field.wire, field.name
+                let message = text!(
+                    "`{first}` 和 `{second}` 在代码中都叫 `{name}`",
+                    "`{first}` and `{second}` are both named `{name}` in code",
+                    first = earlier.wire,
+                    second = field.wire,
+                    name = field.name
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also(*at, "first used here")
-                        .note("give one of them a `name`"),
+                        .also(*at, text!("首次出现在这里", "first used here"))
+                        .note(text!("给其中一个写上 `name`", "give one of them a `name`")),
                 );
             } else {
                 first.insert(&field.name, (field, span));
@@ -155,9 +173,12 @@ pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
     Diagnostic::error(
         FaultCode::UnusableName,
         span,
-        format!("no name in code can be derived from `{wire}`"),
+        text!(
+            "从 `{wire}` 得不出代码中的名称",
+            "no name in code can be derived from `{wire}`"
+        ),
     )
-    .note("give it a `name`")
+    .note(text!("给它写上 `name`", "give it a `name`"))
 }
 
 /// A wire key, spelt as a key or as another spelling, stands once in a struct and not in the envelope beside it.
@@ -186,10 +207,13 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
         for (key, span) in keys {
             match first.entry(key) {
                 Slot::Occupied(earlier) => {
-                    let message = format!("the wire key `{key}` occurs twice here");
+                    let message = text!(
+                        "报文中的键名 `{key}` 在这里出现两次",
+                        "the wire key `{key}` occurs twice here"
+                    );
                     faults.push(
                         Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
-                            .also(*earlier.get(), "first used here"),
+                            .also(*earlier.get(), text!("首次出现在这里", "first used here")),
                     );
                     continue;
                 }
@@ -199,11 +223,13 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
             }
             let declared = envelope.iter().find(|field| field.item.wire == key);
             if let Some(declared) = declared {
-                let message =
-                    format!("`{key}` is a key of the envelope, which is part of every message");
+                let message = text!(
+                    "`{key}` 是公共字段的键，每条消息都有",
+                    "`{key}` is a key of the envelope, which is part of every message"
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)
-                        .also(declared.place.name(), "declared here"),
+                        .also(declared.place.name(), text!("在这里声明", "declared here")),
                 );
             }
         }
@@ -233,7 +259,7 @@ fn envelope_of<'d, 'a>(
 
 /// Names that become variants of one Rust enum: no two may be spelt alike there.
 pub(super) fn check_distinct<'n>(
-    what: &str,
+    what: &Text,
     named: impl IntoIterator<Item = (&'n str, Span)>,
     faults: &mut Faults,
 ) {
@@ -245,13 +271,20 @@ pub(super) fn check_distinct<'n>(
         match first.get(&names::pascal(name)) {
             Some((earlier, at)) => {
                 let message = if *earlier == name {
-                    format!("two {what} are named `{name}`")
+                    text!(
+                        "有两个{what}都叫 `{name}`",
+                        "two {what} are named `{name}`",
+                        what = what
+                    )
                 } else {
-                    format!("`{earlier}` and `{name}` are the same name in code")
+                    text!(
+                        "`{earlier}` 和 `{name}` 在代码中是同一个名称",
+                        "`{earlier}` and `{name}` are the same name in code"
+                    )
                 };
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateName, span, message)
-                        .also(*at, "first used here"),
+                        .also(*at, text!("首次出现在这里", "first used here")),
                 );
             }
             None => {

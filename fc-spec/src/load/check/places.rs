@@ -6,8 +6,9 @@ use crate::load::draft::Draft;
 use crate::load::grammar::unit::is_length;
 use crate::load::grammar::{COMMON, FIELD, FILE};
 use crate::load::names;
-use crate::model::{StructType, Type, TypeShape};
+use crate::model::{StructType, Text, Type, TypeShape};
 use crate::syntax::Span;
+use crate::text;
 use std::collections::HashSet;
 
 /// `coordinates` of a field stands where objects are, and says what their struct leaves open.
@@ -20,13 +21,15 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             // A list of an unknown type has been reported.
             let named = field.ty.innermost();
             if named.is_none_or(|named| draft.type_named(named.name()).is_some()) {
-                let message = format!(
-                    "`{}` is for an object or a list of them, which `{}` is not",
-                    FIELD.coordinates.name, field.wire
+                let message = text!(
+                    "`{coordinates}` 只用于对象或对象的列表，而 `{field}` 不是",
+                    "`{coordinates}` is for an object or a list of them, which `{field}` is not",
+                    coordinates = FIELD.coordinates.name,
+                    field = field.wire
                 );
                 let span = part.place.at(FIELD.coordinates);
                 let fault = Diagnostic::error(FaultCode::CoordinatesOnWrongType, span, message);
-                faults.push(fault.also(part.ty, "the type"));
+                faults.push(fault.also(part.ty, text!("类型", "the type")));
             }
             continue;
         };
@@ -36,10 +39,16 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             .filter(|known| *known != system)
         {
             let span = part.place.at(FIELD.coordinates);
-            let message = format!("`{}` is given in `{known}`", field.ty.item());
+            let message = text!(
+                "`{ty}` 以 `{known}` 为准",
+                "`{ty}` is given in `{known}`",
+                ty = field.ty.item()
+            );
             faults.push(
-                Diagnostic::error(FaultCode::CoordinatesTwice, span, message)
-                    .note("say it on the fields alone where they differ, and not on the type"),
+                Diagnostic::error(FaultCode::CoordinatesTwice, span, message).note(text!(
+                    "坐标系不同时只写在字段上，不写在类型上",
+                    "say it on the fields alone where they differ, and not on the type"
+                )),
             );
         }
     }
@@ -49,10 +58,16 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     let mut push = |shape: &StructType, span, what: &str| {
         if !has_length(draft, shape, &mut HashSet::new()) {
-            let message = format!("no field of {what} has a unit of length");
+            let message = text!(
+                "{what} 没有任何字段以长度为单位",
+                "no field of {what} has a unit of length",
+                what = what
+            );
             faults.push(
-                Diagnostic::error(FaultCode::CoordinatesWithoutLength, span, message)
-                    .note("write the `unit` of its positions, such as `m`"),
+                Diagnostic::error(FaultCode::CoordinatesWithoutLength, span, message).note(text!(
+                    "给位置写上 `unit`，例如 `m`",
+                    "write the `unit` of its positions, such as `m`"
+                )),
             );
         }
     };
@@ -108,11 +123,23 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
         // What is no name has been reported.
         let users = set.users.iter().filter(|(name, _)| names::is_snake(name));
         for (name, span) in users.filter(|(name, _)| !declared.contains(name)) {
-            let message = format!("there is no {} `{name}`", set.what);
+            let message = text!(
+                "没有{what} `{name}`",
+                "there is no {what} `{name}`",
+                what = set.what
+            );
             let fault = Diagnostic::error(set.unknown, *span, message);
             faults.push(match nearest(name, declared.iter().copied()) {
-                Some(near) => fault.fix(*span, near, format!("did you mean `{near}`?")),
-                None => fault.note(format!("declare it under `{}:`", set.key)),
+                Some(near) => fault.fix(
+                    *span,
+                    near,
+                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+                ),
+                None => fault.note(text!(
+                    "在 `{key}:` 下声明",
+                    "declare it under `{key}:`",
+                    key = set.key
+                )),
             });
         }
     }
@@ -128,8 +155,16 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             used.extend(nearest(slip, declared.iter().copied()));
         }
         for (name, span) in set.declared.iter().filter(|(name, _)| !used.contains(name)) {
-            let message = format!("nothing names the {} `{name}`", set.what);
-            let note = format!("write `{}` where it applies, or delete it", set.by);
+            let message = text!(
+                "没有内容用到{what} `{name}`",
+                "nothing names the {what} `{name}`",
+                what = set.what
+            );
+            let note = text!(
+                "在适用的地方写 `{by}`，或将它删除",
+                "write `{by}` where it applies, or delete it",
+                by = set.by
+            );
             faults.push(Diagnostic::error(set.unused, *span, message).note(note));
         }
     }
@@ -137,7 +172,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// What is declared under one key and named by another, each name with its place.
 struct Names<'d> {
-    what: &'static str,
+    what: Text,
     key: &'static str,
     by: &'static str,
     unknown: FaultCode,
@@ -160,7 +195,7 @@ fn systems<'d>(draft: &'d Draft<'_>) -> Names<'d> {
         Some((name, part.place.at(FIELD.coordinates)))
     });
     Names {
-        what: "coordinate system",
+        what: text!("坐标系", "coordinate system"),
         key: FILE.coordinates.name,
         by: FIELD.coordinates.name,
         unknown: FaultCode::UnknownCoordinates,
@@ -182,7 +217,7 @@ fn stores<'d>(draft: &'d Draft<'_>) -> Names<'d> {
         fields(draft).map(|(_, field, part)| (field.details().kept.as_deref(), part.place));
     let users = of_operations.chain(of_tables).chain(of_fields);
     Names {
-        what: "store",
+        what: text!("存储位置", "store"),
         key: FILE.stores.name,
         by: COMMON.kept.name,
         unknown: FaultCode::UnknownStore,

@@ -1,13 +1,15 @@
 //! What has to hold before a command is accepted.
 
+use super::each::called;
 use super::reach::each_name;
 use super::value::{Mismatch, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::Draft;
 use crate::load::grammar::{ACCEPTED, COMMAND};
 use crate::load::scalar;
-use crate::model::{Kind, Type, TypeRef, TypeShape};
+use crate::model::{Kind, Text, Type, TypeRef, TypeShape};
 use crate::syntax::{Entry, Node};
+use crate::text;
 use std::collections::{HashMap, HashSet};
 
 /// The preconditions of each command that has some, with its name.
@@ -24,10 +26,13 @@ pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, node) in preconditions(draft) {
         let is_empty = ACCEPTED.r#in.of(node).is_none() && ACCEPTED.after.of(node).is_none();
         if is_empty && node.as_mapping().is_some() {
-            let message = "this says neither a state nor a command that comes first";
+            let message = text!(
+                "既没有写状态，也没有写需要先执行的指令",
+                "this says neither a state nor a command that comes first"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::NoPrecondition, node.span(), message)
-                    .note("leave `accepted` out where nothing is known; `in: any` says that any state will do"),
+                    .note(text!("不清楚时不写 `accepted`；任何状态都可以时写 `in: any`", "leave `accepted` out where nothing is known; `in: any` says that any state will do")),
             );
         }
     }
@@ -46,18 +51,24 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
             };
             let name = &ty.def.name;
             if !matches!(ty.def.shape, TypeShape::Enum(_)) {
-                let message = format!("states are values of an enum, which `{name}` is not");
+                let message = text!(
+                    "状态是枚举的取值，而 `{name}` 不是枚举",
+                    "states are values of an enum, which `{name}` is not"
+                );
                 let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
-                faults.push(fault.also(ty.place.name(), "declared here"));
+                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
                 continue;
             }
             if !carried
                 .get_or_insert_with(|| carried_types(draft))
                 .contains(name.as_str())
             {
-                let message = format!("no report and no response carries a `{name}`");
+                let message = text!(
+                    "没有上报或响应带有 `{name}`",
+                    "no report and no response carries a `{name}`"
+                );
                 let fault = Diagnostic::error(FaultCode::UnseenState, key.span(), message);
-                faults.push(fault.also(ty.place.name(), "declared here"));
+                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
             }
             check_values(draft, name, value, faults);
         }
@@ -77,9 +88,9 @@ fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Fa
         let wire = scalar::scalar(node);
         match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
             Some(first) => {
-                let message = "this state occurs twice";
+                let message = text!("这个状态出现两次", "this state occurs twice");
                 let fault = Diagnostic::error(FaultCode::DuplicateItem, node.span(), message);
-                faults.push(fault.also(first.span(), "first here"));
+                faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
             }
             None => earlier.push(node),
         }
@@ -118,7 +129,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
             let Some(name) = key.as_str().filter(|name| draft.type_named(name).is_none()) else {
                 continue;
             };
-            let message = format!("there is no type `{name}`");
+            let message = text!("没有类型 `{name}`", "there is no type `{name}`");
             let fault = Diagnostic::error(FaultCode::UnknownType, key.span(), message);
             let types = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
             let near = nearest(name, types.map(|ty| ty.def.name.as_str()));
@@ -131,12 +142,16 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
             let mut operations = draft.operations.iter();
             let other = operations.find(|operation| operation.item.name == name);
             let fault = if let Some(other) = other {
-                let kind = other.item.kind().name();
-                let message = format!("`{name}` is a {kind}; what comes first is a command");
+                let kind = called(other.item.kind());
+                let message = text!(
+                    "`{name}` 是{kind}；需要先执行的只能是指令",
+                    "`{name}` is a {kind}; what comes first is a command",
+                    kind = kind
+                );
                 Diagnostic::error(FaultCode::NotACommand, node.span(), message)
-                    .also(other.place.name(), "declared here")
+                    .also(other.place.name(), text!("在这里声明", "declared here"))
             } else {
-                let message = format!("there is no command `{name}`");
+                let message = text!("没有指令 `{name}`", "there is no command `{name}`");
                 Diagnostic::error(FaultCode::UnknownOperation, node.span(), message)
             };
             let near = nearest(name, commands.iter().copied());
@@ -147,7 +162,11 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn fix(fault: Diagnostic, node: Node<'_>, near: Option<&str>) -> Diagnostic {
     match near {
-        Some(near) => fault.fix(node.span(), near, format!("did you mean `{near}`?")),
+        Some(near) => fault.fix(
+            node.span(),
+            near,
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        ),
         None => fault,
     }
 }
@@ -183,10 +202,17 @@ pub(super) fn check_circles(draft: &Draft<'_>, faults: &mut Faults) {
 fn circle<'n>(node: Node<'_>, commands: impl Iterator<Item = &'n (&'n str, usize)>) -> Diagnostic {
     let names: Vec<&str> = commands.map(|(name, _)| *name).collect();
     let message = match names.as_slice() {
-        [only] => format!("`{only}` cannot come before itself"),
+        [only] => text!(
+            "`{only}` 不能先于自己",
+            "`{only}` cannot come before itself"
+        ),
         several => {
-            let names = several.join("`, `");
-            format!("each of these commands comes before another of them: `{names}`")
+            let names = several.iter().map(|name| format!("`{name}`"));
+            text!(
+                "这些指令互为先后，形成循环：{names}",
+                "each of these commands comes before another of them: {names}",
+                names = Text::listed(names)
+            )
         }
     };
     Diagnostic::error(FaultCode::ComesBeforeItself, node.span(), message)

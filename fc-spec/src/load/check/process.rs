@@ -4,8 +4,9 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{COMMAND, REPORT, SET_OFF};
 use crate::load::process::{body, path, side, states, way};
-use crate::model::{Direction, Exchange, Operation, Type, TypeShape};
+use crate::model::{Direction, Exchange, Operation, Text, Type, TypeShape};
 use crate::syntax::{Node, Span};
+use crate::text;
 use std::collections::{HashMap, HashSet};
 
 /// Both ends of a tie are there, and hold ids of the same type.
@@ -19,9 +20,12 @@ pub(super) fn check_ties(draft: &Draft<'_>, faults: &mut Faults) {
             };
             let first = *seen.entry(name).or_insert(named.span());
             if first != named.span() {
-                let message = format!("`{name}` occurs twice in this list");
+                let message = text!(
+                    "`{name}` 在这个列表中出现两次",
+                    "`{name}` occurs twice in this list"
+                );
                 let fault = Diagnostic::error(FaultCode::DuplicateItem, named.span(), message);
-                faults.push(fault.also(first, "first listed here"));
+                faults.push(fault.also(first, text!("首次列在这里", "first listed here")));
             }
             let mut operations = draft.operations.iter();
             let Some(report) = operations.find(|it| it.item.name == name) else {
@@ -44,9 +48,15 @@ fn check_tie(
         return;
     };
     let Some((from_side, from)) = side(from) else {
-        let message = format!("`{from}` does not say which message of the command it is in");
+        let message = text!(
+            "`{from}` 没有写明在指令的哪条消息中",
+            "`{from}` does not say which message of the command it is in"
+        );
         let fault = Diagnostic::error(FaultCode::UnknownBodyKey, left.span(), message);
-        faults.push(fault.note("begin with `request.` or `response.`"));
+        faults.push(fault.note(text!(
+            "以 `request.` 或 `response.` 开头",
+            "begin with `request.` or `response.`"
+        )));
         return;
     };
     let ends = [
@@ -58,20 +68,27 @@ fn check_tie(
         if matches!(found, Type::Int(_) | Type::String) {
             return Some((found, span));
         }
-        let message = format!(
-            "`{}` has the type `{found}`, which no ID has",
-            keys.join(".")
+        let message = text!(
+            "`{keys}` 的类型是 `{found}`，ID 不会是这种类型",
+            "`{keys}` has the type `{found}`, which no ID has",
+            keys = keys.join(".")
         );
         let fault = Diagnostic::error(FaultCode::TieType, span, message);
-        faults.push(fault.note("an integer or a string ties a report to a command"));
+        faults.push(fault.note(text!(
+            "上报与指令靠整数或字符串相对应",
+            "an integer or a string ties a report to a command"
+        )));
         None
     });
     if let (Some((from, here)), Some((to, there))) = (from, to)
         && from != to
     {
-        let message = format!("`{from}` and `{to}` are never the same value");
+        let message = text!(
+            "`{from}` 和 `{to}` 不可能是同一个值",
+            "`{from}` and `{to}` are never the same value"
+        );
         let fault = Diagnostic::error(FaultCode::TieType, there, message);
-        faults.push(fault.also(here, format!("this is `{from}`")));
+        faults.push(fault.also(here, text!("这是 `{from}`", "this is `{from}`")));
     }
 }
 
@@ -88,21 +105,26 @@ fn end<'d>(
     if let Some(field) = way(draft, body, keys).and_then(|fields| fields.last().copied()) {
         return Some(&field.ty);
     }
-    let message = format!(
-        "the {} of `{}` has no key `{}`",
-        what(&operation.item, side),
-        operation.item.name,
-        keys.join(".")
+    let message = text!(
+        "`{name}` 的{what}没有键 `{key}`",
+        "the {what} of `{name}` has no key `{key}`",
+        what = what(&operation.item, side),
+        name = operation.item.name,
+        key = keys.join(".")
     );
     let fault = Diagnostic::error(FaultCode::UnknownBodyKey, span, message);
-    faults.push(fault.note("the way goes through objects, not through lists"));
+    faults.push(fault.note(text!(
+        "路径只能经过对象，不能经过列表",
+        "the way goes through objects, not through lists"
+    )));
     None
 }
 
-fn what(operation: &Operation, side: Direction) -> &'static str {
+fn what(operation: &Operation, side: Direction) -> Text {
     match (&operation.exchange, side) {
-        (Exchange::Command { .. }, side) => side.name(),
-        _ => REPORT.body.name,
+        (Exchange::Command { .. }, Direction::Request) => text!("请求", "request"),
+        (Exchange::Command { .. }, Direction::Response) => text!("响应", "response"),
+        _ => text!("消息体", "body"),
     }
 }
 
@@ -130,11 +152,16 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
                 TypeShape::Struct(_) | TypeShape::OneOf(_) => false,
             });
             if !is_process {
-                let message = format!("`{}` has no states of a process", keys.join("."));
+                let message = text!(
+                    "`{keys}` 没有过程的状态",
+                    "`{keys}` has no states of a process",
+                    keys = keys.join(".")
+                );
                 let fault = Diagnostic::error(FaultCode::NotAState, said.span(), message);
-                faults.push(fault.note(
-                    "a state is an enum with `order:`, or with a value that is `final: true`",
-                ));
+                faults.push(fault.note(text!(
+                    "状态是一个枚举，带有 `order:`，或有取值写了 `final: true`",
+                    "a state is an enum with `order:`, or with a value that is `final: true`"
+                )));
             }
         } else if said.is_none() && set_off.contains(report.item.name.as_str()) {
             let states = body(draft, &report.item, Direction::Request)
@@ -142,12 +169,16 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
                 .unwrap_or_default();
             let names: Vec<String> = states.iter().map(|keys| keys.join(".")).collect();
             if let [first, second, ..] = names.as_slice() {
-                let message = format!(
+                let message = text!(
+                    "`{first}` 和 `{second}` 都有状态：过程的状态是哪一个？",
                     "`{first}` and `{second}` both have states: which is that of the process?"
                 );
                 let span = report.place.name();
                 let fault = Diagnostic::error(FaultCode::AmbiguousState, span, message);
-                faults.push(fault.note(format!("write `state_in: {first}`, say")));
+                faults.push(fault.note(text!(
+                    "例如写 `state_in: {first}`",
+                    "write `state_in: {first}`, say"
+                )));
             }
         }
     }

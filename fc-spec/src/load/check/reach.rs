@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::TypeShape;
+use crate::text;
 
 /// Every declared type is used by an operation or a table, directly or within another type.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
@@ -32,10 +33,16 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
         let is_first = draft.type_index.get(&ty.def.name) == Some(&index);
         let is_declared = ty.place.key.as_str() == Some(ty.def.name.as_str());
         if !used && is_first && is_declared {
-            let message = format!("the type `{}` is not used", ty.def.name);
+            let message = text!(
+                "类型 `{name}` 没有用到",
+                "the type `{name}` is not used",
+                name = ty.def.name
+            );
             faults.push(
-                Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message)
-                    .note("use it in a body or delete it"),
+                Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message).note(text!(
+                    "在消息体中用到它，或将它删除",
+                    "use it in a body or delete it"
+                )),
             );
         }
     }

@@ -1,13 +1,14 @@
 //! Names that must stand for something.
 
-use super::each::fields;
+use super::each::{called, fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Place};
 use crate::load::grammar::{
     COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
 };
-use crate::model::{Kind, ResultRole, Type, TypeShape};
+use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
+use crate::text;
 use std::collections::HashSet;
 
 /// "Did you mean" looks through all names, so a spec with very many faults goes without.
@@ -53,7 +54,7 @@ fn innermost(place: Place<'_>) -> Node<'_> {
 }
 
 fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) -> Diagnostic {
-    let message = format!("there is no type `{name}`");
+    let message = text!("没有类型 `{name}`", "there is no type `{name}`");
     let span = node.span();
     let fault = Diagnostic::error(FaultCode::UnknownType, span, message);
     if faults.errors() >= SUGGESTIONS {
@@ -68,9 +69,9 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
         .map(|(_, near)| *near)
         .or_else(|| nearest(name, names.chain(Type::built_in())));
     let Some(near) = near else {
-        return fault.note("declare it under `types:`");
+        return fault.note(text!("在 `types:` 下声明", "declare it under `types:`"));
     };
-    let message = format!("did you mean `{near}`?");
+    let message = text!("是否想写 `{near}`？", "did you mean `{near}`?");
     match at_start(node, name) {
         Some(start) => fault.fix(
             Span::new(span.file, start, start + name.len()),
@@ -132,7 +133,13 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
             for (variant, part) in choice.variants.iter().zip(&ty.parts) {
                 if let (false, Some(node)) = (part.broken, NAMED_VARIANT.r#type.of(part.place.node))
                 {
-                    check_struct(draft, variant.ty.name(), node, "a variant", faults);
+                    check_struct(
+                        draft,
+                        variant.ty.name(),
+                        node,
+                        &text!("选项", "a variant"),
+                        faults,
+                    );
                 }
             }
         }
@@ -140,22 +147,32 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let row = TABLE.row.of(table.place.node);
         if let Some(node) = row.filter(|node| node.as_scalar().is_some()) {
-            check_struct(draft, table.item.row.name(), node, "a row", faults);
+            check_struct(
+                draft,
+                table.item.row.name(),
+                node,
+                &text!("一行", "a row"),
+                faults,
+            );
         }
     }
 }
 
-fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &str, faults: &mut Faults) {
+fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faults: &mut Faults) {
     match draft.type_named(name) {
         None => {
             let fault = unknown_type(draft, name, node, faults);
             faults.push(fault);
         }
         Some(ty) if !matches!(ty.def.shape, TypeShape::Struct(_)) => {
-            let message = format!("{what} is a struct, which `{name}` is not");
+            let message = text!(
+                "{what}应当是结构，而 `{name}` 不是",
+                "{what} is a struct, which `{name}` is not",
+                what = what
+            );
             faults.push(
                 Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
-                    .also(ty.place.name(), "declared here"),
+                    .also(ty.place.name(), text!("在这里声明", "declared here")),
             );
         }
         Some(_) => {}
@@ -179,17 +196,21 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
             .of(OPERATION.deprecated.of(operation.place.node));
         let span = node.map_or(operation.place.name(), Node::span);
         if by == operation.item.name {
-            let message = "an operation cannot replace itself";
+            let message = text!("接口不能由自己替代", "an operation cannot replace itself");
             faults.push(Diagnostic::error(
                 FaultCode::UnknownOperation,
                 span,
                 message,
             ));
         } else if !names.contains(by) {
-            let message = format!("there is no operation `{by}`");
+            let message = text!("没有接口 `{by}`", "there is no operation `{by}`");
             let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
             faults.push(match nearest(by, names.iter().copied()) {
-                Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+                Some(near) => fault.fix(
+                    span,
+                    near,
+                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+                ),
                 None => fault,
             });
         }
@@ -214,16 +235,24 @@ pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
             let mut operations = draft.operations.iter();
             let other = operations.find(|operation| operation.item.name == name);
             let fault = if let Some(other) = other {
-                let kind = other.item.kind().name();
-                let message = format!("`{name}` is a {kind}; what a command sets off is a report");
+                let kind = called(other.item.kind());
+                let message = text!(
+                    "`{name}` 是{kind}；指令引起的只能是上报",
+                    "`{name}` is a {kind}; what a command sets off is a report",
+                    kind = kind
+                );
                 Diagnostic::error(FaultCode::NotAReport, span, message)
-                    .also(other.place.name(), "declared here")
+                    .also(other.place.name(), text!("在这里声明", "declared here"))
             } else {
-                let message = format!("there is no report `{name}`");
+                let message = text!("没有上报 `{name}`", "there is no report `{name}`");
                 Diagnostic::error(FaultCode::UnknownOperation, span, message)
             };
             faults.push(match nearest(name, reports.iter().copied()) {
-                Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+                Some(near) => fault.fix(
+                    span,
+                    near,
+                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+                ),
                 None => fault,
             });
         }
@@ -248,11 +277,18 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                 result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code
             });
             if let Some(success) = success {
-                let message = format!("{} means success, not an error", success.item.code);
+                let message = text!(
+                    "{code} 表示成功，不是错误",
+                    "{code} means success, not an error",
+                    code = success.item.code
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
-                        .also(success.place.name(), "declared here")
-                        .note("remove it: every operation can return success"),
+                        .also(success.place.name(), text!("在这里声明", "declared here"))
+                        .note(text!(
+                            "去掉它：每个接口都可以返回成功",
+                            "remove it: every operation can return success"
+                        )),
                 );
                 continue;
             }
@@ -266,9 +302,13 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                     Diagnostic::error(
                         FaultCode::UnknownResult,
                         node.span(),
-                        format!("there is no result code {code}"),
+                        text!("没有结果码 {code}", "there is no result code {code}"),
                     )
-                    .note(format!("the result codes are {}", known.join(", "))),
+                    .note(text!(
+                        "结果码有：{known}",
+                        "the result codes are {known}",
+                        known = Text::listed(known)
+                    )),
                 );
             }
         }

@@ -7,6 +7,7 @@ use crate::load::draft::Draft;
 use crate::load::grammar::{ERROR, OPERATION, RESULT};
 use crate::model::ResultRole;
 use crate::syntax::Node;
+use crate::text;
 use std::collections::HashMap;
 
 /// The engine has a result code for each of its own answers.
@@ -23,7 +24,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
         |_: ResultRole| true,
         &used,
         place.name(),
-        "result code",
+        &text!("结果码", "result code"),
         faults,
     );
 }
@@ -34,7 +35,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
         .results
         .iter()
         .map(|result| (result.item.name.as_str(), result.place.at(RESULT.name)));
-    check_distinct("result codes", names, faults);
+    check_distinct(&text!("结果码", "result codes"), names, faults);
 }
 
 /// Each error of an operation is declared once.
@@ -47,10 +48,13 @@ pub(super) fn check_errors(draft: &Draft<'_>, faults: &mut Faults) {
                 continue;
             };
             if let Some(earlier) = first.insert(code, node) {
-                let message = format!("{code} occurs twice in this list");
+                let message = text!(
+                    "{code} 在这个列表中出现两次",
+                    "{code} occurs twice in this list"
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateItem, node.span(), message)
-                        .also(earlier.span(), "first here"),
+                        .also(earlier.span(), text!("第一次在这里", "first here")),
                 );
             }
         }

@@ -4,6 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Part, TypeDraft};
 use crate::load::grammar::{ENUM, ENUM_VALUE};
 use crate::model::{EnumType, EnumValue, TypeShape};
+use crate::text;
 use std::collections::HashSet;
 
 /// Enums with their drafts.
@@ -36,16 +37,31 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
             (Some(order), None) => Diagnostic::error(
                 FaultCode::OrderWithoutStates,
                 order.span(),
-                "an order is claimed, but no value says what follows it",
+                text!(
+                    "写明了顺序，却没有取值写明下一步",
+                    "an order is claimed, but no value says what follows it"
+                ),
             )
-            .note("say it with `then:`, such as `then: [running]`"),
+            .note(text!(
+                "用 `then:` 写明，例如 `then: [running]`",
+                "say it with `then:`, such as `then: [running]`"
+            )),
             (None, Some(entry)) => Diagnostic::error(
                 FaultCode::OrderWithoutStates,
                 entry.key.span(),
-                "is this the normal order, or every change there is?",
+                text!(
+                    "这是正常顺序，还是全部的切换？",
+                    "is this the normal order, or every change there is?"
+                ),
             )
-            .also(ty.place.name(), "this enum has no `order`")
-            .note("write `order: normal` or `order: complete` beside `values:`"),
+            .also(
+                ty.place.name(),
+                text!("这个枚举没有 `order`", "this enum has no `order`"),
+            )
+            .note(text!(
+                "在 `values:` 旁边写 `order: normal` 或 `order: complete`",
+                "write `order: normal` or `order: complete` beside `values:`"
+            )),
             _ => continue,
         };
         faults.push(fault);
@@ -61,13 +77,24 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
                 let Some(name) = node.as_str().filter(|name| !names.contains(name)) else {
                     continue;
                 };
-                let message = format!("`{}` has no value `{name}`", ty.def.name);
+                let message = text!(
+                    "`{ty}` 没有取值 `{name}`",
+                    "`{ty}` has no value `{name}`",
+                    ty = ty.def.name
+                );
                 let span = node.span();
                 let fault = Diagnostic::error(FaultCode::UnknownValue, span, message);
                 let known = shape.values.iter().map(|value| value.name.as_str());
                 faults.push(match nearest(name, known) {
-                    Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-                    None => fault.note("name it as the `name` of the value says"),
+                    Some(near) => fault.fix(
+                        span,
+                        near,
+                        text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+                    ),
+                    None => fault.note(text!(
+                        "写取值的 `name`",
+                        "name it as the `name` of the value says"
+                    )),
                 });
             }
         }
@@ -80,9 +107,16 @@ pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
         for (value, part) in values(ty, shape) {
             let then = ENUM_VALUE.then.entry(part.place.node);
             if let Some(then) = then.filter(|_| value.is_final) {
-                let message = format!("`{}` is final, so nothing follows it", value.name);
+                let message = text!(
+                    "`{value}` 是终态，后面不会再有状态",
+                    "`{value}` is final, so nothing follows it",
+                    value = value.name
+                );
                 let fault = Diagnostic::error(FaultCode::FollowedFinal, then.key.span(), message);
-                faults.push(fault.also(part.place.at(ENUM_VALUE.r#final), "said here"));
+                faults.push(fault.also(
+                    part.place.at(ENUM_VALUE.r#final),
+                    text!("写在这里", "said here"),
+                ));
             }
         }
     }
@@ -103,10 +137,14 @@ pub(super) fn check_reached(draft: &Draft<'_>, faults: &mut Faults) {
             let is_state = value.is_final || !value.then.is_empty();
             let begins = value.start || value.is_error;
             if is_state && !begins && !reached.contains(value.name.as_str()) {
-                let message = format!("no value leads to `{}`", value.name);
+                let message = text!(
+                    "没有取值通向 `{value}`",
+                    "no value leads to `{value}`",
+                    value = value.name
+                );
                 faults.push(
                     Diagnostic::error(FaultCode::UnreachedState, part.place.name(), message)
-                        .note("write `start: true` where the process begins with it, or name it in a `then:`"),
+                        .note(text!("过程由它开始时写 `start: true`，否则在某个 `then:` 中写上它", "write `start: true` where the process begins with it, or name it in a `then:`")),
                 );
             }
         }

@@ -1,10 +1,12 @@
 //! Streams: what a frame carries, and the commands that start and stop them.
 
+use super::each::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::STREAM;
 use crate::model::{Kind, Operation};
 use crate::syntax::Node;
+use crate::text;
 
 /// A frame carries bytes of a media type or a JSON object.
 pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
@@ -17,13 +19,19 @@ pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         if let Some(body) = STREAM.body.entry(node) {
-            let message = "what has a `body` is JSON and has no other media type";
+            let message = text!(
+                "有 `body` 就是 JSON，不能有别的媒体类型",
+                "what has a `body` is JSON and has no other media type"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::StreamContent, span, message)
-                    .also(body.key.span(), "its keys are here"),
+                    .also(body.key.span(), text!("它的键在这里", "its keys are here")),
             );
         } else if text.ends_with("/json") {
-            let message = "what is JSON has a `body` with its keys instead";
+            let message = text!(
+                "内容是 JSON 时改用 `body` 列出它的键",
+                "what is JSON has a `body` with its keys instead"
+            );
             faults.push(Diagnostic::error(FaultCode::StreamContent, span, message));
         }
     }
@@ -49,21 +57,28 @@ fn no_command(draft: &Draft<'_>, by: Node<'_>) -> Option<Diagnostic> {
     let fault = match named {
         Some(named) if named.item.kind() == Kind::Command => return None,
         Some(named) => {
-            let kind = named.item.kind().name();
-            let message =
-                format!("`{name}` is a {kind}; what starts or stops a stream is a command");
+            let kind = called(named.item.kind());
+            let message = text!(
+                "`{name}` 是{kind}；数据流只能由指令开始或停止",
+                "`{name}` is a {kind}; what starts or stops a stream is a command",
+                kind = kind
+            );
             Diagnostic::error(FaultCode::NotACommand, span, message)
-                .also(named.place.name(), "declared here")
+                .also(named.place.name(), text!("在这里声明", "declared here"))
         }
         None => {
-            let message = format!("there is no command `{name}`");
+            let message = text!("没有指令 `{name}`", "there is no command `{name}`");
             Diagnostic::error(FaultCode::UnknownOperation, span, message)
         }
     };
     let commands = draft.operations.iter().map(|operation| &operation.item);
     let commands = commands.filter(|operation| operation.kind() == Kind::Command);
     Some(match nearest(name, commands.map(|it| it.name.as_str())) {
-        Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
+        Some(near) => fault.fix(
+            span,
+            near,
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        ),
         None => fault,
     })
 }

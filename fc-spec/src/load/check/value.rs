@@ -5,10 +5,11 @@ use crate::load::draft::Draft;
 use crate::load::misread::misread;
 use crate::load::scalar::{self, value};
 use crate::model::{
-    Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Type, TypeShape,
-    Value, WireForm,
+    Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Text, Type,
+    TypeShape, Value, WireForm,
 };
 use crate::syntax::{Node, NodeKind, Span, quoted};
+use crate::text;
 use regex_lite::Regex;
 
 /// What is wrong with a value.
@@ -18,17 +19,17 @@ pub(super) struct Mismatch {
     /// The smallest part that is wrong.
     pub span: Span,
     /// One sentence.
-    pub message: String,
+    pub message: Text,
     /// What to write instead, if that is known.
-    pub fix: Option<(String, String)>,
+    pub fix: Option<(String, Text)>,
 }
 
 impl Mismatch {
-    fn new(code: FaultCode, node: Node<'_>, message: impl Into<String>) -> Self {
+    fn new(code: FaultCode, node: Node<'_>, message: Text) -> Self {
         Self {
             code,
             span: node.span(),
-            message: message.into(),
+            message,
             fix: None,
         }
     }
@@ -82,12 +83,15 @@ fn is_doubtful(node: Node<'_>) -> bool {
 
 /// `wire: string`: the text holds the number or bool.
 fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let wrong = |message: &str| Mismatch::new(FaultCode::ExampleType, node, message);
+    let wrong = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
-        let mut mismatch = wrong("the field is sent as a string, so its value must be one");
+        let mut mismatch = wrong(text!(
+            "这个字段以字符串发送，值必须是字符串",
+            "the field is sent as a string, so its value must be one"
+        ));
         mismatch.fix = node
             .as_plain()
-            .map(|text| (quoted(text), "quote it".to_owned()));
+            .map(|text| (quoted(text), text!("加上引号", "quote it")));
         found.push(mismatch);
         return;
     };
@@ -95,13 +99,19 @@ fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
         // A bool has no constraints.
         (Type::Bool, "true" | "false") => return,
         (Type::Bool, _) => {
-            found.push(wrong("expected \"true\" or \"false\""));
+            found.push(wrong(text!(
+                "应为 \"true\" 或 \"false\"",
+                "expected \"true\" or \"false\""
+            )));
             return;
         }
         (_, text) => {
             let number = scalar::number_text(text).filter(|_| !text.contains('x'));
             let Some(number) = number else {
-                found.push(wrong("expected a decimal number inside the string"));
+                found.push(wrong(text!(
+                    "字符串中应为十进制数值",
+                    "expected a decimal number inside the string"
+                )));
                 return;
             };
             Value::Number(number)
@@ -120,12 +130,15 @@ fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
     if matches!(held, Value::Number(Number::Int(0 | 1))) {
         return;
     }
-    let message = "the field is sent as a number, so its value must be 1 or 0";
+    let message = text!(
+        "这个字段以数值发送，值必须是 1 或 0",
+        "the field is sent as a number, so its value must be 1 or 0"
+    );
     let mut mismatch = Mismatch::new(FaultCode::ExampleType, node, message);
     mismatch.fix = match held {
         Value::Bool(truth) => {
             let number = u8::from(truth).to_string();
-            let message = format!("write `{number}`");
+            let message = text!("改写为 `{number}`", "write `{number}`");
             Some((number, message))
         }
         _ => None,
@@ -138,15 +151,20 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
     if is_doubtful(node) {
         return;
     }
-    let wrong = |expected: &str| {
-        let message = format!("expected {expected}, found {}", describe(node));
+    let wrong = |expected: Text| {
+        let message = text!(
+            "应为：{expected}；实际为：{found}",
+            "expected {expected}, found {found}",
+            found = describe(node),
+            expected = expected
+        );
         Mismatch::new(FaultCode::ExampleType, node, message)
     };
     match ty {
         Type::Json => {}
         Type::Bool => {
             if scalar::bool(node).is_none() {
-                found.push(wrong("`true` or `false`"));
+                found.push(wrong(text!("`true` 或 `false`", "`true` or `false`")));
             }
         }
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => {
@@ -154,20 +172,23 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
         }
         Type::String | Type::Base64 => {
             let Some(text) = text_of(node) else {
-                let mut mismatch = wrong("text");
+                let mut mismatch = wrong(text!("文本", "text"));
                 mismatch.fix = node
                     .as_plain()
-                    .map(|text| (quoted(text), "quote it".to_owned()));
+                    .map(|text| (quoted(text), text!("加上引号", "quote it")));
                 found.push(mismatch);
                 return;
             };
             if *ty == Type::Base64 && base64_len(text).is_none() {
-                found.push(wrong("base64 (RFC 4648 with padding)"));
+                found.push(wrong(text!(
+                    "base64（RFC 4648，带填充）",
+                    "base64 (RFC 4648 with padding)"
+                )));
             }
         }
         Type::Array(item) => match node.as_sequence() {
             Some(items) => items.for_each(|node| check_type(draft, item, node, found)),
-            None => found.push(wrong("a list")),
+            None => found.push(wrong(text!("列表", "a list"))),
         },
         Type::Named(named) => match draft.type_named(named.name()).map(|ty| &ty.def.shape) {
             Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node, found),
@@ -179,16 +200,21 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
 }
 
 fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let mismatch = |message: String| Mismatch::new(FaultCode::ExampleType, node, message);
+    let mismatch = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
     let Value::Number(number) = value else {
         let expected = match ty {
-            Type::Float(_) => "a number",
-            _ => "an integer",
+            Type::Float(_) => text!("数值", "a number"),
+            _ => text!("整数", "an integer"),
         };
-        let mut mismatch = mismatch(format!("expected {expected}, found {}", describe(node)));
+        let mut mismatch = mismatch(text!(
+            "应为：{expected}；实际为：{found}",
+            "expected {expected}, found {found}",
+            found = describe(node),
+            expected = expected
+        ));
         let text = node.as_str().unwrap_or_default();
         if node.as_plain().is_none() && scalar::number_text(text).is_some() {
-            mismatch.fix = Some((text.to_owned(), "remove the quotes".to_owned()));
+            mismatch.fix = Some((text.to_owned(), text!("去掉引号", "remove the quotes")));
         }
         found.push(mismatch);
         return;
@@ -197,7 +223,10 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
         Type::Int(kind) => kind.range(),
         Type::Float(kind) => {
             if *kind == FloatKind::F32 && scalar::float(number).abs() > f64::from(f32::MAX) {
-                found.push(mismatch("this does not fit into f32".to_owned()));
+                found.push(mismatch(text!(
+                    "超出 f32 的范围",
+                    "this does not fit into f32"
+                )));
             }
             return;
         }
@@ -205,12 +234,17 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
     };
     match number {
         Number::Int(value) if (range.0..=range.1).contains(value) => {}
-        Number::Int(value) => found.push(mismatch(format!(
-            "{value} is outside {}..={}",
-            range.0, range.1
+        Number::Int(value) => found.push(mismatch(text!(
+            "{value} 不在 {least}..={most} 之内",
+            "{value} is outside {least}..={most}",
+            least = range.0,
+            most = range.1
         ))),
         Number::Float(_) => {
-            found.push(mismatch("expected an integer, found a fraction".to_owned()));
+            found.push(mismatch(text!(
+                "应为整数，实际为小数",
+                "expected an integer, found a fraction"
+            )));
         }
     }
 }
@@ -220,7 +254,11 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
         Value::Number(number) => Scalar::Number(number),
         Value::String(text) => Scalar::String(text),
         _ => {
-            let message = format!("expected a value of `{name}`, found {}", describe(node));
+            let message = text!(
+                "应为 `{name}` 的取值，实际为{found}",
+                "expected a value of `{name}`, found {found}",
+                found = describe(node)
+            );
             found.push(Mismatch::new(FaultCode::ExampleType, node, message));
             return;
         }
@@ -229,7 +267,10 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
         return;
     }
     let text = node.as_str().unwrap_or_default();
-    let message = format!("`{text}` is not a value of `{name}`");
+    let message = text!(
+        "`{text}` 不是 `{name}` 的取值",
+        "`{text}` is not a value of `{name}`"
+    );
     let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
     // Most often the name in code was written instead of the value that is sent.
     let named = shape.values.iter().find(|value| value.name == text);
@@ -239,7 +280,10 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
             Scalar::String(text) => quoted(text),
             Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
         };
-        let message = format!("`{text}` is its name; the value sent is {spelling}");
+        let message = text!(
+            "`{text}` 是它的名称；发送的值是 {spelling}",
+            "`{text}` is its name; the value sent is {spelling}"
+        );
         (spelling, message)
     });
     found.push(mismatch);
@@ -247,7 +291,11 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
 
 fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let Some(entries) = node.as_mapping() else {
-        let message = format!("expected an object, found {}", describe(node));
+        let message = text!(
+            "应为对象，实际为{found}",
+            "expected an object, found {found}",
+            found = describe(node)
+        );
         found.push(Mismatch::new(FaultCode::ExampleType, node, message));
         return;
     };
@@ -257,16 +305,24 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &m
             check_field(draft, field, entry.value, found);
             continue;
         }
-        let message = format!("the object has no key `{name}`");
+        let message = text!("对象没有键 `{name}`", "the object has no key `{name}`");
         let mut mismatch = Mismatch::new(FaultCode::ExampleType, entry.key, message);
         let keys = shape.fields.iter().map(|field| field.wire.as_str());
-        mismatch.fix =
-            nearest(name, keys).map(|near| (near.to_owned(), format!("did you mean `{near}`?")));
+        mismatch.fix = nearest(name, keys).map(|near| {
+            (
+                near.to_owned(),
+                text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+            )
+        });
         found.push(mismatch);
     }
     let required = shape.fields.iter().filter(|field| !field.optional);
     for field in required.filter(|field| node.get(&field.wire).is_none()) {
-        let message = format!("the required key `{}` is missing", field.wire);
+        let message = text!(
+            "缺少必填的键 `{key}`",
+            "the required key `{key}` is missing",
+            key = field.wire
+        );
         found.push(Mismatch::new(FaultCode::ExampleType, node, message));
     }
 }
@@ -288,7 +344,10 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
         None => found.push(Mismatch::new(
             FaultCode::ExampleType,
             node,
-            "this does not have the required keys of any variant",
+            text!(
+                "不具备任何一个选项的必填键",
+                "this does not have the required keys of any variant"
+            ),
         )),
     }
 }
@@ -303,30 +362,61 @@ pub(super) fn check_constraints(
     let broken = |constraint| match (constraint, value) {
         (Constraint::Min(min), Value::Number(number)) => {
             let is_below = scalar::compare(number, min).is_lt();
-            let message = || format!("this is below the minimum, {}", show(min));
+            let message = || {
+                text!(
+                    "小于最小值 {min}",
+                    "this is below the minimum, {min}",
+                    min = show(min)
+                )
+            };
             is_below.then(|| (FaultCode::ExampleRange, message()))
         }
         (Constraint::Max(max), Value::Number(number)) => {
             let is_above = scalar::compare(number, max).is_gt();
-            let message = || format!("this is above the maximum, {}", show(max));
+            let message = || {
+                text!(
+                    "大于最大值 {max}",
+                    "this is above the maximum, {max}",
+                    max = show(max)
+                )
+            };
             is_above.then(|| (FaultCode::ExampleRange, message()))
         }
         (Constraint::Length(least, most), value) => {
-            let (length, what) = length(&field.ty, value)?;
+            let length = length(&field.ty, value)?;
             let length = u64::try_from(length).unwrap_or(u64::MAX);
-            let expected = if least == most {
-                least.to_string()
-            } else {
-                format!("{least} to {most}")
+            let message = || {
+                let what = match field.ty {
+                    Type::String => text!("字符数", "characters"),
+                    Type::Base64 => text!("字节数", "bytes"),
+                    _ => text!("项数", "items"),
+                };
+                if least == most {
+                    text!(
+                        "{what}应为 {least}，实际为 {length}",
+                        "expected {least} {what}, found {length}",
+                        what = what
+                    )
+                } else {
+                    text!(
+                        "{what}应为 {least} 到 {most}，实际为 {length}",
+                        "expected {least} to {most} {what}, found {length}",
+                        what = what
+                    )
+                }
             };
-            let message = || format!("expected {expected} {what}, found {length}");
             let fits = (least..=most).contains(&length);
             (!fits).then(|| (FaultCode::ExampleLength, message()))
         }
         (Constraint::Pattern(pattern), Value::String(text)) if field.ty == Type::String => {
             let regex = Regex::new(&format!("^(?:{pattern})$"));
             let fits = regex.map_or(true, |regex| regex.is_match(text));
-            let message = || format!("the whole text must match the pattern `{pattern}`");
+            let message = || {
+                text!(
+                    "整段文本必须符合正则表达式 `{pattern}`",
+                    "the whole text must match the pattern `{pattern}`"
+                )
+            };
             (!fits).then(|| (FaultCode::ExamplePattern, message()))
         }
         (Constraint::Only(taken), Value::Number(_) | Value::String(_))
@@ -335,9 +425,10 @@ pub(super) fn check_constraints(
             let is_taken = taken.iter().any(|taken| Value::from(taken) == *value);
             let taken = taken.iter().map(|taken| Value::from(taken).to_string());
             let message = || {
-                format!(
-                    "the field takes only {}",
-                    taken.collect::<Vec<_>>().join(", ")
+                text!(
+                    "这个字段只能取：{taken}",
+                    "the field takes only {taken}",
+                    taken = Text::listed(taken)
                 )
             };
             (!is_taken).then(|| (FaultCode::ExampleValue, message()))
@@ -351,12 +442,12 @@ pub(super) fn check_constraints(
     found.extend(broken.map(|(code, message)| Mismatch::new(code, node, message)));
 }
 
-/// What `length` counts of a value, and how many there are.
-fn length(ty: &Type, value: &Value) -> Option<(usize, &'static str)> {
+/// How many there are of what `length` counts of a value.
+fn length(ty: &Type, value: &Value) -> Option<usize> {
     match (ty, value) {
-        (Type::String, Value::String(text)) => Some((text.chars().count(), "characters")),
-        (Type::Base64, Value::String(text)) => base64_len(text).map(|length| (length, "bytes")),
-        (Type::Array(_), Value::Array(items)) => Some((items.len(), "items")),
+        (Type::String, Value::String(text)) => Some(text.chars().count()),
+        (Type::Base64, Value::String(text)) => base64_len(text),
+        (Type::Array(_), Value::Array(items)) => Some(items.len()),
         _ => None,
     }
 }
@@ -366,16 +457,16 @@ fn show(number: &Number) -> Value {
 }
 
 /// What a value is, as the wire would carry it.
-fn describe(node: Node<'_>) -> &'static str {
+fn describe(node: Node<'_>) -> Text {
     match node.kind() {
-        NodeKind::Null => "null",
-        NodeKind::Sequence(_) => "a list",
-        NodeKind::Mapping(_) => "an object",
+        NodeKind::Null => text!("空值", "null"),
+        NodeKind::Sequence(_) => text!("列表", "a list"),
+        NodeKind::Mapping(_) => text!("对象", "an object"),
         NodeKind::Scalar(_) => match value(node) {
-            Value::Bool(_) => "a boolean",
-            Value::Number(Number::Int(_)) => "an integer",
-            Value::Number(Number::Float(_)) => "a number",
-            _ => "a text",
+            Value::Bool(_) => text!("布尔值", "a boolean"),
+            Value::Number(Number::Int(_)) => text!("整数", "an integer"),
+            Value::Number(Number::Float(_)) => text!("数值", "a number"),
+            _ => text!("文本", "a text"),
         },
     }
 }

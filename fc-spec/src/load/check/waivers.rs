@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
+use crate::text;
 
 /// Hex digits of a fingerprint.
 const DIGITS: usize = 12;
@@ -10,10 +11,14 @@ const DIGITS: usize = 12;
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     for Placed { item, place } in &draft.waivers {
         if !is_id(&item.id) {
-            let message = format!("`{}` does not name a finding", item.id);
+            let message = text!(
+                "`{id}` 不是变更的编号",
+                "`{id}` does not name a finding",
+                id = item.id
+            );
             faults.push(
                 Diagnostic::error(FaultCode::BadWaiver, place.name(), message).note(
-                    "write the number of the rule and the fingerprint as `fc diff` prints them, such as `FC0725-1a2b3c4d5e6f`",
+                    text!("写 `fc diff` 给出的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the number of the rule and the fingerprint as `fc diff` prints them, such as `FC0725-1a2b3c4d5e6f`"),
                 ),
             );
         }

@@ -3,11 +3,13 @@
 use super::keys::article;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::grammar::Kind;
+use crate::model::Text;
 use crate::syntax::{Node, Span};
+use crate::text;
 use crate::vocabulary::Meaning;
 
 /// Reports a node that is not what is expected in its place.
-pub(super) fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut Faults) {
+pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut Faults) {
     if let Some(slip) = node.slip() {
         faults.push(slip);
         return;
@@ -16,13 +18,21 @@ pub(super) fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut 
     let fault = Diagnostic::error(
         FaultCode::WrongKind,
         span,
-        format!("expected {expected}, found {}", node.describe()),
+        text!(
+            "应为：{expected}；实际为：{found}",
+            "expected {expected}, found {found}",
+            found = node.describe(),
+            expected = expected
+        ),
     );
     faults.push(
-        if node.is_null() && expected.starts_with("a mapping from") {
-            fault.note("write `{}` if there are none")
-        } else if node.is_null() && expected == "a list" {
-            fault.note("write `[]` if there are none")
+        if node.is_null() && expected.en.starts_with("a mapping from") {
+            fault.note(text!(
+                "没有内容时写 `{{}}`",
+                "write `{{}}` if there are none"
+            ))
+        } else if node.is_null() && expected.en == "a list" {
+            fault.note(text!("没有内容时写 `[]`", "write `[]` if there are none"))
         } else {
             fault
         },
@@ -30,44 +40,51 @@ pub(super) fn wrong_kind(expected: &str, node: Node<'_>, at: Span, faults: &mut 
 }
 
 /// What a value has to be.
-pub(super) fn describe(kind: &Kind) -> String {
+pub(super) fn describe(kind: &Kind) -> Text {
     match kind {
-        Kind::Text | Kind::WireKey => "a text".to_owned(),
-        Kind::Bool => "`true` or `false`".to_owned(),
-        Kind::Int { .. } => "an integer".to_owned(),
-        Kind::Number => "a number".to_owned(),
-        Kind::Scalar => "a number, text or boolean".to_owned(),
-        Kind::Json => "a JSON value".to_owned(),
-        Kind::Code => "a code such as 0x0A01".to_owned(),
-        Kind::Date => "a date such as 2024-01".to_owned(),
-        Kind::Name => "a snake_case name".to_owned(),
-        Kind::TypeName => "the name of a type".to_owned(),
-        Kind::Type => "a type".to_owned(),
-        Kind::ConflictId => "a conflict id such as C040".to_owned(),
-        Kind::MediaType => "a media type such as `image/png`".to_owned(),
-        Kind::Unit => "a unit such as `ms`".to_owned(),
+        Kind::Text | Kind::WireKey => text!("文本", "a text"),
+        Kind::Bool => text!("`true` 或 `false`", "`true` or `false`"),
+        Kind::Int { .. } => text!("整数", "an integer"),
+        Kind::Number => text!("数值", "a number"),
+        Kind::Scalar => text!("数值、文本或布尔值", "a number, text or boolean"),
+        Kind::Json => text!("JSON 值", "a JSON value"),
+        Kind::Code => text!("功能码，例如 0x0A01", "a code such as 0x0A01"),
+        Kind::Date => text!("日期，例如 2024-01", "a date such as 2024-01"),
+        Kind::Name => text!("snake_case 名称", "a snake_case name"),
+        Kind::TypeName => text!("类型名", "the name of a type"),
+        Kind::Type => text!("类型", "a type"),
+        Kind::ConflictId => text!("疑问的编号，例如 C040", "a conflict id such as C040"),
+        Kind::MediaType => text!(
+            "媒体类型，例如 `image/png`",
+            "a media type such as `image/png`"
+        ),
+        Kind::Unit => text!("单位，例如 `ms`", "a unit such as `ms`"),
         Kind::Word(words) => list_words(words),
-        Kind::List { .. } => "a list".to_owned(),
-        Kind::Map(table) => format!("a mapping with the keys of {}", article(table.name)),
-        Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => "a mapping".to_owned(),
-        Kind::Either(kinds) => kinds.iter().map(describe).collect::<Vec<_>>().join(" or "),
+        Kind::List { .. } => text!("列表", "a list"),
+        Kind::Map(table) => text!(
+            "映射，包含“{table}”的键",
+            "a mapping with the keys of {table}",
+            table = article(table)
+        ),
+        Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => text!("映射", "a mapping"),
+        Kind::Either(kinds) => Text::joined(kinds.iter().map(describe), "，或者：", " or "),
     }
 }
 
 /// What the keys of a mapping have to be.
-pub(super) fn describe_key(key: &Kind) -> &'static str {
+pub(super) fn describe_key(key: &Kind) -> Text {
     match key {
-        Kind::Name => "snake_case names",
-        Kind::TypeName => "PascalCase names",
-        Kind::Int { .. } => "numbers",
-        Kind::Scalar => "the values that are sent",
-        Kind::ConflictId => "conflict ids",
-        _ => "wire keys",
+        Kind::Name => text!("snake_case 名称", "snake_case names"),
+        Kind::TypeName => text!("PascalCase 名称", "PascalCase names"),
+        Kind::Int { .. } => text!("数值", "numbers"),
+        Kind::Scalar => text!("发送的值", "the values that are sent"),
+        Kind::ConflictId => text!("疑问的编号", "conflict ids"),
+        _ => text!("报文中的键名", "wire keys"),
     }
 }
 
 /// Words as a sentence lists them.
-pub(super) fn list_words(words: &[Meaning]) -> String {
-    let quoted: Vec<_> = words.iter().map(|(word, ..)| format!("`{word}`")).collect();
-    quoted.join(", ")
+pub(super) fn list_words(words: &[Meaning]) -> Text {
+    let quoted = words.iter().map(|(word, ..)| text!("`{word}`", "`{word}`"));
+    Text::joined(quoted, "、", ", ")
 }

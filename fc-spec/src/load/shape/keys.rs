@@ -2,24 +2,25 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
 use crate::load::grammar::{Command, FIELD_FORMS, Report, Stream, TEXT, Table};
+use crate::model::Text;
 use crate::syntax::{Entries, Entry, Span};
+use crate::text;
 
 /// A required key that is not there.
 pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
+    let (zh, en) = (table.name_zh, table.name);
     let language = match key {
-        _ if key == TEXT.zh.name => "Chinese",
-        _ if key == TEXT.en.name => "English",
+        _ if key == TEXT.zh.name => text!("中文", "Chinese"),
+        _ if key == TEXT.en.name => text!("英文", "English"),
         _ => {
-            return Diagnostic::error(
-                FaultCode::MissingKey,
-                at,
-                format!("`{key}` is missing from the {}", table.name),
-            );
+            let message = text!("“{zh}”缺少 `{key}`", "`{key}` is missing from the {en}");
+            return Diagnostic::error(FaultCode::MissingKey, at, message);
         }
     };
-    let message = format!(
-        "the {language} text `{key}` of the {} is missing",
-        table.name
+    let message = text!(
+        "“{zh}”缺少{language} `{key}`",
+        "the {language} text `{key}` of the {en} is missing",
+        language = language
     );
     Diagnostic::error(FaultCode::MissingTranslation, at, message)
 }
@@ -39,21 +40,25 @@ pub(in crate::load) fn unknown_key(
         return Diagnostic::error(
             FaultCode::MisplacedKey,
             span,
-            format!(
-                "`{name}` is a key of {}, not of {}",
-                article(other),
-                article(table.name)
+            text!(
+                "`{name}` 是“{other}”的键，不是“{this}”的键",
+                "`{name}` is a key of {other}, not of {this}",
+                other = article(other),
+                this = article(table)
             ),
         );
     }
+    let (zh, en) = (table.name_zh, table.name);
     let fault = Diagnostic::error(
         FaultCode::UnknownKey,
         span,
-        format!("`{name}` is not a key of the {}", table.name),
+        text!("“{zh}”没有键 `{name}`", "`{name}` is not a key of the {en}"),
     );
     if entry.value.is_null() {
-        return fault
-            .note("inside `{ }` a comma ends a text; if this is the rest of a text, quote it");
+        return fault.note(text!(
+            "在 `{{ }}` 中逗号会结束文本；如果这是文本的后半部分，请给文本加上引号",
+            "inside `{{ }}` a comma ends a text; if this is the rest of a text, quote it"
+        ));
     }
     let free = table
         .keys
@@ -61,29 +66,38 @@ pub(in crate::load) fn unknown_key(
         .map(|key| key.name)
         .filter(|key| !siblings.clone().any(|entry| entry.name() == *key));
     if let Some(near) = nearest(name, free) {
-        return fault.fix(span, near, format!("did you mean `{near}`?"));
+        return fault.fix(
+            span,
+            near,
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        );
     }
     let known: Vec<_> = table.keys.iter().map(|key| key.name).collect();
-    fault.note(format!("its keys are {}", known.join(", ")))
+    fault.note(text!(
+        "它的键有：{known}",
+        "its keys are {known}",
+        known = Text::listed(known)
+    ))
 }
 
-/// With the indefinite article.
-pub(super) fn article(name: &str) -> String {
-    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+/// The name of a table, in English with the indefinite article.
+pub(super) fn article(table: &Table) -> Text {
+    let (zh, en) = (table.name_zh, table.name);
+    let article = if en.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
     } else {
         "a"
     };
-    format!("{article} {name}")
+    text!("{zh}", "{article} {en}")
 }
 
 /// The table among those easily mixed up with this one that has the key.
-fn owner_of_key(table: &Table, key: &str) -> Option<&'static str> {
+fn owner_of_key(table: &Table, key: &str) -> Option<&'static Table> {
     let operations = [Command::TABLE, Report::TABLE, Stream::TABLE];
     let forms = FIELD_FORMS.map(|(_, table)| table);
     let family = [operations.as_slice(), forms.as_slice()]
         .into_iter()
         .find(|family| family.iter().any(|other| other.name == table.name))?;
     let owner = family.iter().find(|other| other.key(key).is_some())?;
-    Some(owner.name)
+    Some(owner)
 }

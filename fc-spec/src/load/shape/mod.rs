@@ -10,8 +10,10 @@ pub(super) use keys::unknown_key;
 use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::model::Text;
 use crate::syntax::width::half_width_text;
 use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
+use crate::text;
 use expected::{describe, describe_key, wrong_kind};
 use keys::{article, missing_key};
 use scalars::{Wanted, check_scalar, check_spelling};
@@ -35,7 +37,11 @@ pub(super) fn check_kind(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Fau
 fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Faults) {
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
-            &format!("a mapping with the keys of {}", article(table.name)),
+            &text!(
+                "映射，包含“{table}”的键",
+                "a mapping with the keys of {table}",
+                table = article(table)
+            ),
             node,
             at,
             faults,
@@ -91,7 +97,11 @@ fn check_entries(
 ) {
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
-            &format!("a mapping from {}", describe_key(key)),
+            &text!(
+                "映射，键为：{keys}",
+                "a mapping from {keys}",
+                keys = describe_key(key)
+            ),
             node,
             at,
             faults,
@@ -113,9 +123,12 @@ fn check_entries(
                     Diagnostic::error(
                         FaultCode::DuplicateNumber,
                         entry.key.span(),
-                        format!("{number} occurs twice, written in two ways"),
+                        text!(
+                            "{number} 出现两次，写法不同",
+                            "{number} occurs twice, written in two ways"
+                        ),
                     )
-                    .also(*first, "first used here"),
+                    .also(*first, text!("首次出现在这里", "first used here")),
                 ),
                 None => {
                     numbers.insert(number, entry.key.span());
@@ -128,9 +141,10 @@ fn check_entries(
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
             node.span(),
-            format!(
-                "expected at least {min} {}, found {count}",
-                if min == 1 { "entry" } else { "entries" }
+            text!(
+                "至少应有 {min} 项，实际有 {count} 项",
+                "expected at least {min} {entries}, found {count}",
+                entries = if min == 1 { "entry" } else { "entries" }
             ),
         ));
     }
@@ -155,9 +169,12 @@ fn check_wire_key(key: Node<'_>, faults: &mut Faults) {
         check_spelling(key, Wanted::Text, faults);
         if faults.len() == before && key.as_plain().is_some() && scalar::number(key).is_some() {
             let text = key.as_str().unwrap_or_default();
-            let message = format!("YAML parsers write the number `{text}` differently");
+            let message = text!(
+                "不同的 YAML 解析器对数值 `{text}` 的写法不同",
+                "YAML parsers write the number `{text}` differently"
+            );
             let fault = Diagnostic::error(FaultCode::AmbiguousWord, key.span(), message);
-            faults.push(fault.fix(key.span(), quoted(text), "quote it"));
+            faults.push(fault.fix(key.span(), quoted(text), text!("加上引号", "quote it")));
         }
     }
 }
@@ -170,7 +187,7 @@ fn check_list(
     faults: &mut Faults,
 ) {
     let Some(items) = node.as_sequence() else {
-        wrong_kind("a list", node, at, faults);
+        wrong_kind(&text!("列表", "a list"), node, at, faults);
         return;
     };
     let mut count = 0;
@@ -186,14 +203,18 @@ fn check_list(
     }
     if count < min || count > max {
         let expected = if min == max {
-            format!("{min} items")
+            text!("应有 {min} 项", "{min} items")
         } else {
-            format!("at least {min}")
+            text!("至少应有 {min} 项", "at least {min}")
         };
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
             node.span(),
-            format!("expected {expected}, found {count}"),
+            text!(
+                "{expected}，实际有 {count} 项",
+                "expected {expected}, found {count}",
+                expected = expected
+            ),
         ));
     }
 }
@@ -206,10 +227,13 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
             continue;
         };
         if let Some(earlier) = first.insert(text, item.span()) {
-            let message = format!("`{text}` occurs twice in this list");
+            let message = text!(
+                "`{text}` 在这个列表中出现两次",
+                "`{text}` occurs twice in this list"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateItem, item.span(), message)
-                    .also(earlier, "first here"),
+                    .also(earlier, text!("第一次在这里", "first here")),
             );
         }
     }
@@ -226,8 +250,8 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
     if let Some(kind) = chosen {
         check_kind(kind, node, at, faults);
     } else {
-        let expected: Vec<_> = kinds.iter().map(describe).collect();
-        wrong_kind(&expected.join(" or "), node, at, faults);
+        let expected = Text::joined(kinds.iter().map(describe), "，或者：", " or ");
+        wrong_kind(&expected, node, at, faults);
     }
 }
 
@@ -289,12 +313,12 @@ fn check_by_key(
     };
     if let Some(marker) = misread_marker(node) {
         let name = marker.name();
-        let message =
-            format!("`{name}` starts the long form of a field, so it is not read as a wire key");
+        let message = text!(
+            "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
+            "`{name}` starts the long form of a field, so it is not read as a wire key"
+        );
         faults.push(
-            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(format!(
-                "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
-            )),
+            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
         );
         return;
     }
@@ -303,13 +327,17 @@ fn check_by_key(
             Diagnostic::error(
                 FaultCode::TwoForms,
                 second.key.span(),
-                format!(
-                    "`{}` and `{}` cannot be combined",
-                    first.name(),
-                    second.name()
+                text!(
+                    "`{first}` 和 `{second}` 不能同时使用",
+                    "`{first}` and `{second}` cannot be combined",
+                    first = first.name(),
+                    second = second.name()
                 ),
             )
-            .also(first.key.span(), "this already defines the field"),
+            .also(
+                first.key.span(),
+                text!("这里已经定义了字段", "this already defines the field"),
+            ),
         );
         return;
     }
@@ -356,11 +384,15 @@ fn check_json(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
 
 fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
     if node.as_mapping().is_some() || node.is_null() {
-        wrong_kind("a type", node, at, faults);
+        wrong_kind(&text!("类型", "a type"), node, at, faults);
     } else if scalar::field_type(node).is_none() {
-        let fault = Diagnostic::error(FaultCode::BadType, node.span(), "this is not a valid type");
+        let fault = Diagnostic::error(
+            FaultCode::BadType,
+            node.span(),
+            text!("类型的写法不对", "this is not a valid type"),
+        );
         faults.push(fault.note(
-            "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field",
+            text!("类型可以是内置类型，例如 `u8`，也可以是已声明的类型名；`[T]` 表示 `T` 的列表；最后加 `?` 表示可选字段", "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field"),
         ));
     }
 }

@@ -6,9 +6,10 @@ use crate::load::grammar::unit::{self, UNITS};
 use crate::load::grammar::{FIELD, Kind};
 use crate::load::misread::{agreed_number, misread};
 use crate::load::{names, scalar};
-use crate::model::Type;
+use crate::model::{Text, Type};
 use crate::syntax::width::{self, half_width, half_width_text};
 use crate::syntax::{Node, Span, Style, quoted};
+use crate::text;
 use crate::vocabulary::Meaning;
 
 /// What a value is most likely meant to be.
@@ -62,20 +63,33 @@ pub(super) fn check_spelling(node: Node<'_>, wanted: Wanted, faults: &mut Faults
 fn misread_fault(node: Node<'_>, text: &str, wanted: Wanted) -> Option<Diagnostic> {
     let other = misread(text)?;
     let span = node.span();
-    let message = format!("some YAML parsers read an unquoted `{text}` as {other}");
+    let message = text!(
+        "不加引号的 `{text}` 会被有的 YAML 解析器当成{other}",
+        "some YAML parsers read an unquoted `{text}` as {other}",
+        other = other
+    );
     let fault = Diagnostic::error(FaultCode::AmbiguousWord, span, message);
     let number = agreed_number(text).or_else(|| number_of(text));
     Some(match (number, wanted) {
         (Some(number), Wanted::Number) => {
-            let message = format!("write `{number}`, which all of them read as a number");
+            let message = text!(
+                "改写为 `{number}`，所有解析器都当成数值",
+                "write `{number}`, which all of them read as a number"
+            );
             fault.fix(span, number, message)
         }
-        (None, Wanted::Number) => fault.note("write the number in decimal or as `0x…`"),
+        (None, Wanted::Number) => fault.note(text!(
+            "把数值写成十进制或 `0x…`",
+            "write the number in decimal or as `0x…`"
+        )),
         (Some(number), Wanted::Either) if agreed_number(text).is_some() => {
-            let message = format!("write `{number}`, which all of them read as a number");
+            let message = text!(
+                "改写为 `{number}`，所有解析器都当成数值",
+                "write `{number}`, which all of them read as a number"
+            );
             fault.fix(span, number, message)
         }
-        _ => fault.fix(span, quoted(text), "quote it"),
+        _ => fault.fix(span, quoted(text), text!("加上引号", "quote it")),
     })
 }
 
@@ -87,14 +101,28 @@ fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::LeadingZero,
         span,
-        format!("some YAML parsers read `{text}` as octal"),
+        text!(
+            "有的 YAML 解析器把 `{text}` 当成八进制",
+            "some YAML parsers read `{text}` as octal"
+        ),
     );
     match wanted {
-        Wanted::Number => fault.fix(span, number, "remove the zeros"),
-        Wanted::Text => fault.fix(span, quoted(text), "quote it"),
+        Wanted::Number => fault.fix(span, number, text!("去掉前导零", "remove the zeros")),
+        Wanted::Text => fault.fix(span, quoted(text), text!("加上引号", "quote it")),
         Wanted::Either => fault
-            .fix(span, number, "remove the zeros if it is a number")
-            .fix(span, quoted(text), "quote it if it is text"),
+            .fix(
+                span,
+                number,
+                text!(
+                    "如果是数值，去掉前导零",
+                    "remove the zeros if it is a number"
+                ),
+            )
+            .fix(
+                span,
+                quoted(text),
+                text!("如果是文本，加上引号", "quote it if it is text"),
+            ),
     }
 }
 
@@ -136,9 +164,10 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
 fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     node.as_plain()?;
     let character = text.chars().find(|c| half_width(*c).is_some())?;
-    let message = format!(
-        "{} in a value that must be ASCII",
-        width::describe(character)
+    let message = text!(
+        "只能是 ASCII 的值里有{character}",
+        "{character} in a value that must be ASCII",
+        character = width::describe(character)
     );
     let fault = Diagnostic::error(FaultCode::FullWidth, node.span(), message);
     let wanted = half_width_text(text);
@@ -148,13 +177,17 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
         "%" | "N" => quoted(wanted),
         _ => wanted.to_owned(),
     };
-    Some(fault.fix(node.span(), wanted, "write it in half-width"))
+    Some(fault.fix(
+        node.span(),
+        wanted,
+        text!("改为半角", "write it in half-width"),
+    ))
 }
 
 /// What is wrong with a scalar as a value of its kind.
 fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<Diagnostic> {
     let span = node.span();
-    let error = |code, message: String| Diagnostic::error(code, span, message);
+    let error = |code, message: Text| Diagnostic::error(code, span, message);
     match kind {
         Kind::Bool => scalar::bool(node)
             .is_none()
@@ -173,16 +206,25 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
         Kind::ConflictId => (!scalar::is_conflict_id(text)).then(|| {
             error(
                 FaultCode::BadConflictId,
-                format!("`{text}` is not the id of a conflict"),
+                text!(
+                    "`{text}` 不是疑问的编号",
+                    "`{text}` is not the id of a conflict"
+                ),
             )
-            .note("ids are written C and three digits, such as C040")
+            .note(text!(
+                "编号由 C 和三位数字组成，例如 C040",
+                "ids are written C and three digits, such as C040"
+            ))
         }),
         Kind::MediaType => (!scalar::is_media_type(text)).then(|| {
             error(
                 FaultCode::BadMediaType,
-                format!("`{text}` is not a media type"),
+                text!("`{text}` 不是媒体类型", "`{text}` is not a media type"),
             )
-            .note("it is written `type/subtype` in lower case, such as `image/png`")
+            .note(text!(
+                "写成小写的 `type/subtype`，例如 `image/png`",
+                "it is written `type/subtype` in lower case, such as `image/png`"
+            ))
         }),
         Kind::Unit => (!UNITS.iter().any(|(unit, ..)| *unit == text)).then(|| bad_unit(text, span)),
         Kind::Word(words) => {
@@ -193,15 +235,25 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
 }
 
 fn bad_unit(text: &str, span: Span) -> Diagnostic {
-    let message = format!("there is no unit `{text}`");
+    let message = text!("没有单位 `{text}`", "there is no unit `{text}`");
     let fault = Diagnostic::error(FaultCode::UnknownUnit, span, message);
     let units = UNITS.iter().map(|(unit, ..)| *unit);
     match unit::meant(text).or_else(|| nearest(text, units.filter(|unit| unit.len() > 1))) {
-        Some(near) if near == "%" || near == "N" => {
-            fault.fix(span, quoted(near), format!("did you mean `{near}`?"))
-        }
-        Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-        None => fault.note(format!("the units are {}", list_words(UNITS))),
+        Some(near) if near == "%" || near == "N" => fault.fix(
+            span,
+            quoted(near),
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        ),
+        Some(near) => fault.fix(
+            span,
+            near,
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        ),
+        None => fault.note(text!(
+            "单位有：{units}",
+            "the units are {units}",
+            units = list_words(UNITS)
+        )),
     }
 }
 
@@ -210,11 +262,11 @@ fn bad_number(text: &str, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadNumber,
         span,
-        format!("`{text}` is not a number"),
+        text!("`{text}` 不是数值", "`{text}` is not a number"),
     );
     match number_of(text) {
         Some(number) => {
-            let message = format!("write `{number}`");
+            let message = text!("改写为 `{number}`", "write `{number}`");
             fault.fix(span, number, message)
         }
         None => fault,
@@ -237,16 +289,20 @@ fn number_of(text: &str) -> Option<String> {
 fn check_text(node: Node<'_>) -> Option<Diagnostic> {
     let text = node.as_plain()?;
     let taken_for = match (scalar::bool(node), scalar::number(node)) {
-        (Some(_), _) => "boolean",
-        (_, Some(_)) => "number",
+        (Some(_), _) => text!("布尔值", "boolean"),
+        (_, Some(_)) => text!("数值", "number"),
         _ => return None,
     };
-    let message = format!("expected a text, found a {taken_for}");
+    let message = text!(
+        "应为文本，实际为{taken_for}",
+        "expected a text, found a {taken_for}",
+        taken_for = taken_for
+    );
     Some(
         Diagnostic::error(FaultCode::WrongKind, node.span(), message).fix(
             node.span(),
             quoted(text),
-            "quote it",
+            text!("加上引号", "quote it"),
         ),
     )
 }
@@ -258,13 +314,15 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
             let fault = Diagnostic::error(
                 FaultCode::BadInteger,
                 node.span(),
-                format!("`{text}` is not an integer"),
+                text!("`{text}` 不是整数", "`{text}` is not an integer"),
             );
             Some(
                 match (node.as_plain(), scalar::int_text(text), number_of(text)) {
-                    (None, Some(_), _) => fault.fix(node.span(), text, "remove the quotes"),
+                    (None, Some(_), _) => {
+                        fault.fix(node.span(), text, text!("去掉引号", "remove the quotes"))
+                    }
                     (_, _, Some(number)) if scalar::int_text(&number).is_some() => {
-                        let message = format!("write `{number}`");
+                        let message = text!("改写为 `{number}`", "write `{number}`");
                         fault.fix(node.span(), number, message)
                     }
                     _ => fault,
@@ -274,41 +332,60 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
         Some(value) if value < min || value > max => Some(Diagnostic::error(
             FaultCode::IntegerRange,
             node.span(),
-            format!("{value} is outside {min}..={max}"),
+            text!(
+                "{value} 不在 {min}..={max} 之内",
+                "{value} is outside {min}..={max}"
+            ),
         )),
         Some(_) => None,
     }
 }
 
 fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
-    let (article, quotes) = match style {
-        Style::Plain => ("", "`"),
-        Style::Quoted | Style::Block => ("the text ", "\""),
+    let message = match style {
+        Style::Plain => text!(
+            "应为 `true` 或 `false`，实际为 `{text}`",
+            "expected `true` or `false`, found `{text}`"
+        ),
+        Style::Quoted | Style::Block => text!(
+            "应为 `true` 或 `false`，实际为文本 \"{text}\"",
+            "expected `true` or `false`, found the text \"{text}\""
+        ),
     };
-    let message = format!("expected `true` or `false`, found {article}{quotes}{text}{quotes}");
     let fault = Diagnostic::error(FaultCode::BadBool, span, message);
     if style == Style::Quoted && matches!(text, "true" | "false") {
-        return fault.fix(span, text, "remove the quotes");
+        return fault.fix(span, text, text!("去掉引号", "remove the quotes"));
     }
     match text.to_ascii_lowercase().as_str() {
-        "on" | "yes" | "y" | "1" | "true" => fault.fix(span, "true", "write `true`"),
-        "off" | "no" | "n" | "0" | "false" => fault.fix(span, "false", "write `false`"),
+        "on" | "yes" | "y" | "1" | "true" => {
+            fault.fix(span, "true", text!("改写为 `true`", "write `true`"))
+        }
+        "off" | "no" | "n" | "0" | "false" => {
+            fault.fix(span, "false", text!("改写为 `false`", "write `false`"))
+        }
         _ => fault,
     }
 }
 
 /// A date as others write it, if it is one.
 fn bad_date(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(FaultCode::BadDate, span, format!("`{text}` is not a date"));
+    let fault = Diagnostic::error(
+        FaultCode::BadDate,
+        span,
+        text!("`{text}` 不是日期", "`{text}` is not a date"),
+    );
     let parts = text.trim().split(['-', '/', '.']);
     let parts: Vec<_> = parts.map(|part| format!("{part:0>2}")).collect();
     let date = parts.join("-");
     match scalar::date(&date) {
         Some(_) => {
-            let message = format!("write `{date}`");
+            let message = text!("改写为 `{date}`", "write `{date}`");
             fault.fix(span, date, message)
         }
-        None => fault.note("dates are written 2024-01 or 2024-01-31"),
+        None => fault.note(text!(
+            "日期写成 2024-01 或 2024-01-31",
+            "dates are written 2024-01 or 2024-01-31"
+        )),
     }
 }
 
@@ -316,7 +393,7 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadCode,
         span,
-        format!("`{text}` is not a valid code"),
+        text!("`{text}` 不是功能码", "`{text}` is not a valid code"),
     );
     let digits = text
         .strip_prefix("0x")
@@ -327,11 +404,18 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
     match digits {
         Some(code) if style == Style::Plain => {
             let spelling = format!("0x{code:04X}");
-            let message = format!("write `{spelling}`");
+            let message = text!("改写为 `{spelling}`", "write `{spelling}`");
             fault.fix(span, spelling, message)
         }
-        Some(code) => fault.fix(span, format!("0x{code:04X}"), "remove the quotes"),
-        None => fault.note("a code is `0x` and four upper-case hex digits, such as 0x0A01"),
+        Some(code) => fault.fix(
+            span,
+            format!("0x{code:04X}"),
+            text!("去掉引号", "remove the quotes"),
+        ),
+        None => fault.note(text!(
+            "功能码是 `0x` 加四位大写十六进制数字，例如 0x0A01",
+            "a code is `0x` and four upper-case hex digits, such as 0x0A01"
+        )),
     }
 }
 
@@ -339,14 +423,17 @@ fn bad_name(text: &str, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadName,
         span,
-        format!("`{text}` is not a snake_case name"),
+        text!(
+            "`{text}` 不是 snake_case 名称",
+            "`{text}` is not a snake_case name"
+        ),
     );
     let better = names::snake(text);
     if names::is_snake(&better) {
-        let message = format!("write `{better}`");
+        let message = text!("改写为 `{better}`", "write `{better}`");
         fault.fix(span, better, message)
     } else {
-        fault.note("a name consists of lower-case letters and digits in parts joined by `_`, and starts with a letter")
+        fault.note(text!("名称由小写字母和数字组成，各段以 `_` 连接，以字母开头", "a name consists of lower-case letters and digits in parts joined by `_`, and starts with a letter"))
     }
 }
 
@@ -354,15 +441,20 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadTypeName,
         span,
-        format!("`{text}` is not a PascalCase name"),
+        text!(
+            "`{text}` 不是 PascalCase 名称",
+            "`{text}` is not a PascalCase name"
+        ),
     );
     let better = names::pascal(&names::snake(text));
     if names::is_pascal(&better) {
-        let message = format!("write `{better}`");
+        let message = text!("改写为 `{better}`", "write `{better}`");
         fault.fix(span, better, message)
     } else {
-        fault
-            .note("a type name consists of letters and digits and starts with an upper-case letter")
+        fault.note(text!(
+            "类型名由字母和数字组成，以大写字母开头",
+            "a type name consists of letters and digits and starts with an upper-case letter"
+        ))
     }
 }
 
@@ -370,10 +462,18 @@ fn bad_word(text: &str, words: &[Meaning], span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadWord,
         span,
-        format!("`{text}` is not allowed here"),
+        text!("这里不能写 `{text}`", "`{text}` is not allowed here"),
     );
     match nearest(text, words.iter().map(|(word, ..)| *word)) {
-        Some(near) => fault.fix(span, near, format!("did you mean `{near}`?")),
-        None => fault.note(format!("expected one of {}", list_words(words))),
+        Some(near) => fault.fix(
+            span,
+            near,
+            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
+        ),
+        None => fault.note(text!(
+            "可以写：{words}",
+            "expected one of {words}",
+            words = list_words(words)
+        )),
     }
 }

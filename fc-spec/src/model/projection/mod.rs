@@ -10,6 +10,7 @@ use super::{
     Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape,
     Types, Unlinked, Value, Variant,
 };
+use crate::text;
 use std::collections::HashSet;
 
 /// Why there is no such part.
@@ -26,24 +27,31 @@ pub enum ProjectionError {
     Unlinked(Unlinked),
 }
 
+impl ProjectionError {
+    /// The sentence for the user.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        match self {
+            Self::Unknown { name, known } if known.is_empty() => text!(
+                "没有受众 `{name}`；规范没有声明任何受众",
+                "there is no audience `{name}`; the spec declares none"
+            ),
+            Self::Unknown { name, known } => text!(
+                "没有受众 `{name}`；规范声明的受众有：{known}",
+                "there is no audience `{name}`; the spec declares {known}",
+                known = Text::listed(known.iter().map(|name| format!("`{name}`")))
+            ),
+            Self::Unlinked(Unlinked { missing, user }) => text!(
+                "{user} 用到了 {missing}，而这个受众没有它",
+                "{user} names {missing}, which the audience does not have"
+            ),
+        }
+    }
+}
+
 impl std::fmt::Display for ProjectionError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Unknown { name, known } if known.is_empty() => {
-                write!(f, "there is no audience `{name}`; the spec declares none")
-            }
-            Self::Unknown { name, known } => write!(
-                f,
-                "there is no audience `{name}`; the spec declares `{}`",
-                known.join("`, `")
-            ),
-            Self::Unlinked(Unlinked { missing, user }) => {
-                write!(
-                    f,
-                    "{user} names {missing}, which the audience does not have"
-                )
-            }
-        }
+        f.write_str(&self.text().en)
     }
 }
 

@@ -22,8 +22,8 @@ pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
     let right = desk.lang.pick("正确：", "Right:");
     let error = |code: &FaultCode| ErrorView {
         code: code.as_str(),
-        title: code.title(),
-        text: told(code.explain(), wrong, right),
+        title: code.title(desk.lang),
+        text: told(code.explain(desk.lang), wrong, right),
     };
     ErrorsView {
         errors: FaultCode::ALL.iter().map(error).collect(),

@@ -1,8 +1,8 @@
 //! The words of the protocol: what they mean, and where they occur.
 
 use super::shared::Desk;
-use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
+use fc_spec::model::Lang;
 use fc_spec::model::{Operation, Term, Text, TypeDef, TypeShape};
 use serde::Serialize;
 use std::collections::HashMap;

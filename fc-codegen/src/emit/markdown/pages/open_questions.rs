@@ -1,9 +1,9 @@
 //! Every gap of the source document and what the spec answers.
 
 use super::shared::{AnswerView, Desk};
-use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link};
 use crate::emit::markdown::words::{self, Word as _};
+use fc_spec::model::Lang;
 use fc_spec::model::{
     Answer, AnswerKind, BodyState, Conflict, Impact, Question, Severity, Subject,
 };

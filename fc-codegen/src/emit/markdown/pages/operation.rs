@@ -7,7 +7,6 @@ use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::{FrameView, frame_view};
 use crate::emit::markdown::commented::commented;
 use crate::emit::markdown::enums::EnumView;
-use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::places::Kept;
 use crate::emit::markdown::rows::{DeprecationNote, Row};
@@ -15,6 +14,7 @@ use crate::emit::markdown::tabs::Tabs;
 use crate::emit::markdown::words::{self, Word as _};
 use crate::emit::packed;
 use crate::sample::{Profile, SAMPLE_ID};
+use fc_spec::model::Lang;
 use fc_spec::model::{
     Ack, Answer, BodyState, Direction, Effect, EncodingRole, Exchange, Fact, HeaderRole, Kind,
     Operation, SetOff, Subject,

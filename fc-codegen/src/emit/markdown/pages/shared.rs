@@ -2,11 +2,11 @@
 
 use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::book::Book;
-use crate::emit::markdown::lang::Lang;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::mentions::linked;
 use crate::emit::markdown::rows::{Row, Rows};
 use crate::emit::markdown::words::{self, Word as _};
+use fc_spec::model::Lang;
 use fc_spec::model::{
     Answer, Body, BodyState, Change, Code, Direction, Location, Operation, Port, Subject, Text,
 };

@@ -1,0 +1,58 @@
+//! What holds of every sentence that is said of a fault.
+
+use fc_spec::diagnostic::{Diagnostic, Faults};
+use fc_spec::model::Text;
+use regex_lite::Regex;
+
+/// Sentences that pass on what a library says, which has no Chinese: the parser of YAML, the regular expressions, the
+/// operating system.
+const PASSED_ON: [&str; 3] = ["不是 YAML：", "正则表达式库的说明：", "无法读取 `"];
+
+/// What is wrong with what these faults say: all of it has to be in both languages, and of the same names.
+pub fn objections(whose: &str, faults: &Faults) -> Vec<String> {
+    faults
+        .iter()
+        .flat_map(|fault| said(fault).filter_map(|text| Some((text, objection(text)?))))
+        .map(|(text, why)| format!("{whose}: {why}\n  {}\n  {}", text.zh, text.en))
+        .collect()
+}
+
+/// Every sentence of a fault.
+fn said(fault: &Diagnostic) -> impl Iterator<Item = &Text> {
+    let labels = std::iter::once(&fault.primary).chain(&fault.secondary);
+    let labels = labels.map(|label| &label.text);
+    std::iter::once(&fault.message)
+        .chain(labels.filter(|text| !text.is_empty()))
+        .chain(&fault.notes)
+        .chain(fault.fixes.iter().map(|fix| &fix.message))
+}
+
+/// What is wrong with a sentence.
+fn objection(text: &Text) -> Option<&'static str> {
+    let [(zh_names, zh), (en_names, en)] = [&text.zh, &text.en].map(|text| parts(text));
+    let is = |pattern: &str, text: &str| Regex::new(pattern).is_ok_and(|it| it.is_match(text));
+    let passes_on = PASSED_ON.iter().any(|start| text.zh.starts_with(start));
+    if zh_names != en_names {
+        Some("not the same names in both")
+    } else if !is("[一-鿿]", &zh) {
+        Some("the Chinese is none")
+    } else if is("[一-鿿]", &en) {
+        Some("Chinese in the English")
+    } else if !passes_on && is("[A-Za-z]{2,} [a-z]+ ", &(zh.clone() + " ")) {
+        Some("English in the Chinese")
+    } else if is("[一-鿿][A-Za-z0-9`]|[A-Za-z0-9`][一-鿿]", &zh) {
+        Some("no blank between Chinese and Latin")
+    } else if is("[：，；。、（）“”？] |[一-鿿] [一-鿿]|  ", &zh) {
+        Some("a blank where Chinese has none")
+    } else {
+        None
+    }
+}
+
+/// What stands between backticks, sorted, and the sentence with something short in its place.
+fn parts(text: &str) -> (Vec<&str>, String) {
+    let mut names: Vec<_> = text.split('`').skip(1).step_by(2).collect();
+    names.sort_unstable();
+    let rest: Vec<_> = text.split('`').step_by(2).collect();
+    (names, rest.join("`x`"))
+}
