@@ -2,8 +2,8 @@
 
 use crate::diagnostics::diagnostic;
 use crate::snapshot::Snapshot;
-use fc_diff::Lang;
 use fc_spec::diagnostic::Fix;
+use fc_spec::model::Lang;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
 /// The changes that mend the faults in a range of a file.
@@ -41,14 +41,14 @@ fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     let old = shown(snapshot.sources.slice(fix.span));
     let new = shown(&fix.replacement);
     let what = match (old.is_empty(), new.is_empty()) {
-        (_, true) => lang.pick(["delete", "删除"]).to_owned() + &format!(" `{old}`"),
-        (true, _) => lang.pick(["insert", "插入"]).to_owned() + &format!(" `{new}`"),
+        (_, true) => lang.pick("删除", "delete").to_owned() + &format!(" `{old}`"),
+        (true, _) => lang.pick("插入", "insert").to_owned() + &format!(" `{new}`"),
         _ => match lang {
             Lang::En => format!("replace `{old}` with `{new}`"),
             Lang::Zh => format!("把 `{old}` 改为 `{new}`"),
         },
     };
-    format!("{what}{}{}", lang.pick([": ", "："]), fix.message)
+    format!("{what}{}{}", lang.pick("：", ": "), lang.text(&fix.message))
 }
 
 /// On one line, and not too long.

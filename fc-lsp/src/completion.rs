@@ -136,7 +136,7 @@ impl Found<'_> {
             .and_then(|it| self.snapshot.known().analysis().next_code(it))
         {
             let lang = self.snapshot.settings.lang;
-            let what = lang.pick(["the next free code", "下一个空闲的功能码"]);
+            let what = lang.pick("下一个空闲的功能码", "the next free code");
             let code = format!("0x{code:04X}");
             self.add(&code, CompletionItemKind::Value, what.to_owned(), None);
         }
@@ -155,7 +155,7 @@ impl Found<'_> {
             return;
         };
         let required = if known.required {
-            lang.pick(["required", "必填"])
+            lang.pick("必填", "required")
         } else {
             ""
         };
@@ -181,7 +181,7 @@ impl Found<'_> {
     fn word(&mut self, word: &Word) {
         let lang = self.snapshot.settings.lang;
         let about = both(&word.text, lang);
-        let detail = lang.of(&word.text).to_owned();
+        let detail = lang.text(&word.text).to_owned();
         self.add(
             word.word,
             CompletionItemKind::EnumMember,
@@ -201,7 +201,7 @@ impl Found<'_> {
             .collect();
         for (item, place) in things {
             let title = known.title(item, place);
-            let title = title.map_or(String::new(), |title| lang.of(&title).to_owned());
+            let title = title.map_or(String::new(), |title| lang.text(&title).to_owned());
             self.add(&item.name, CompletionItemKind::Reference, title, None);
         }
     }

@@ -1,8 +1,8 @@
 //! What is wrong, as an editor shows it.
 
 use crate::snapshot::Snapshot;
-use fc_diff::Lang;
 use fc_spec::diagnostic::{Diagnostic, Severity};
+use fc_spec::model::Lang;
 use fc_spec::syntax::FileId;
 use gen_lsp_types as lsp;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ pub fn diagnostic(snapshot: &Snapshot, fault: &Diagnostic) -> lsp::Diagnostic {
     let related = fault.secondary.iter().filter_map(|label| {
         Some(lsp::DiagnosticRelatedInformation {
             location: snapshot.location(label.span)?,
-            message: label.text.clone(),
+            message: snapshot.settings.lang.text(&label.text).to_owned(),
         })
     });
     let related: Vec<_> = related.collect();
@@ -46,15 +46,15 @@ pub fn diagnostic(snapshot: &Snapshot, fault: &Diagnostic) -> lsp::Diagnostic {
 
 /// What a fault says in a language, with what to do about it on lines of its own.
 #[must_use]
-pub fn text(fault: &Diagnostic, _lang: Lang) -> String {
-    let mut text = fault.message.clone();
+pub fn text(fault: &Diagnostic, lang: Lang) -> String {
+    let mut text = lang.text(&fault.message).to_owned();
     if !fault.primary.text.is_empty() {
-        text.push_str(": ");
-        text.push_str(&fault.primary.text);
+        text.push_str(lang.pick("：", ": "));
+        text.push_str(lang.text(&fault.primary.text));
     }
     for note in &fault.notes {
         text.push('\n');
-        text.push_str(note);
+        text.push_str(lang.text(note));
     }
     text
 }

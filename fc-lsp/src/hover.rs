@@ -5,9 +5,9 @@ use crate::item::of_site;
 use crate::language::{self, both};
 use crate::snapshot::Snapshot;
 use fc_codegen::emit::rust;
-use fc_diff::Lang;
 use fc_reflect::sample::{Profile, Samples};
 use fc_spec::load::{Item, Role, Site};
+use fc_spec::model::Lang;
 use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
 use fc_spec::syntax::FileId;
 use gen_lsp_types::{Hover, MarkupContent, MarkupKind};
@@ -43,7 +43,7 @@ fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
     let lang = snapshot.settings.lang;
     let key = language::key(site.part, site.key?)?;
     let required = if key.required {
-        lang.pick([" (required)", "（必填）"])
+        lang.pick("（必填）", " (required)")
     } else {
         ""
     };
@@ -51,11 +51,11 @@ fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
     let takes = key.takes.iter().filter(|takes| !takes.text.en.is_empty());
     for takes in takes {
         text.push_str("\n\n— ");
-        text.push_str(lang.of(&takes.text));
+        text.push_str(lang.text(&takes.text));
     }
     for word in key.takes.iter().flat_map(|takes| &takes.words) {
         // Writing to a String cannot fail.
-        let _ = write!(text, "\n- `{}` {}", word.word, lang.of(&word.text));
+        let _ = write!(text, "\n- `{}` {}", word.word, lang.text(&word.text));
     }
     Some(text)
 }
@@ -105,7 +105,7 @@ pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
 
 fn kind(item: &Item, lang: Lang) -> &str {
     let part = language::part(item.kind);
-    part.map_or(item.kind, |part| lang.of(&part.name))
+    part.map_or(item.kind, |part| lang.text(&part.name))
 }
 
 fn name(item: &Item) -> String {

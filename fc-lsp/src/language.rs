@@ -1,6 +1,6 @@
 //! What the spec language says of its keys and words, found by their names.
 
-use fc_diff::Lang;
+use fc_spec::model::Lang;
 use fc_spec::model::Text;
 use fc_spec::schema::{Key, Part, reference};
 use std::sync::OnceLock;
@@ -24,7 +24,7 @@ pub fn both(text: &Text, lang: Lang) -> String {
         Lang::Zh => &text.en,
         Lang::En => &text.zh,
     };
-    let own = lang.of(text);
+    let own = lang.text(text);
     match (own.is_empty(), other.is_empty()) {
         (false, false) if own != other => format!("{own}\n\n{other}"),
         (true, _) => other.clone(),

@@ -1,10 +1,10 @@
 //! What stands above a thing in an editor: the next free code, who uses it, and what breaks since the last release.
 
 use crate::snapshot::Snapshot;
-use fc_diff::{Finding, Lang};
+use fc_diff::Finding;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place, Role, sites};
-use fc_spec::model::RangeUse;
+use fc_spec::model::{Lang, RangeUse};
 use fc_spec::syntax::{FileId, Span, parse};
 use gen_lsp_types::{CodeLens, Command, Location};
 
@@ -40,7 +40,7 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
         let usage = site.operations().filter(|_| site.role == Role::Key);
         let code = usage.and_then(|usage: RangeUse| snapshot.known().analysis().next_code(usage));
         if let Some(code) = code {
-            let title = lang.pick(["free code", "空闲的功能码"]);
+            let title = lang.pick("空闲的功能码", "free code");
             let lens = said(
                 snapshot,
                 site.node.span(),
@@ -102,13 +102,13 @@ fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
         let Some(key) = shown_at(snapshot, finding).filter(|key| key.file == file) else {
             continue;
         };
-        let message = lang.of(&finding.message);
+        let message = lang.text(&finding.message);
         match broken.iter_mut().find(|(known, _)| *known == key) {
             Some((_, messages)) => messages.push(message),
             None => broken.push((key, vec![message])),
         }
     }
-    let title = lang.pick(["breaks", "不兼容"]);
+    let title = lang.pick("不兼容", "breaks");
     let lenses = broken.into_iter().map(|(key, messages)| {
         let title = format!("{title} {}", release.number);
         said(snapshot, key, title, Some(messages.join("\n")))

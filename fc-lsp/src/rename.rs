@@ -3,8 +3,8 @@
 use crate::item::meant;
 use crate::snapshot::Snapshot;
 use fc_codegen::check::check;
-use fc_diff::Lang;
 use fc_spec::diagnostic::{Faults, Severity};
+use fc_spec::model::Lang;
 use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
 use std::collections::BTreeSet;
@@ -57,8 +57,8 @@ pub fn rename(
         )
     });
     let changes = changes.ok_or_else(|| {
-        let why = ["nothing here can be renamed", "这里没有可以重命名的内容"];
-        lang.pick(why).to_owned()
+        lang.pick("这里没有可以重命名的内容", "nothing here can be renamed")
+            .to_owned()
     })?;
     let worse = worse(snapshot, &changes);
     if worse.is_empty() {
