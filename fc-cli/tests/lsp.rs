@@ -44,6 +44,31 @@ fn faults_come_and_go_with_the_text() {
 }
 
 #[test]
+fn faults_and_their_fixes_speak_the_language_of_the_editor() {
+    let project = Project::new();
+    let told = [
+        ("zh-cn", "没有", "把 `unti` 改为 `unit`："),
+        ("en", "is not a key", "replace `unti` with `unit`: "),
+    ];
+    for (locale, message, title) in told {
+        let mut editor = Editor::with(&project, json!({ "locale": locale }));
+        editor.open(TYPES);
+        editor.replace(TYPES, "unit: mm", "unti: mm");
+        let faults = editor.faults(TYPES);
+        let said = faults[0]["message"].as_str().expect("a text");
+        assert!(said.contains(message), "{said}");
+        let params = json!({
+            "textDocument": { "uri": editor.uri(TYPES) },
+            "range": faults[0]["range"],
+            "context": { "diagnostics": [] },
+        });
+        let actions = editor.ask("textDocument/codeAction", params);
+        let said = actions[0]["title"].as_str().expect("a text");
+        assert!(said.starts_with(title), "{said}");
+    }
+}
+
+#[test]
 fn a_change_in_one_file_shows_in_another() {
     let project = Project::new();
     let mut editor = Editor::start(&project);

@@ -2,8 +2,8 @@
 
 use crate::diagnostics::diagnostic;
 use crate::snapshot::Snapshot;
-use fc_diff::Lang;
 use fc_spec::diagnostic::Fix;
+use fc_spec::model::Lang;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
 /// The changes that mend the faults in a range of a file.

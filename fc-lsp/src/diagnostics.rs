@@ -1,8 +1,8 @@
 //! What is wrong, as an editor shows it.
 
 use crate::snapshot::Snapshot;
-use fc_diff::Lang;
 use fc_spec::diagnostic::{Diagnostic, Severity};
+use fc_spec::model::Lang;
 use fc_spec::syntax::FileId;
 use gen_lsp_types as lsp;
 use std::collections::BTreeMap;

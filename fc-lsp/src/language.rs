@@ -1,6 +1,6 @@
 //! What the spec language says of its keys and words, found by their names.
 
-use fc_diff::Lang;
+use fc_spec::model::Lang;
 use fc_spec::model::Text;
 use fc_spec::schema::{Key, Part, reference};
 use std::sync::OnceLock;

@@ -1,10 +1,10 @@
 //! What stands above a thing in an editor: the next free code, who uses it, and what breaks since the last release.
 
 use crate::snapshot::Snapshot;
-use fc_diff::{Finding, Lang};
+use fc_diff::Finding;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place, Role, sites};
-use fc_spec::model::RangeUse;
+use fc_spec::model::{Lang, RangeUse};
 use fc_spec::syntax::{FileId, Span, parse};
 use gen_lsp_types::{CodeLens, Command, Location};
 

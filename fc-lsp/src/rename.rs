@@ -3,8 +3,8 @@
 use crate::item::meant;
 use crate::snapshot::Snapshot;
 use fc_codegen::check::check;
-use fc_diff::Lang;
 use fc_spec::diagnostic::{Faults, Severity};
+use fc_spec::model::Lang;
 use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! What a client says of itself when it begins.
 
 use crate::position::Encoding;
-use fc_diff::Lang;
+use fc_spec::model::Lang;
 use serde_json::Value;
 use std::path::PathBuf;
 
