@@ -20,6 +20,7 @@ mod place;
 mod places;
 mod plugin;
 mod print;
+mod progress;
 mod project;
 mod questions;
 mod release;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         print::failure(failure.as_ref());
         Status::Failed
     });
+    progress::done();
     ExitCode::from(status as u8)
 }
 
