@@ -155,8 +155,8 @@ impl Watched {
 struct Input {
     /// Paths and texts, sorted by path.
     files: Vec<(String, String)>,
-    /// What could not be read.
-    faults: Vec<String>,
+    /// Codes of what could not be read.
+    faults: Vec<&'static str>,
 }
 
 impl Input {
@@ -173,7 +173,7 @@ impl Input {
         files.sort();
         Self {
             files,
-            faults: faults.iter().map(|it| it.message.to_string()).collect(),
+            faults: faults.iter().map(|it| it.code.as_str()).collect(),
         }
     }
 
@@ -181,9 +181,9 @@ impl Input {
     fn since(&self, last: &Self) -> String {
         let lacks = |input: &Self, path: &str| !input.files.iter().any(|(it, _)| it == path);
         let new = self.files.iter().filter(|file| !last.files.contains(file));
-        let new = new.map(|(path, _)| match lacks(last, path) {
-            true => ("new", path),
-            false => ("changed", path),
+        let new = new.map(|(path, _)| {
+            let what = if lacks(last, path) { "new" } else { "changed" };
+            (what, path)
         });
         let gone = last.files.iter().map(|(path, _)| ("gone", path));
         let all: Vec<_> = new

@@ -1,5 +1,6 @@
 //! `fc git setup`.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -85,7 +86,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let mut said = format!("{} diff and merge\n", print::good("set up"));
     for (path, _) in &hooks {
-        said += &format!("{} {}\n", print::good("wrote"), path.display());
+        // Writing to a String cannot fail.
+        let _ = writeln!(said, "{} {}", print::good("wrote"), path.display());
     }
     print::done(&said)?;
     let lines = missing(&project)?;
