@@ -16,7 +16,7 @@ use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::Shelf;
-use crate::{plugin, print, watch};
+use crate::{plugin, print, progress, watch};
 
 /// Paths that are named one by one.
 const NAMED: usize = 10;
@@ -143,6 +143,7 @@ fn make(
     if let Some(clash) = clashes(model, &targets.languages()).first() {
         return Err(format!("`{read}`: {clash}").into());
     }
+    progress::doing("generating");
     let mut artifacts = generate(model, &targets)?;
     for target in targets.plugins() {
         artifacts.extend(plugin::run(target, model, &project.root)?);

@@ -22,6 +22,7 @@ mod place;
 mod places;
 mod plugin;
 mod print;
+mod progress;
 mod project;
 mod questions;
 mod release;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         print::failure(failure.as_ref());
         Status::Failed
     });
+    progress::done();
     ExitCode::from(status as u8)
 }
 

@@ -16,11 +16,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::styling::{AnsiColor, Style};
 
+use crate::progress;
+
 const ERROR: Style = AnsiColor::Red.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 
 /// Prints the result of a command.
 pub fn result(text: &str) -> io::Result<()> {
+    progress::done();
     let mut stdout = anstream::stdout().lock();
     stdout.write_all(text.as_bytes())?;
     stdout.flush()
@@ -34,9 +37,14 @@ pub fn quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
+/// Whether it is so.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
 /// Prints what has been done, or found to be in order.
 pub fn done(text: &str) -> io::Result<()> {
-    if QUIET.load(Ordering::Relaxed) {
+    if is_quiet() {
         return Ok(());
     }
     result(text)
@@ -44,6 +52,7 @@ pub fn done(text: &str) -> io::Result<()> {
 
 /// Prints what people should know beside the result.
 pub fn message(text: &str) -> io::Result<()> {
+    progress::done();
     anstream::stderr().lock().write_all(text.as_bytes())
 }
 

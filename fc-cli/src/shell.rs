@@ -51,7 +51,7 @@ pub fn man(options: &Man) -> Result<Status, Failure> {
     };
     std::fs::create_dir_all(directory).map_err(cannot)?;
     clap_mangen::generate_to(command(), directory).map_err(cannot)?;
-    let pages = command().get_subcommands().count() + 1;
+    let pages = pages(&command());
     let wrote = print::good(&said!("已写入", "wrote"));
     let pages = counted(pages, "页面", "page");
     print::done(&said!(
@@ -59,6 +59,12 @@ pub fn man(options: &Man) -> Result<Status, Failure> {
         "{wrote} {pages} in {shown}\n"
     ))?;
     Ok(Status::Fine)
+}
+
+/// Number of pages: a command's own, and those of the commands below it.
+fn pages(command: &Command) -> usize {
+    let below = command.get_subcommands().filter(|it| !it.is_hide_set());
+    1 + below.map(pages).sum::<usize>()
 }
 
 /// The command line; `help` is not a page of its own, each command has its own.

@@ -10,6 +10,7 @@ use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
+use crate::progress;
 use crate::project::Project;
 
 /// A spec that has been read.
@@ -32,6 +33,7 @@ impl Spec {
 
     /// The same of a project that has been found.
     pub fn in_project(project: &Project) -> Self {
+        progress::doing("checking the spec");
         let mut faults = Faults::new();
         let sources = read_dir(&project.root, &project.spec, &mut faults);
         Self::of(sources, faults, project.targets.languages())

@@ -10,6 +10,7 @@ use crate::lang::{lang, said};
 use crate::outcome::Failure;
 use crate::place::Place;
 use crate::print;
+use crate::progress;
 use crate::project::Project;
 
 /// Where versions are looked for.
@@ -82,6 +83,7 @@ impl Shelf {
 
     /// Reads a version; `None` if its spec has errors, which are shown.
     pub fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
+        progress::doing("reading two versions of the spec");
         match Version::read(name, &self.root, &self.spec) {
             Ok(version) => Ok(Some(version)),
             Err(VersionError::Faulty {
@@ -102,6 +104,7 @@ impl Shelf {
 
     /// What differs, with the waivers of the new version applied.
     pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
+        progress::doing("comparing");
         let mut findings = diff(&old.model, &new.model);
         findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());

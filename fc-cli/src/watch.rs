@@ -167,8 +167,8 @@ impl Watched {
 struct Input {
     /// Paths and texts, sorted by path.
     files: Vec<(String, String)>,
-    /// What could not be read.
-    faults: Vec<String>,
+    /// Codes of what could not be read.
+    faults: Vec<&'static str>,
 }
 
 impl Input {
@@ -185,10 +185,7 @@ impl Input {
         files.sort();
         Self {
             files,
-            faults: faults
-                .iter()
-                .map(|it| lang().text(&it.message).to_owned())
-                .collect(),
+            faults: faults.iter().map(|it| it.code.as_str()).collect(),
         }
     }
 
@@ -196,9 +193,13 @@ impl Input {
     fn since(&self, last: &Self) -> String {
         let lacks = |input: &Self, path: &str| !input.files.iter().any(|(it, _)| it == path);
         let new = self.files.iter().filter(|file| !last.files.contains(file));
-        let new = new.map(|(path, _)| match lacks(last, path) {
-            true => (lang().pick("新增", "new"), path),
-            false => (lang().pick("改动", "changed"), path),
+        let new = new.map(|(path, _)| {
+            let what = if lacks(last, path) {
+                lang().pick("新增", "new")
+            } else {
+                lang().pick("改动", "changed")
+            };
+            (what, path)
         });
         let gone = last
             .files

@@ -36,8 +36,10 @@ fn each_command_has_a_manual_page() {
     let project = Project::empty();
     let run = project.fc(&["man", "share/man1"]).expect(0);
     let commands = commands(&project);
-    let said = format!("wrote {} pages in share/man1\n", commands.len() + 1);
-    assert_eq!(run.stdout, said);
+    let pages = project.files("share/man1").len();
+    assert_eq!(run.stdout, format!("wrote {pages} pages in share/man1\n"));
+    // `fc git` has commands of its own.
+    assert!(pages > commands.len() + 1, "{pages}");
     for command in commands {
         let page = project.read(&format!("share/man1/fc-{command}.1"));
         assert!(page.contains(".SH SYNOPSIS"), "{command}");

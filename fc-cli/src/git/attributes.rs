@@ -49,7 +49,7 @@ fn values<'p>(
     attribute: &str,
     paths: impl Iterator<Item = &'p str>,
 ) -> Result<BTreeMap<String, String>, Failure> {
-    let paths: String = paths.map(|path| format!("{path}\0")).collect();
+    let paths: String = paths.flat_map(|path| [path, "\0"]).collect();
     let said = git(root, &["check-attr", "-z", "--stdin", attribute], &paths)?;
     let said: Vec<&str> = parts(&said).collect();
     let (triples, _) = said.as_chunks::<3>();

@@ -1,5 +1,6 @@
 //! `fc git setup`.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,7 +89,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let mut text = said!("{set_up} diff 和 merge\n", "{set_up} diff and merge\n");
     for (path, _) in &hooks {
         let (wrote, path) = (print::good(&said!("已写入", "wrote")), path.display());
-        text += &format!("{wrote} {path}\n");
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{wrote} {path}");
     }
     print::done(&text)?;
     let lines = missing(&project)?;

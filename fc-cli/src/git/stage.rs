@@ -46,7 +46,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     ];
     let known = git(root, &list, "")?;
     let paths: BTreeSet<&str> = parts(&known).filter(|path| mine.contains(*path)).collect();
-    let paths: String = paths.iter().map(|path| format!("{path}\0")).collect();
+    let paths: String = paths.iter().flat_map(|path| [path, "\0"]).collect();
     let add = ["update-index", "--add", "--remove", "-z", "--stdin"];
     git(root, &add, &paths)?;
     let is_staged = !git(root, &["diff", "--cached", "--name-only"], "")?.is_empty();
