@@ -101,6 +101,8 @@ fault_codes! {
     FC0125 DuplicateItem "duplicate list item";
     FC0126 TextCut "text cut off by a comment";
     FC0127 UnknownUnit "unknown unit";
+    FC0128 MisplacedEntry "operation or type in another section";
+    FC0129 SplitItem "list item cut in two by a dash";
     FC0201 DuplicateOperation "two operations with the same name";
     FC0202 DuplicateType "two types with the same name";
     FC0203 UnknownType "unknown type";

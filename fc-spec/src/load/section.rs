@@ -14,6 +14,10 @@ pub(super) struct Tree<'s> {
     pub path: String,
     /// Its text as a tree.
     pub tree: syntax::Tree<'s>,
+    /// Its texts that are not in the tree.
+    pub gaps: Vec<Span>,
+    /// Whether all of its text is in the tree.
+    pub is_whole: bool,
 }
 
 impl Tree<'_> {
@@ -51,10 +55,11 @@ pub(super) fn collect<'a>(
         faults.append(own);
     }
     drop_repeated(&mut sections, faults);
-    if *whole {
+    let is_complete = trees.iter().all(|tree| tree.is_whole);
+    if *whole && is_complete {
         *whole = check_files(trees, &sections, faults);
     }
-    if *whole {
+    if *whole && is_complete && !faults.has_lost() {
         check_present(trees, &sections, faults);
     }
     sections
@@ -64,12 +69,15 @@ pub(super) fn collect<'a>(
 fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
+    tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
     check_file(tree, &mut faults);
     let group = GROUP.id.of(FILE.group.of(tree.root()));
     for entry in tree.root().entries() {
         if let Some(key) = File::TABLE.key(entry.name()) {
-            let before = faults.errors();
-            shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            let before = (faults.errors(), faults.hidden().len());
+            if !(entry.value.is_null() && shape::is_left_behind(File::TABLE, tree.root(), entry)) {
+                shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            }
             sections.push(Section {
                 name: key.name,
                 place: Place {
@@ -77,7 +85,8 @@ fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
                     node: entry.value,
                 },
                 group: group.and_then(Node::as_str),
-                clean: faults.errors() == before,
+                clean: (faults.errors(), faults.hidden().len()) == before
+                    && !entry.value.lacks(&tree.gaps, entry.key.span()),
             });
         }
     }
@@ -100,11 +109,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
         );
         return;
     };
-    for entry in entries.clone() {
-        if File::TABLE.key(entry.name()).is_none() {
-            faults.push(shape::unknown_key(File::TABLE, entry, &entries));
-        }
-    }
+    shape::unknown_keys(File::TABLE, tree.root(), faults);
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
         for entry in entries.filter(grouped) {
@@ -115,7 +120,10 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
                 message,
             ));
         }
-    } else if FILE.group.of(tree.root()).is_none() {
+    } else if FILE.group.of(tree.root()).is_none()
+        && tree.is_whole
+        && !faults.suggests(FILE.group.name)
+    {
         let at = entries
             .clone()
             .find(|entry| grouped(entry))
@@ -190,7 +198,8 @@ fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faul
     };
     let span = Span::point(home.root().span().file, 0);
     for name in grammar::ONCE {
-        if !sections.iter().any(|section| section.name == name) {
+        let is_there = sections.iter().any(|section| section.name == name);
+        if !is_there && !faults.suggests(name) {
             let message = format!("the spec has no `{name}`");
             faults.push(
                 Diagnostic::error(FaultCode::SectionMissing, span, message)
