@@ -36,7 +36,6 @@ const PATHS: &[FaultCode] = &[FaultCode::UnknownField, FaultCode::GovernsNothing
 /// Faults that compare parts of an operation or type that stand far apart in it: what one of them says is not known
 /// where any is malformed.
 const WITHIN_ENTRY: &[FaultCode] = &[
-    FaultCode::GovernsNothing,
     FaultCode::GovernedFact,
     FaultCode::UnreachedState,
     FaultCode::UnknownField,

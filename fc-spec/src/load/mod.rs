@@ -73,9 +73,10 @@ fn read<T>(
         .par_iter()
         .map(|&(file, source)| {
             let mut faults = Faults::new();
-            let (tree, is_whole) = match source.whole {
-                true => parse_parts(file, &source.text, &mut faults),
-                false => (None, false),
+            let (tree, is_whole) = if source.whole {
+                parse_parts(file, &source.text, &mut faults)
+            } else {
+                (None, false)
             };
             (tree, is_whole, faults)
         })
@@ -86,7 +87,7 @@ fn read<T>(
         let gaps = found.gaps().to_vec();
         faults.append(found);
         match tree {
-            Some(tree) => trees.push(section::Tree {
+            Some(tree) => trees.push(section::Parsed {
                 path: source.path.clone(),
                 tree,
                 gaps,

@@ -9,7 +9,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashMap;
 
 /// A parsed file.
-pub(super) struct Tree<'s> {
+pub(super) struct Parsed<'s> {
     /// Path from the project's root.
     pub path: String,
     /// Its text as a tree.
@@ -20,7 +20,7 @@ pub(super) struct Tree<'s> {
     pub is_whole: bool,
 }
 
-impl Tree<'_> {
+impl Parsed<'_> {
     /// Its top mapping.
     fn root(&self) -> Node<'_> {
         self.tree.root()
@@ -44,7 +44,7 @@ pub(super) struct Section<'a> {
 /// `whole`: every file could be parsed, so that what is missing is really missing. It stays so unless a file that
 /// every spec has is not there, which is the cause of all else that is missing.
 pub(super) fn collect<'a>(
-    trees: &'a [Tree<'_>],
+    trees: &'a [Parsed<'_>],
     whole: &mut bool,
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
@@ -66,7 +66,7 @@ pub(super) fn collect<'a>(
 }
 
 /// The sections of one file, and what is wrong with their shape.
-fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
+fn of_file<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
     tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
@@ -94,12 +94,12 @@ fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
 }
 
 /// Whether the file lies in `commands/`.
-fn holds_operations(tree: &Tree<'_>) -> bool {
+fn holds_operations(tree: &Parsed<'_>) -> bool {
     let mut parts = tree.path.rsplit('/');
     parts.nth(1) == Some("commands")
 }
 
-fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
+fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
     let Some(entries) = tree.root().as_mapping() else {
         shape::check_kind(
             &grammar::Kind::Map(File::TABLE),
@@ -161,7 +161,7 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
 }
 
 /// Whether there is a file for what lies below the messages, and one with operations.
-fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
+fn check_files(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
     let Some(first) = trees.first() else {
         return true;
     };
@@ -187,12 +187,12 @@ fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults
 /// The file of the protocol-wide sections.
 const PROTOCOL: &str = "protocol.yaml";
 
-fn file_name<'t>(tree: &'t Tree<'_>) -> &'t str {
+fn file_name<'t>(tree: &'t Parsed<'_>) -> &'t str {
     tree.path.rsplit('/').next().unwrap_or_default()
 }
 
-fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) {
-    let at_protocol = |tree: &&Tree<'_>| file_name(tree) == PROTOCOL;
+fn check_present(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Faults) {
+    let at_protocol = |tree: &&Parsed<'_>| file_name(tree) == PROTOCOL;
     let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
         return;
     };

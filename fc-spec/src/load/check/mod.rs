@@ -156,7 +156,9 @@ pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &
         })
         .collect();
     let mut all = Faults::new();
-    found.into_iter().for_each(|found| all.append(found));
+    for found in found {
+        all.append(found);
+    }
     Earlier::new(draft, sources, faults).keep_independent(&mut all);
     faults.append(all);
 }

@@ -87,11 +87,11 @@ pub const MAKERS: &[Maker] = &[
         number(at, |_| "1.5".into())
     }),
     maker("a number for a text as example", |at| {
-        example(at, "string").filter(|_| at.form == Form::Plain)?;
+        example(at, "string").filter(|()| at.form == Form::Plain)?;
         Some(at.set("12"))
     }),
     maker("`on` for a text as example", |at| {
-        example(at, "string").filter(|_| at.form == Form::Plain)?;
+        example(at, "string").filter(|()| at.form == Form::Plain)?;
         Some(at.set("on"))
     }),
     maker("a number for a text", |at| text(at).then(|| at.set("123"))),
