@@ -10,6 +10,7 @@
 
 mod good_spec;
 mod json_schema;
+mod yaml_as_json;
 
 use fc_spec::schema::schema;
 use json_schema::Validator;
@@ -17,29 +18,9 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// YAML as an editor's language server sees it.
-fn json_of(yaml: &serde_yaml::Value) -> Value {
-    match yaml {
-        serde_yaml::Value::Mapping(entries) => entries
-            .iter()
-            .map(|(key, value)| {
-                let name = match json_of(key) {
-                    Value::String(name) => name,
-                    other => other.to_string(),
-                };
-                (name, json_of(value))
-            })
-            .collect(),
-        serde_yaml::Value::Sequence(items) => items.iter().map(json_of).collect(),
-        serde_yaml::Value::Tagged(_) => panic!("the spec has no tags"),
-        scalar => serde_json::to_value(scalar).expect("a JSON scalar"),
-    }
-}
-
 fn check(text: &str) -> bool {
     let root: Value = serde_json::from_str(&schema()).expect("the schema is JSON");
-    let yaml: serde_yaml::Value = serde_yaml::from_str(text).expect("the text is YAML");
-    Validator { root: &root }.accepts(&root, &json_of(&yaml))
+    Validator { root: &root }.accepts(&root, &yaml_as_json::parse(text))
 }
 
 #[test]

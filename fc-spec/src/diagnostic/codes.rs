@@ -113,6 +113,8 @@ fault_codes! {
     FC0125 DuplicateItem "列表中有重复的项" "duplicate list item";
     FC0126 TextCut "文本被注释截断" "text cut off by a comment";
     FC0127 UnknownUnit "未知的单位" "unknown unit";
+    FC0128 MisplacedEntry "接口或类型写在别的部分中" "operation or type in another section";
+    FC0129 SplitItem "列表项被短横截成两项" "list item cut in two by a dash";
     FC0201 DuplicateOperation "两个接口同名" "two operations with the same name";
     FC0202 DuplicateType "两个类型同名" "two types with the same name";
     FC0203 UnknownType "未知的类型" "unknown type";

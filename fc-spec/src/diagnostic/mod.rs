@@ -131,6 +131,9 @@ pub struct Faults {
     list: Vec<Diagnostic>,
     omitted: usize,
     errors: usize,
+    hidden: Vec<Span>,
+    gaps: Vec<Span>,
+    nameless: bool,
 }
 
 impl Faults {
@@ -152,12 +155,63 @@ impl Faults {
         }
     }
 
+    /// Notes that because of a fault nobody reads this text: what seems to be missing may be in it.
+    pub(crate) fn hide(&mut self, text: Span) {
+        self.hidden.push(text);
+    }
+
+    /// Notes that there are entries in this text, which is hidden as it is no YAML: what it stands in lacks them.
+    pub(crate) fn leave_out(&mut self, text: Span) {
+        self.hide(text);
+        self.gaps.push(text);
+    }
+
+    /// Texts that are left out.
+    pub(crate) fn gaps(&self) -> &[Span] {
+        &self.gaps
+    }
+
+    /// Notes that because of a fault something has lost its name, or is lost with it: of nothing can be said that it is
+    /// missing.
+    pub(crate) fn lose(&mut self) {
+        self.nameless = true;
+    }
+
+    /// Whether something is lost of which the name is not known.
+    pub(crate) fn has_lost(&self) -> bool {
+        self.nameless
+    }
+
+    /// Texts that nobody reads because of one of these faults.
+    pub(crate) fn hidden(&self) -> &[Span] {
+        &self.hidden
+    }
+
     /// Adds all of another list behind these.
     pub fn append(&mut self, other: Self) {
+        self.hidden.extend(other.hidden);
+        self.gaps.extend(other.gaps);
+        self.nameless |= other.nameless;
         let room = KEPT.saturating_sub(self.list.len());
         self.errors += other.errors;
         self.omitted += other.omitted + other.list.len().saturating_sub(room);
         self.list.extend(other.list.into_iter().take(room));
+    }
+
+    /// Keeps those of which this is true; those that are only counted stay counted.
+    pub(crate) fn retain(&mut self, is_kept: impl Fn(&Diagnostic) -> bool) {
+        let errors = &mut self.errors;
+        self.list.retain(|fault| {
+            let kept = is_kept(fault);
+            *errors -= usize::from(!kept && fault.severity == Severity::Error);
+            kept
+        });
+    }
+
+    /// Whether one of them says to write this.
+    pub(crate) fn suggests(&self, text: &str) -> bool {
+        let mut fixes = self.list.iter().flat_map(|fault| &fault.fixes);
+        fixes.any(|fix| fix.replacement == text)
     }
 
     /// Whether there is none.

@@ -4,6 +4,7 @@
 //! and is left out or flagged, so that checks find only what is new.
 
 use super::grammar::{Form, Key};
+use crate::diagnostic::Faults;
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
     CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
@@ -11,7 +12,7 @@ use crate::model::{
     Store, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::syntax::{Node, Span};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Where something stands.
 #[derive(Clone, Copy, Debug)]
@@ -172,9 +173,36 @@ pub(crate) struct Draft<'a> {
     pub changes: Vec<Placed<'a, Change>>,
     /// First type of each name; filled when all are lowered.
     pub type_index: HashMap<String, usize>,
+    /// Types of which faults leave open what they are.
+    pub doubtful: HashSet<String>,
 }
 
 impl<'a> Draft<'a> {
+    /// Whether there is a type of this name, of which it is clear what it is.
+    pub fn knows(&self, name: &str) -> bool {
+        self.type_index.contains_key(name) && !self.doubtful.contains(name)
+    }
+
+    /// Notes of which types the faults so far leave open what they are.
+    pub fn note_doubtful(&mut self, faults: &Faults) {
+        let places: HashSet<Span> = faults.iter().map(|fault| fault.primary.span).collect();
+        for (index, ty) in self.types.iter().enumerate() {
+            let entry = ty.place.name().to(ty.place.node.span());
+            let mut hidden = faults.hidden().iter();
+            let is_cut = hidden.any(|text| {
+                text.file == entry.file && entry.start <= text.start && text.end <= entry.end
+            });
+            let is_second = self.type_index.get(&ty.def.name) != Some(&index);
+            let is_faulty = places.contains(&ty.place.name())
+                || ty.place.node.entries().any(|entry| {
+                    places.contains(&entry.key.span()) || places.contains(&entry.value.span())
+                });
+            if is_second || is_faulty || is_cut {
+                self.doubtful.insert(ty.def.name.clone());
+            }
+        }
+    }
+
     /// The type of this name.
     pub fn type_named(&self, name: &str) -> Option<&TypeDraft<'a>> {
         self.types.get(*self.type_index.get(name)?)

@@ -71,12 +71,7 @@ impl Inside {
         let Self::Declared(table) = self else {
             return;
         };
-        let entries = mapping.entries();
-        for entry in entries.clone() {
-            if table.key(entry.name()).is_none() {
-                faults.push(shape::unknown_key(table, entry, &entries));
-            }
-        }
+        shape::unknown_keys(table, mapping, faults);
     }
 }
 

@@ -11,6 +11,7 @@
 //! reported: all faults of a spec show up in one run.
 
 mod check;
+mod consequence;
 mod draft;
 mod edit;
 mod govern;
@@ -33,7 +34,7 @@ pub(crate) mod texts;
 mod uses;
 
 use crate::diagnostic::Faults;
-use crate::syntax::{Sources, parse};
+use crate::syntax::{Sources, parse_parts};
 use draft::Draft;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
@@ -53,7 +54,7 @@ pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     read(sources, faults, |draft, whole, faults| {
-        check::check(&draft, whole, faults);
+        check::check(&draft, sources, whole, faults);
         partial::build(draft, whole, !faults.has_errors())
     })
 }
@@ -78,27 +79,33 @@ fn read<T>(
         .par_iter()
         .map(|&(file, source)| {
             let mut faults = Faults::new();
-            let tree = source
-                .whole
-                .then(|| parse(file, &source.text, &mut faults))
-                .flatten();
-            (tree, faults)
+            let (tree, is_whole) = if source.whole {
+                parse_parts(file, &source.text, &mut faults)
+            } else {
+                (None, false)
+            };
+            (tree, is_whole, faults)
         })
         .collect();
     let mut trees = Vec::new();
     let mut whole = true;
-    for ((_, source), (tree, found)) in files.into_iter().zip(parsed) {
+    for ((_, source), (tree, is_whole, found)) in files.into_iter().zip(parsed) {
+        let gaps = found.gaps().to_vec();
         faults.append(found);
         match tree {
-            Some(tree) => trees.push(section::Tree {
+            Some(tree) => trees.push(section::Parsed {
                 path: source.path.clone(),
                 tree,
+                gaps,
+                is_whole,
             }),
             None => whole = false,
         }
     }
     let sections = section::collect(&trees, &mut whole, faults);
+    whole &= !faults.has_lost();
     let mut draft = lower::lower(&sections, sources);
+    draft.note_doubtful(faults);
     resolve::resolve(&mut draft);
     draft.questions = questions::questions(&draft, sources);
     then(draft, whole, faults)

@@ -11,14 +11,18 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashMap;
 
 /// A parsed file.
-pub(super) struct Tree<'s> {
+pub(super) struct Parsed<'s> {
     /// Path from the project's root.
     pub path: String,
     /// Its text as a tree.
     pub tree: syntax::Tree<'s>,
+    /// Its texts that are not in the tree.
+    pub gaps: Vec<Span>,
+    /// Whether all of its text is in the tree.
+    pub is_whole: bool,
 }
 
-impl Tree<'_> {
+impl Parsed<'_> {
     /// Its top mapping.
     fn root(&self) -> Node<'_> {
         self.tree.root()
@@ -42,7 +46,7 @@ pub(super) struct Section<'a> {
 /// `whole`: every file could be parsed, so that what is missing is really missing. It stays so unless a file that
 /// every spec has is not there, which is the cause of all else that is missing.
 pub(super) fn collect<'a>(
-    trees: &'a [Tree<'_>],
+    trees: &'a [Parsed<'_>],
     whole: &mut bool,
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
@@ -53,25 +57,29 @@ pub(super) fn collect<'a>(
         faults.append(own);
     }
     drop_repeated(&mut sections, faults);
-    if *whole {
+    let is_complete = trees.iter().all(|tree| tree.is_whole);
+    if *whole && is_complete {
         *whole = check_files(trees, &sections, faults);
     }
-    if *whole {
+    if *whole && is_complete && !faults.has_lost() {
         check_present(trees, &sections, faults);
     }
     sections
 }
 
 /// The sections of one file, and what is wrong with their shape.
-fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
+fn of_file<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
+    tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
     check_file(tree, &mut faults);
     let group = GROUP.id.of(FILE.group.of(tree.root()));
     for entry in tree.root().entries() {
         if let Some(key) = File::TABLE.key(entry.name()) {
-            let before = faults.errors();
-            shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            let before = (faults.errors(), faults.hidden().len());
+            if !(entry.value.is_null() && shape::is_left_behind(File::TABLE, tree.root(), entry)) {
+                shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+            }
             sections.push(Section {
                 name: key.name,
                 place: Place {
@@ -79,7 +87,8 @@ fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
                     node: entry.value,
                 },
                 group: group.and_then(Node::as_str),
-                clean: faults.errors() == before,
+                clean: (faults.errors(), faults.hidden().len()) == before
+                    && !entry.value.lacks(&tree.gaps, entry.key.span()),
             });
         }
     }
@@ -87,12 +96,12 @@ fn of_file<'a>(tree: &'a Tree<'_>) -> (Vec<Section<'a>>, Faults) {
 }
 
 /// Whether the file lies in `commands/`.
-fn holds_operations(tree: &Tree<'_>) -> bool {
+fn holds_operations(tree: &Parsed<'_>) -> bool {
     let mut parts = tree.path.rsplit('/');
     parts.nth(1) == Some("commands")
 }
 
-fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
+fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
     let Some(entries) = tree.root().as_mapping() else {
         shape::check_kind(
             &grammar::Kind::Map(File::TABLE),
@@ -102,11 +111,7 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
         );
         return;
     };
-    for entry in entries.clone() {
-        if File::TABLE.key(entry.name()).is_none() {
-            faults.push(shape::unknown_key(File::TABLE, entry, &entries));
-        }
-    }
+    shape::unknown_keys(File::TABLE, tree.root(), faults);
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
         for entry in entries.filter(grouped) {
@@ -121,7 +126,10 @@ fn check_file(tree: &Tree<'_>, faults: &mut Faults) {
                 message,
             ));
         }
-    } else if FILE.group.of(tree.root()).is_none() {
+    } else if FILE.group.of(tree.root()).is_none()
+        && tree.is_whole
+        && !faults.suggests(FILE.group.name)
+    {
         let at = entries
             .clone()
             .find(|entry| grouped(entry))
@@ -169,7 +177,7 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
 }
 
 /// Whether there is a file for what lies below the messages, and one with operations.
-fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
+fn check_files(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
     let Some(first) = trees.first() else {
         return true;
     };
@@ -214,18 +222,19 @@ fn check_files(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults
 /// The file of the protocol-wide sections.
 const PROTOCOL: &str = "protocol.yaml";
 
-fn file_name<'t>(tree: &'t Tree<'_>) -> &'t str {
+fn file_name<'t>(tree: &'t Parsed<'_>) -> &'t str {
     tree.path.rsplit('/').next().unwrap_or_default()
 }
 
-fn check_present(trees: &[Tree<'_>], sections: &[Section<'_>], faults: &mut Faults) {
-    let at_protocol = |tree: &&Tree<'_>| file_name(tree) == PROTOCOL;
+fn check_present(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Faults) {
+    let at_protocol = |tree: &&Parsed<'_>| file_name(tree) == PROTOCOL;
     let Some(home) = trees.iter().find(at_protocol).or(trees.first()) else {
         return;
     };
     let span = Span::point(home.root().span().file, 0);
     for name in grammar::ONCE {
-        if !sections.iter().any(|section| section.name == name) {
+        let is_there = sections.iter().any(|section| section.name == name);
+        if !is_there && !faults.suggests(name) {
             let message = text!("规范中没有 `{name}`", "the spec has no `{name}`");
             faults.push(
                 Diagnostic::error(FaultCode::SectionMissing, span, message).note(text!(

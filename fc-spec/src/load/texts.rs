@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::grammar::TEXT;
+use crate::load::misread::misread;
 use crate::syntax::{Node, Style, quoted};
 use crate::text;
 
@@ -84,6 +85,10 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
             node.span(),
             message,
         ));
+        return false;
+    }
+    // Whether it is one at all has been asked.
+    if node.as_plain().is_some_and(|text| misread(text).is_some()) {
         return false;
     }
     if text.trim() != text {

@@ -1,8 +1,8 @@
 //! From grammar tables to schemas.
 
 use crate::load::grammar::unit::UNITS;
-use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, Table};
-use crate::model::{Number, Value};
+use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, TEXT, Table};
+use crate::model::{Number, Type, Value};
 use crate::vocabulary::Meaning;
 use std::collections::BTreeMap;
 
@@ -121,10 +121,7 @@ impl Definitions {
             Kind::Map(table) => self.table(table),
             Kind::Entries { key, value, min } => self.entries(key, value, *min),
             Kind::Body => reference("body"),
-            Kind::Either(kinds) => {
-                let choices = kinds.iter().map(|kind| self.kind(kind)).collect();
-                object([("anyOf", choices)])
-            }
+            Kind::Either(kinds) => self.either(kinds),
             Kind::ByKey { tables, otherwise } => self.by_key(tables, otherwise),
         }
     }
@@ -162,13 +159,62 @@ impl Definitions {
         Value::Object(entries)
     }
 
-    /// The first table whose key is there decides.
+    /// One of several. Which of them is meant is told by what JSON calls the value, so that a fault is one of that
+    /// alternative and not "none of them". What is none of them (nothing yet, or something else) is taken for the last.
+    fn either(&mut self, kinds: &'static [Kind]) -> Value {
+        let mut by_type: Vec<(&str, Vec<Value>)> = Vec::new();
+        for kind in kinds {
+            for ty in json_types(kind) {
+                let schema = match (kind, *ty) {
+                    (Kind::Type, "array") => self.type_list(),
+                    (Kind::Type, _) => self.kind(&Kind::Type),
+                    _ => self.kind(kind),
+                };
+                match by_type.iter_mut().find(|(known, _)| known == ty) {
+                    Some((_, schemas)) => schemas.push(schema),
+                    None => by_type.push((ty, vec![schema])),
+                }
+            }
+        }
+        let one = |mut schemas: Vec<Value>| match schemas.len() {
+            1 => schemas.remove(0),
+            _ => object([("anyOf", schemas.into_iter().collect())]),
+        };
+        let Some((_, last)) = by_type.pop() else {
+            return object([]);
+        };
+        by_type
+            .into_iter()
+            .rev()
+            .fold(one(last), |rest, (ty, schemas)| {
+                object([
+                    ("if", object([("type", string(ty))])),
+                    ("then", one(schemas)),
+                    ("else", rest),
+                ])
+            })
+    }
+
+    /// The first table whose key is there decides. Without any, what has a text that is no type is the long form of a field
+    /// that lacks its type, and no object whose keys are `zh` and `en`.
     fn by_key(
         &mut self,
         tables: &'static [(&'static str, &'static Table)],
         otherwise: &'static Kind,
     ) -> Value {
-        let last = self.kind(otherwise);
+        let mut last = self.kind(otherwise);
+        if let (Kind::Body, Some((_, first))) = (otherwise, tables.first()) {
+            let text = object([("type", string("string")), ("not", self.kind(&Kind::Type))]);
+            let has_text = object([
+                ("required", [string(TEXT.zh.name)].into_iter().collect()),
+                ("properties", object([(TEXT.zh.name, text)])),
+            ]);
+            last = object([
+                ("if", has_text),
+                ("then", self.table(first)),
+                ("else", last),
+            ]);
+        }
         tables.iter().rev().fold(last, |rest, (mark, table)| {
             object([
                 (
@@ -183,12 +229,6 @@ impl Definitions {
 
     /// A type; `mark` is the pattern of what may stand behind it.
     fn type_expression(&mut self, mark: &str) -> Value {
-        let list = object([
-            ("type", string("array")),
-            ("items", self.item_type()),
-            ("minItems", size(1)),
-            ("maxItems", size(1)),
-        ]);
         let word = "[A-Za-z][A-Za-z0-9_]*".to_owned();
         let ty = (0..LISTS_IN_TYPE).fold(word.clone(), |ty, _| format!(r"({word}|\[\s*{ty}\s*\])"));
         object([
@@ -198,18 +238,57 @@ impl Definitions {
                     "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
                 ),
             ),
+            ("if", object([("type", string("array"))])),
+            ("then", self.type_list()),
             (
-                "anyOf",
-                [pattern(&format!("^{ty}{mark}$")), list]
-                    .into_iter()
-                    .collect(),
+                "else",
+                object([
+                    ("type", string("string")),
+                    ("pattern", string(&format!("^{ty}{mark}$"))),
+                    // An editor offers these; the names of declared types it cannot know.
+                    ("examples", Type::built_in().map(string).collect()),
+                ]),
             ),
+        ])
+    }
+
+    /// A list written as one of YAML.
+    fn type_list(&mut self) -> Value {
+        object([
+            ("type", string("array")),
+            ("items", self.item_type()),
+            ("minItems", size(1)),
+            ("maxItems", size(1)),
         ])
     }
 
     /// What a list may hold: a type without the mark of an optional field.
     fn item_type(&mut self) -> Value {
         self.add("item_type", |definitions| definitions.type_expression(""))
+    }
+}
+
+/// What JSON calls the values of a kind.
+fn json_types(kind: &Kind) -> &'static [&'static str] {
+    match kind {
+        Kind::Bool => &["boolean"],
+        Kind::Int { .. } | Kind::Code => &["integer"],
+        Kind::Number => &["number"],
+        Kind::Scalar => &["boolean", "number", "string"],
+        Kind::Type => &["string", "array"],
+        Kind::List { .. } => &["array"],
+        Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => &["object"],
+        // No kind of which one alternative is anything, or again several, is one of several.
+        Kind::Json | Kind::Either(_) => &[],
+        Kind::Text
+        | Kind::Date
+        | Kind::Name
+        | Kind::TypeName
+        | Kind::ConflictId
+        | Kind::MediaType
+        | Kind::Unit
+        | Kind::WireKey
+        | Kind::Word(_) => &["string"],
     }
 }
 

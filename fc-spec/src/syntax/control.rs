@@ -42,6 +42,14 @@ fn suspect(bytes: &[u8]) -> Option<usize> {
     bytes.iter().position(begins)
 }
 
+/// A text without what [`check`] faults in it.
+pub(crate) fn visible(text: &str) -> String {
+    let characters = text.chars();
+    characters
+        .filter(|character| name(*character, None).is_none())
+        .collect()
+}
+
 /// Whether [`check`] has faulted the character at byte `at` or the one before it.
 pub(super) fn faulted(text: &str, at: usize) -> bool {
     let Some((before, behind)) = text.split_at_checked(at) else {

@@ -29,10 +29,12 @@ mod tab;
 mod tree;
 pub(crate) mod width;
 
+pub(crate) use control::visible;
 pub(crate) use edit::Edits;
 pub use find::is_spec_file;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
+pub(crate) use parse::parse_parts;
 pub(crate) use quote::quoted;
 pub use read::{read_bytes, read_dir, read_files};
 pub use source::{SourceFile, Sources};

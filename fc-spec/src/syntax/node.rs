@@ -235,6 +235,17 @@ impl<'s> Tree<'s> {
         self.nodes.truncate(end);
     }
 
+    /// The same tree over a text that says the same wherever it has a node.
+    pub(super) fn of_source(self, source: &str) -> Tree<'_> {
+        Tree {
+            source,
+            file: self.file,
+            nodes: self.nodes,
+            texts: self.texts,
+            comments: self.comments,
+        }
+    }
+
     /// Gives back the room that further nodes would have had.
     pub(super) fn finish(mut self) -> Self {
         self.nodes.shrink_to_fit();
@@ -454,6 +465,25 @@ impl<'t> Node<'t> {
     #[must_use]
     pub fn is_null(self) -> bool {
         matches!(self.raw().form, Form::Null)
+    }
+
+    /// Whether one of these texts is left out of it, below its key or right behind it.
+    pub(crate) fn lacks(self, gaps: &[Span], key: Span) -> bool {
+        let end = self.span().end.max(key.end);
+        gaps.iter().any(|gap| {
+            let between = self.tree.source.get(end..gap.start.max(end));
+            // Its own colon may be all that is there.
+            let is_behind =
+                between.is_some_and(|text| text.trim_matches([':', ' ', '\r', '\n']).is_empty());
+            gap.file == key.file && gap.start > key.start && (gap.start < end || is_behind)
+        })
+    }
+
+    /// Whether nothing stands behind it in its file.
+    #[must_use]
+    pub(crate) fn ends_file(self) -> bool {
+        let behind = self.tree.source.get(self.span().end..);
+        behind.is_some_and(|behind| behind.trim().is_empty())
     }
 
     /// What it is, for "expected a list, found {}".

@@ -5,23 +5,85 @@ use std::ops::Range;
 /// Deepest indentation at which parsing resumes: one level below the top.
 const INDENT: usize = 2;
 
-/// The next stretch of whole lines that looks like a mapping of its own: it starts at a key with at
-/// most two spaces before it, at or behind byte `at` and behind the line at `last`, and ends before the
-/// next line that is indented less.
-pub(super) fn next_chunk(text: &str, at: usize, last: usize) -> Option<Range<usize>> {
-    let from = line_start(text, at);
-    // What stands before `at` on its line has been parsed; if it is only white space, nothing has.
-    let fresh = text.get(from..at)?.trim().is_empty() && from > last;
-    let mut lines = lines(text, from).skip(usize::from(!fresh));
-    let (start, indent) = lines.find_map(|(start, line)| {
-        let indent = indent(line)?;
-        (indent <= INDENT && start > last && is_key(line.trim_start_matches(' ')))
-            .then_some((start, indent))
-    })?;
-    let end = lines
-        .find(|(_, line)| self::indent(line).is_some_and(|other| other < indent))
-        .map_or(text.len(), |(start, _)| start);
-    Some(start..end)
+/// The whole lines of the entry, of a section or of a file, that holds the bytes from `first` on: from the key with at most
+/// two blanks before it to the next such key. Where `last` lies in a later entry, which text that is not closed reaches
+/// into, the entry of `first` alone is meant. `None` if there is nothing in it.
+///
+/// What would leave a section without an entry is the section.
+pub(super) fn entry(text: &str, first: usize, last: usize) -> Option<Range<usize>> {
+    let keys: Vec<(usize, usize)> = lines(text, 0)
+        .filter_map(|(start, line)| {
+            let indent = indent(line).filter(|indent| *indent <= INDENT)?;
+            let key = line.trim_start_matches(' ');
+            (is_key(key) || (indent == 0 && !key.starts_with(is_no_key))).then_some((start, indent))
+        })
+        .collect();
+    let holder = |at: usize| {
+        keys.partition_point(|(start, _)| *start <= at)
+            .checked_sub(1)
+    };
+    let end_of = |at: usize, indent: usize| {
+        let mut behind = keys.iter().skip(at + 1);
+        let next = behind.find(|(_, other)| *other <= indent);
+        next.map_or(text.len(), |(start, _)| *start)
+    };
+    let found = holder(line_end(text, first))
+        .filter(|at| {
+            keys.get(*at)
+                .is_some_and(|(start, indent)| !is_blank(text, *start..end_of(*at, *indent)))
+        })
+        .or_else(|| holder(last))?;
+    let (start, indent) = *keys.get(found)?;
+    let end = end_of(found, indent);
+    let section = keys
+        .get(..found)?
+        .iter()
+        .rposition(|(_, other)| *other < indent);
+    let Some(section) = section else {
+        return (!is_blank(text, start..end)).then_some(start..end);
+    };
+    let (from, outer) = *keys.get(section)?;
+    let to = end_of(section, outer);
+    let below = line_end(text, from);
+    let is_alone = is_blank(text, below..start) && is_blank(text, end..to);
+    let lines = if is_alone { from..to } else { start..end };
+    (!is_blank(text, lines.clone())).then_some(lines)
+}
+
+/// A text with blanks in the place of these lines.
+pub(super) fn without(text: &str, lines: Range<usize>) -> String {
+    let blank: String = text
+        .get(lines.clone())
+        .unwrap_or_default()
+        .bytes()
+        .map(|byte| {
+            if matches!(byte, b'\n' | b'\r') {
+                char::from(byte)
+            } else {
+                ' '
+            }
+        })
+        .collect();
+    let mut rest = text.to_owned();
+    rest.replace_range(lines, &blank);
+    rest
+}
+
+/// What no key and no item begins with.
+fn is_no_key(first: char) -> bool {
+    first.is_whitespace() || matches!(first, ']' | '}' | ',')
+}
+
+/// Whether nothing but comments stands there.
+fn is_blank(text: &str, at: Range<usize>) -> bool {
+    let mut lines = text.get(at).unwrap_or_default().lines();
+    lines.all(|line| indent(line).is_none())
+}
+
+/// End of the line that holds byte `at`.
+fn line_end(text: &str, at: usize) -> usize {
+    let rest = text.get(at..).unwrap_or_default();
+    at + rest.find('\n').unwrap_or(rest.len())
 }
 
 /// Start of the line that holds byte `at`.

@@ -124,9 +124,14 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             ))
         }
         _ => match scan_words::words(kind) {
-            Some((code, message, label, note)) => Diagnostic::error(code, place.here(), message)
-                .label(label)
-                .note(note),
+            Some((code, message, label, note)) => {
+                let odd = (code == FaultCode::BadIndentation)
+                    .then(|| odd_line(place))
+                    .flatten();
+                Diagnostic::error(code, odd.unwrap_or_else(|| place.here()), message)
+                    .label(label)
+                    .note(note)
+            }
             None => Diagnostic::error(
                 FaultCode::BadYaml,
                 place.here(),
@@ -162,6 +167,20 @@ fn closed_by(open: char, close: char, place: &Place<'_>) -> Diagnostic {
     }
 }
 
+/// The start of the line before the error where that is the one that is indented otherwise than those around it: the
+/// line of the error begins where the next one does.
+fn odd_line(place: &Place<'_>) -> Option<Span> {
+    let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
+    let is_text = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let start = super::recover::line_start(place.text, place.at);
+    let mut behind = place.text.get(start..)?.lines().filter(is_text);
+    let (here, next) = (indent(behind.next()?), indent(behind.next()?));
+    let before = place.text.get(..start)?;
+    let line = before.lines().rev().find(is_text)?;
+    let at = place.text.get(..start)?.rfind(line)? + indent(line);
+    (here == next && indent(line) > here).then(|| place.character(at))
+}
+
 /// A colon that makes no key.
 fn colon(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
@@ -185,6 +204,39 @@ fn colon(place: &Place<'_>) -> Diagnostic {
         let lines = place.text.get(value.start..value.end).unwrap_or_default();
         value.end <= place.at && lines.contains('\n')
     });
+    // A line that is no key but begins like one: its own colon is missing.
+    let lacks_colon = before.filter(|value| {
+        let line = super::recover::line_start(place.text, value.start);
+        let blanks = place.text.get(line..value.start).unwrap_or_default();
+        let is_plain = !place
+            .text
+            .get(value.start..)
+            .unwrap_or_default()
+            .starts_with(['"', '\'', '|', '>']);
+        is_plain && blanks.trim_matches([' ', '-']).is_empty()
+    });
+    if let Some(value) = lacks_colon {
+        let text = place.text.get(value.start..value.end).unwrap_or_default();
+        let line = text.lines().next().unwrap_or_default().trim_end().len();
+        let first = Span::new(place.file, value.start, value.start + line);
+        return Diagnostic::error(
+            FaultCode::BadYaml,
+            first,
+            text!("应为键和冒号", "expected a key followed by a colon"),
+        )
+        .label(text!("实际是这个", "found this"))
+        .also(
+            place.here(),
+            text!(
+                "这个冒号所在的行被当作它的一部分",
+                "the line with this colon is taken for a part of it"
+            ),
+        )
+        .note(text!(
+            "写成 `key: value`，或 `- value`，短横后要有空格",
+            "write `key: value`, or `- value` with a space after the dash"
+        ));
+    }
     match before {
         Some(value) => fault.also(
             place.character(value.start),
@@ -230,6 +282,14 @@ fn in_bracket(place: &Place<'_>) -> Diagnostic {
 }
 
 fn behind_quote(place: &Place<'_>) -> Diagnostic {
+    // A text of several lines, behind which there is more on the line, ends at the opening quote of another one.
+    let opened = place.quote().filter(|quote| {
+        let between = place.text.get(quote.start..place.at).unwrap_or_default();
+        between.contains('\n')
+    });
+    if opened.is_some() {
+        return unclosed_quote(place);
+    }
     let message = text!("右引号后面还有文本", "text after a closing quote");
     let fault = Diagnostic::error(FaultCode::BadYaml, place.here(), message)
         .label(text!("不在引号之内", "not part of the quoted text"))

@@ -39,6 +39,8 @@ pub(super) struct Builder<'a> {
     understood: usize,
     /// The last scalar.
     value: Option<Span>,
+    /// Whether the value of a merge key comes next.
+    is_merged: bool,
     /// Start of the last alias, behind which a text is no YAML.
     alias: Option<usize>,
 }
@@ -80,6 +82,7 @@ impl<'a> Builder<'a> {
             anchors: HashMap::new(),
             faithful: true,
             value: None,
+            is_merged: false,
             alias: None,
         }
     }
@@ -285,7 +288,10 @@ impl<'a> Builder<'a> {
         if let Some(anchor) = anchor {
             fault = fault.also(anchor, text!("指的是这个值", "refers to this value"));
         }
-        faults.push(fault);
+        // What a merge key merges has been reported with it.
+        if !self.is_merged {
+            faults.push(fault);
+        }
         self.faithful = false;
         self.placeholder(span, faults)
     }
@@ -354,11 +360,15 @@ impl<'a> Builder<'a> {
         if let Some(open) = self.open.last_mut() {
             match &mut open.children {
                 Children::Entries { has_key } if !*has_key => {
+                    self.is_merged = is_merge(node);
                     self.faithful &= check_key(node, faults);
                     *has_key = true;
                     return Ok(());
                 }
-                Children::Entries { has_key } => *has_key = false,
+                Children::Entries { has_key } => {
+                    *has_key = false;
+                    self.is_merged = false;
+                }
                 Children::Items => {}
             }
             open.end = Some(node.span().end);
@@ -525,36 +535,67 @@ fn is_merge(key: Node<'_>) -> bool {
     key.as_plain() == Some("<<")
 }
 
-/// Faults keys that stand twice; the places of all but the first of each.
+/// Faults keys that stand twice; the places of all entries that are not kept, which are all but the first of each.
+///
+/// Keys that all stand before the first one that comes again are those of one entry, behind which another one begins: the
+/// line with its name is missing. That is one fault, and what is behind it belongs to that other entry.
 fn repeated(entries: Entries<'_>, faults: &mut Faults) -> Vec<usize> {
     // Other keys have had their fault.
     let mut keys: Vec<(&str, Node<'_>)> = entries
+        .clone()
         .filter(|entry| !is_merge(entry.key))
         .filter_map(|entry| Some((entry.key.as_str()?, entry.key)))
         .collect();
     keys.sort_unstable_by_key(|(name, key)| (*name, key.at()));
-    let mut again: Vec<(Node<'_>, Span)> = Vec::new();
+    let mut again: Vec<(Node<'_>, Node<'_>)> = Vec::new();
     for same in keys.chunk_by(|(a, _), (b, _)| a == b) {
         if let [(_, first), rest @ ..] = same {
-            again.extend(rest.iter().map(|(_, key)| (*key, first.span())));
+            again.extend(rest.iter().map(|(_, key)| (*key, *first)));
         }
     }
     again.sort_unstable_by_key(|(key, _)| key.at());
-    for (key, first) in &again {
+    let Some(begins) = again.first().map(|(key, _)| key.at()) else {
+        return Vec::new();
+    };
+    let is_another = again.iter().all(|(_, first)| first.at() < begins)
+        && again.len() > 1
+        && keys
+            .chunk_by(|(a, _), (b, _)| a == b)
+            .all(|same| same.len() < 3);
+    let again_at: Vec<usize> = again.iter().map(|(key, _)| key.at()).collect();
+    let reported = if is_another { 1 } else { again.len() };
+    if is_another {
+        faults.lose();
+    }
+    for (key, first) in again.iter().take(reported) {
         let name = key.as_str().unwrap_or_default();
-        faults.push(
-            Diagnostic::error(
-                FaultCode::DuplicateKey,
-                key.span(),
-                text!("键 `{name}` 出现两次", "the key `{name}` occurs twice"),
-            )
-            .label(text!("又出现在这里", "again here"))
-            .also(*first, text!("第一次在这里", "first here"))
-            .note(text!(
+        let fault = Diagnostic::error(
+            FaultCode::DuplicateKey,
+            key.span(),
+            text!("键 `{name}` 出现两次", "the key `{name}` occurs twice"),
+        )
+        .label(text!("又出现在这里", "again here"))
+        .also(first.span(), text!("第一次在这里", "first here"));
+        faults.push(if is_another {
+            fault.note(text!(
+                "后面的键也是如此：如果另一条从这里开始，缺的是写它名称的那一行",
+                "so do keys behind it: if another entry begins here, the line with its name is missing"
+            ))
+        } else {
+            fault.note(text!(
                 "删除其中一个，或改名",
                 "delete one of them or rename it"
-            )),
-        );
+            ))
+        });
     }
-    again.iter().map(|(key, _)| key.at()).collect()
+    let behind = entries.filter(|entry| {
+        let at = entry.key.at();
+        again_at.binary_search(&at).is_ok() || (is_another && at >= begins)
+    });
+    behind
+        .map(|entry| {
+            faults.hide(entry.span());
+            entry.key.at()
+        })
+        .collect()
 }

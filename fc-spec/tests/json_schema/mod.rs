@@ -17,27 +17,112 @@ pub struct Validator<'s> {
     pub root: &'s Value,
 }
 
+/// What does not fit: where in the value, and by which keyword of the schema. Of several alternatives none of which fits it
+/// is the keyword that lists them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Misfit {
+    /// The keys that lead there, joined by dots.
+    pub at: String,
+    /// The keyword, with the name of the key that is missing or unknown behind it.
+    pub keyword: String,
+}
+
 impl Validator<'_> {
     /// Whether a value fits a part of the schema.
     ///
     /// # Panics
     /// If that has a keyword that is not known here: to pass it over would mean to check nothing.
     pub fn accepts(&self, schema: &Value, value: &Value) -> bool {
+        self.misfit(schema, value, "").is_none()
+    }
+
+    /// The first thing in the value at `at` that does not fit.
+    ///
+    /// # Panics
+    /// As [`accepts`](Self::accepts).
+    pub fn misfit(&self, schema: &Value, value: &Value, at: &str) -> Option<Misfit> {
         let Some(keywords) = schema.as_object() else {
-            return schema != &Value::Bool(false);
+            return (schema == &Value::Bool(false)).then(|| misfit(at, "false"));
         };
         keywords
             .iter()
-            .all(|(keyword, argument)| self.holds(keywords, keyword, argument, value))
+            .find_map(|(keyword, argument)| self.broken(keywords, keyword, argument, value, at))
     }
 
-    fn holds(
+    fn broken(
         &self,
         keywords: &Map<String, Value>,
         keyword: &str,
         argument: &Value,
         value: &Value,
-    ) -> bool {
+        at: &str,
+    ) -> Option<Misfit> {
+        let below = |key: &str| {
+            if at.is_empty() {
+                key.to_owned()
+            } else {
+                format!("{at}.{key}")
+            }
+        };
+        match keyword {
+            "$ref" => {
+                let path = argument.as_str().and_then(|path| path.strip_prefix('#'));
+                let target = path.and_then(|path| self.root.pointer(path));
+                self.misfit(target.expect("a definition"), value, at)
+            }
+            "allOf" => list(argument).find_map(|schema| self.misfit(schema, value, at)),
+            "if" => {
+                let fits = self.accepts(argument, value);
+                let branch = keywords.get(if fits { "then" } else { "else" })?;
+                self.misfit(branch, value, at)
+            }
+            "items" => value
+                .as_array()?
+                .iter()
+                .enumerate()
+                .find_map(|(index, item)| self.misfit(argument, item, &below(&index.to_string()))),
+            "prefixItems" => {
+                let pairs = list(argument).zip(value.as_array()?).enumerate();
+                pairs.into_iter().find_map(|(index, (schema, item))| {
+                    self.misfit(schema, item, &below(&index.to_string()))
+                })
+            }
+            "required" => {
+                let entries = value.as_object()?;
+                let mut names = list(argument).filter_map(Value::as_str);
+                let name = names.find(|name| !entries.contains_key(*name))?;
+                Some(misfit(at, &format!("required {name}")))
+            }
+            "properties" => {
+                let entries = value.as_object()?;
+                let properties = argument.as_object().expect("an object");
+                properties.iter().find_map(|(name, schema)| {
+                    self.misfit(schema, entries.get(name)?, &below(name))
+                })
+            }
+            "additionalProperties" => {
+                let known = keywords.get("properties").and_then(Value::as_object);
+                let is_known = |name: &str| known.is_some_and(|known| known.contains_key(name));
+                let entries = value.as_object()?.iter();
+                entries
+                    .filter(|(name, _)| !is_known(name))
+                    .find_map(|(name, value)| {
+                        if argument == &Value::Bool(false) {
+                            return Some(misfit(at, &format!("additionalProperties {name}")));
+                        }
+                        self.misfit(argument, value, &below(name))
+                    })
+            }
+            "propertyNames" => value.as_object()?.keys().find_map(|name| {
+                let fits = self.accepts(argument, &Value::String(name.clone()));
+                (!fits).then(|| misfit(at, &format!("propertyNames {name}")))
+            }),
+            _ => (!self.holds(keyword, argument, value)).then(|| misfit(at, keyword)),
+        }
+    }
+
+    /// Whether a keyword holds that looks at nothing but the value itself.
+    fn holds(&self, keyword: &str, argument: &Value, value: &Value) -> bool {
         let number = |value: &Value| value.as_f64();
         let count = argument
             .as_u64()
@@ -50,15 +135,9 @@ impl Validator<'_> {
             | "markdownEnumDescriptions"
             | "format"
             | "default"
+            | "examples"
             | "then"
             | "else" => true,
-            "$ref" => {
-                let path = argument.as_str().and_then(|path| path.strip_prefix('#'));
-                let target = path
-                    .and_then(|path| self.root.pointer(path))
-                    .expect("a definition");
-                self.accepts(target, value)
-            }
             "type" => match argument {
                 Value::Array(types) => types.iter().any(|ty| is_type(ty, value)),
                 ty => is_type(ty, value),
@@ -78,29 +157,12 @@ impl Validator<'_> {
                 value.as_str().is_none_or(|text| regex.is_match(text))
             }
             "const" => argument == value,
+            "not" => !self.accepts(argument, value),
             "anyOf" => list(argument).any(|schema| self.accepts(schema, value)),
-            "allOf" => list(argument).all(|schema| self.accepts(schema, value)),
             "oneOf" => {
                 let fitting = list(argument).filter(|schema| self.accepts(schema, value));
                 fitting.count() == 1
             }
-            "if" => {
-                let branch = if self.accepts(argument, value) {
-                    "then"
-                } else {
-                    "else"
-                };
-                keywords
-                    .get(branch)
-                    .is_none_or(|schema| self.accepts(schema, value))
-            }
-            "items" => value
-                .as_array()
-                .is_none_or(|items| items.iter().all(|item| self.accepts(argument, item))),
-            "prefixItems" => value.as_array().is_none_or(|items| {
-                let mut pairs = list(argument).zip(items);
-                pairs.all(|(schema, item)| self.accepts(schema, item))
-            }),
             "minItems" => value
                 .as_array()
                 .is_none_or(|items| Some(items.len()) >= count),
@@ -110,31 +172,15 @@ impl Validator<'_> {
             "minProperties" => value
                 .as_object()
                 .is_none_or(|entries| Some(entries.len()) >= count),
-            "required" => value.as_object().is_none_or(|entries| {
-                let mut names = list(argument).filter_map(Value::as_str);
-                names.all(|name| entries.contains_key(name))
-            }),
-            "properties" => value.as_object().is_none_or(|entries| {
-                let properties = argument.as_object().expect("an object");
-                properties
-                    .iter()
-                    .filter_map(|(name, schema)| Some((schema, entries.get(name)?)))
-                    .all(|(schema, value)| self.accepts(schema, value))
-            }),
-            "additionalProperties" => value.as_object().is_none_or(|entries| {
-                let known = keywords.get("properties").and_then(Value::as_object);
-                entries
-                    .iter()
-                    .filter(|(name, _)| known.is_none_or(|known| !known.contains_key(*name)))
-                    .all(|(_, value)| self.accepts(argument, value))
-            }),
-            "propertyNames" => value.as_object().is_none_or(|entries| {
-                entries
-                    .keys()
-                    .all(|name| self.accepts(argument, &Value::String(name.clone())))
-            }),
             other => panic!("the keyword {other} is new here"),
         }
+    }
+}
+
+fn misfit(at: &str, keyword: &str) -> Misfit {
+    Misfit {
+        at: at.to_owned(),
+        keyword: keyword.to_owned(),
     }
 }
 

@@ -49,7 +49,12 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
                 _ => continue,
             };
-            if state == BodyState::Stated {
+            // What is said of it in a key that cannot be read has been reported.
+            let is_said = [OPERATION.request_state.name, OPERATION.response_state.name];
+            let is_said = is_said
+                .iter()
+                .any(|key| key.starts_with(what.name()) && place.node.entry(key).is_some());
+            if state == BodyState::Stated && !is_said {
                 let what = what.name();
                 let message = text!(
                     "这里注明源文档缺失 {what}",

@@ -164,6 +164,7 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
 fn has_single_values(draft: &Draft<'_>, ty: &Type) -> bool {
     match ty {
         Type::Bool | Type::Int(_) | Type::String => true,
+        Type::Named(named) if !draft.knows(named.name()) => true,
         Type::Named(named) => {
             let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
             matches!(shape, None | Some(TypeShape::Enum(_)))

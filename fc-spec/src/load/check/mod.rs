@@ -31,8 +31,10 @@ mod streams;
 mod value;
 mod waivers;
 
+use super::consequence::Earlier;
 use super::draft::Draft;
 use crate::diagnostic::Faults;
+use crate::syntax::Sources;
 use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };
@@ -140,7 +142,7 @@ const OF_WHOLE: &[Check] = &[
 /// All checks, at the same time; what they find comes in the order of the lists.
 ///
 /// `whole`: every file could be parsed.
-pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
+pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &mut Faults) {
     let checks = EVER.iter().chain(OF_WHOLE.iter().filter(|_| whole));
     let checks: Vec<&Check> = checks.collect();
     // Some take much longer than their neighbours: each is taken by itself.
@@ -153,9 +155,12 @@ pub(super) fn check(draft: &Draft<'_>, whole: bool, faults: &mut Faults) {
             found
         })
         .collect();
+    let mut all = Faults::new();
     for found in found {
-        faults.append(found);
+        all.append(found);
     }
+    Earlier::new(draft, sources, faults).keep_independent(&mut all);
+    faults.append(all);
 }
 
 /// Where codes lie makes sense only within sound ranges.

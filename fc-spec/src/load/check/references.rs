@@ -9,27 +9,39 @@ use crate::load::grammar::{
 use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
 use crate::syntax::{Node, Span, Style};
 use crate::text;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// "Did you mean" looks through all names, so a spec with very many faults goes without.
 const SUGGESTIONS: usize = 100;
 
 /// Every named type of a field exists.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, field, part) in fields(draft) {
-        if let Some(name) = unknown(draft, &field.ty) {
-            let node = innermost(part.place);
-            let fault = unknown_type(draft, name, node, faults);
-            faults.push(fault);
+    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.place));
+    let envelope = draft.envelope.iter();
+    let envelope = envelope.flat_map(|envelope| envelope.request.iter().chain(&envelope.response));
+    let envelope = envelope.map(|field| (field.item.ty.clone(), field.place));
+    // A name of several fields that stands for nothing is one fault: it is declared nowhere, or under another name.
+    let mut found: Vec<(String, Vec<Node<'_>>)> = Vec::new();
+    let mut known: HashMap<String, usize> = HashMap::new();
+    for (ty, place) in fields.chain(envelope) {
+        let Some(name) = unknown(draft, &ty) else {
+            continue;
+        };
+        let node = innermost(place);
+        if let Some((_, nodes)) = known.get(name).and_then(|at| found.get_mut(*at)) {
+            nodes.push(node);
+        } else {
+            known.insert(name.to_owned(), found.len());
+            found.push((name.to_owned(), vec![node]));
         }
     }
-    if let Some(envelope) = &draft.envelope {
-        for field in envelope.request.iter().chain(&envelope.response) {
-            if let Some(name) = unknown(draft, &field.item.ty) {
-                let fault = unknown_type(draft, name, innermost(field.place), faults);
-                faults.push(fault);
-            }
-        }
+    for (name, nodes) in found {
+        let mut nodes = nodes.into_iter();
+        let Some(first) = nodes.next() else { continue };
+        let fault = unknown_type(draft, &name, first, faults);
+        faults.push(nodes.fold(fault, |fault, node| {
+            fault.also(node.span(), text!("这里也用到", "also used here"))
+        }));
     }
 }
 

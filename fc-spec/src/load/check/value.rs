@@ -58,7 +58,11 @@ pub(super) fn check_field(
     node: Node<'_>,
     found: &mut Vec<Mismatch>,
 ) {
-    if is_doubtful(node) {
+    let is_unknown = field
+        .ty
+        .innermost()
+        .is_some_and(|ty| !draft.knows(ty.name()));
+    if is_doubtful(node) || is_unknown {
         return;
     }
     match (field.wire_form, &field.ty) {
@@ -190,6 +194,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
             Some(items) => items.for_each(|node| check_type(draft, item, node, found)),
             None => found.push(wrong(text!("列表", "a list"))),
         },
+        Type::Named(named) if !draft.knows(named.name()) => {}
         Type::Named(named) => match draft.type_named(named.name()).map(|ty| &ty.def.shape) {
             Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node, found),
             Some(TypeShape::Struct(shape)) => check_struct(draft, shape, node, found),
@@ -359,7 +364,12 @@ pub(super) fn check_constraints(
     value: &Value,
     found: &mut Vec<Mismatch>,
 ) {
+    // No value lies between bounds that are the wrong way round.
+    let details = field.details.as_deref();
+    let bounds = details.and_then(|it| Some((it.min.as_ref()?, it.max.as_ref()?)));
+    let is_inverted = bounds.is_some_and(|(min, max)| scalar::compare(min, max).is_gt());
     let broken = |constraint| match (constraint, value) {
+        (Constraint::Min(_) | Constraint::Max(_), _) if is_inverted => None,
         (Constraint::Min(min), Value::Number(number)) => {
             let is_below = scalar::compare(number, min).is_lt();
             let message = || {

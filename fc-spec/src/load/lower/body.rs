@@ -7,7 +7,7 @@ use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::grammar::{
     CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
 };
-use crate::load::shape::misread_marker;
+use crate::load::shape::{lacks_form, misread_marker};
 use crate::load::{names, scalar};
 use crate::model::{
     Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, StructRef,
@@ -163,7 +163,7 @@ impl<'a> Lowering<'a, '_> {
             broken: false,
             borrows_text: false,
         };
-        let misread = misread_marker(node).is_some();
+        let misread = misread_marker(node).is_some() || lacks_form(node);
         let marker = marker(node).filter(|_| !misread);
         // The short forms have no keys of their own.
         let keys = marker.map(|_| node);
@@ -316,11 +316,11 @@ fn example_of(node: Option<Node<'_>>) -> Example {
     }
 }
 
-/// The type at a node; `json` and a broken part where it is none.
+/// The type at a node; where it is none an optional `json`, whose absence is no fault, and a broken part.
 fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
     scalar::field_type(node).unwrap_or_else(|| {
         part.broken = true;
-        (Type::Json, false)
+        (Type::Json, true)
     })
 }
 

@@ -19,6 +19,7 @@ pub(super) use wire::envelope_type_fits;
 
 use super::draft::{AnswerDraft, Draft, Place};
 use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
+use super::scalar::is_conflict_id;
 use super::section::Section;
 use crate::model::{Answer, Confirmation, Governed, Location, Subject};
 use crate::syntax::{Entry, Node, Sources, Span};
@@ -149,7 +150,8 @@ impl<'a> Lowering<'a, '_> {
             let ids = ANSWER.ids.get(node);
             let about = ANSWER.about.of(node);
             let is_broken = ids.is_empty() && about.is_none();
-            self.draft.broken_answers |= is_broken || items.any(|id| id.as_str().is_none());
+            self.draft.broken_answers |=
+                is_broken || items.any(|id| !id.as_str().is_some_and(is_conflict_id));
             let about = about.map(Node::entries).into_iter().flatten();
             let answer = Answer {
                 ids,

@@ -14,7 +14,15 @@ pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut
         faults.push(slip);
         return;
     }
+    if node.is_null() && node.lacks(faults.gaps(), at) {
+        return;
+    }
     let span = if node.is_null() { at } else { node.span() };
+    faults.hide(node.span());
+    // A file that breaks off here had more in it.
+    if node.ends_file() {
+        faults.lose();
+    }
     let fault = Diagnostic::error(
         FaultCode::WrongKind,
         span,

@@ -1,36 +1,135 @@
 //! Keys that a mapping should not have, or should have.
 
-use crate::diagnostic::{Diagnostic, FaultCode, nearest};
-use crate::load::grammar::{Command, FIELD_FORMS, Report, Stream, TEXT, Table};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::load::grammar::{
+    Command, Enum, FIELD_FORMS, OneOf, Report, Stream, Struct, TEXT, Table,
+};
 use crate::model::Text;
-use crate::syntax::{Entries, Entry, Span};
+use crate::syntax::width::half_width_text;
+use crate::syntax::{Entries, Entry, Node, Span, visible};
 use crate::text;
 
-/// A required key that is not there.
-pub(super) fn missing_key(table: &Table, key: &str, at: Span) -> Diagnostic {
-    let (zh, en) = (table.name_zh, table.name);
-    let language = match key {
-        _ if key == TEXT.zh.name => text!("中文", "Chinese"),
-        _ if key == TEXT.en.name => text!("英文", "English"),
-        _ => {
-            let message = text!("“{zh}”缺少 `{key}`", "`{key}` is missing from the {en}");
-            return Diagnostic::error(FaultCode::MissingKey, at, message);
-        }
+/// Required keys that are not there, all at one place.
+pub(super) fn missing_keys(table: &Table, keys: &[&str], at: Span) -> Diagnostic {
+    let language = |key: &str| match key {
+        _ if key == TEXT.zh.name => Some(text!("中文", "Chinese")),
+        _ if key == TEXT.en.name => Some(text!("英文", "English")),
+        _ => None,
     };
-    let message = text!(
-        "“{zh}”缺少{language} `{key}`",
-        "the {language} text `{key}` of the {en} is missing",
-        language = language
-    );
+    let (zh, en) = (table.name_zh, table.name);
+    let listed = keys_and(keys);
+    let is_one = keys.len() == 1;
+    if !keys.iter().all(|key| language(key).is_some()) {
+        let be = if is_one { "is" } else { "are" };
+        let message = text!(
+            "“{zh}”缺少 {listed}",
+            "{listed} {be} missing from the {en}",
+            listed = listed
+        );
+        return Diagnostic::error(FaultCode::MissingKey, at, message);
+    }
+    let message = match keys.first().copied().and_then(language) {
+        Some(language) if is_one => text!(
+            "“{zh}”缺少{language} {listed}",
+            "the {language} text {listed} of the {en} is missing",
+            language = language,
+            listed = listed
+        ),
+        _ => text!(
+            "“{zh}”缺少文本 {listed}",
+            "the texts {listed} of the {en} are missing",
+            listed = listed
+        ),
+    };
     Diagnostic::error(FaultCode::MissingTranslation, at, message)
 }
 
-/// A key that the table does not have.
-pub(in crate::load) fn unknown_key(
+/// Keys as a sentence lists them.
+fn keys_and(keys: &[&str]) -> Text {
+    let quoted = |keys: &[&str]| Text::listed(keys.iter().map(|key| format!("`{key}`")));
+    match keys {
+        [others @ .., last] if !others.is_empty() => text!(
+            "{others}和 `{last}`",
+            "{others} and `{last}`",
+            others = quoted(others),
+            last = *last
+        ),
+        keys => quoted(keys),
+    }
+}
+
+/// Reports the keys of a mapping that its table does not have; what they are known to be meant as, and how many there are
+/// of which nobody knows.
+pub(in crate::load) fn unknown_keys(
     table: &Table,
-    entry: Entry<'_>,
-    siblings: &Entries<'_>,
-) -> Diagnostic {
+    node: Node<'_>,
+    faults: &mut Faults,
+) -> (Vec<String>, usize) {
+    let (mut meant, mut strangers) = (Vec::new(), 0);
+    let mut before: Option<Entry<'_>> = None;
+    for entry in node.entries() {
+        if table.key(entry.name()).is_some() {
+            before = None;
+            continue;
+        }
+        faults.hide(entry.span());
+        // Of what belongs together the first is enough: the rest of a text behind its comma, entries without the line that
+        // begins their section.
+        let goes_on = before.replace(entry).is_some_and(|before| {
+            let is_rest = before.value.is_null() && entry.value.is_null();
+            let looks = |entry: Entry<'_>| looks_like(entry.value).map(|table| table.name);
+            is_rest || (looks(before).is_some() && looks(entry).is_some())
+        });
+        if goes_on {
+            continue;
+        }
+        // Characters that do not show have been reported.
+        let visible = visible(entry.name());
+        if visible != entry.name() {
+            meant.push(visible);
+            continue;
+        }
+        let fault = unknown_key(table, entry, &node.entries());
+        let fixes = fault.fixes.iter();
+        let known: Vec<String> = fixes
+            .map(|fix| fix.replacement.clone())
+            .chain(word_of(entry))
+            .collect();
+        strangers += usize::from(known.is_empty() && !entry.value.is_null());
+        meant.extend(known);
+        faults.push(fault);
+    }
+    (meant, strangers)
+}
+
+/// The key with which a text begins that was meant as a key and a value: `zh` of `zh：标签` and of `zh 标签`.
+fn word_of(entry: Entry<'_>) -> Option<String> {
+    let name = half_width_text(entry.name());
+    let word = name.split([':', ' ']).find(|word| !word.is_empty())?;
+    (word.len() < name.len()).then(|| word.to_owned())
+}
+
+/// What an entry of a file is by the keys it has: an operation or a type.
+pub(super) fn looks_like(node: Node<'_>) -> Option<&'static Table> {
+    /// Fewer keys say too little.
+    const FEWEST: usize = 3;
+    let kinds = [
+        Command::TABLE,
+        Report::TABLE,
+        Stream::TABLE,
+        Enum::TABLE,
+        OneOf::TABLE,
+        Struct::TABLE,
+    ];
+    let mut fitting = kinds.into_iter().filter(|table| {
+        node.entries()
+            .all(|entry| table.key(entry.name()).is_some())
+    });
+    fitting.next().filter(|_| node.entries().count() >= FEWEST)
+}
+
+/// A key that the table does not have.
+fn unknown_key(table: &Table, entry: Entry<'_>, siblings: &Entries<'_>) -> Diagnostic {
     let name = entry.name();
     let span = entry.key.span();
     if let Some(slip) = entry.key.slip() {

@@ -5,17 +5,19 @@ mod expected;
 mod keys;
 mod scalars;
 
-pub(super) use keys::unknown_key;
+pub(super) use keys::unknown_keys;
 
-use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
+use super::grammar::{
+    Command, Enum, FIELD, FIELD_FORMS, FIELD_KIND, FILE, Kind, OneOf, Report, Stream, Struct, TEXT,
+    Table,
+};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::model::Text;
-use crate::syntax::width::half_width_text;
 use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
 use crate::text;
 use expected::{describe, describe_key, wrong_kind};
-use keys::{article, missing_key};
+use keys::{article, looks_like, missing_keys};
 use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 
@@ -48,22 +50,21 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
         );
         return;
     };
-    // A key that an unknown one is a slip of is not missing as well.
-    let mut meant = Vec::new();
     for entry in entries.clone() {
-        if let Some(key) = table.key(entry.name()) {
-            if matches!(key.kind, Kind::Json) {
-                check_json(entry.value, Wanted::of(node), faults);
-            } else {
-                check_kind(&key.kind, entry.value, entry.key.span(), faults);
-            }
+        let Some(key) = table.key(entry.name()) else {
+            continue;
+        };
+        if entry.value.is_null() && is_left_behind(table, node, entry) {
+            continue;
+        }
+        if matches!(key.kind, Kind::Json) {
+            check_json(entry.value, Wanted::of(node), faults);
         } else {
-            let fault = unknown_key(table, entry, &entries);
-            meant.extend(fault.fixes.iter().map(|fix| fix.replacement.clone()));
-            meant.extend(word_of(entry.name()));
-            faults.push(fault);
+            check_kind(&key.kind, entry.value, entry.key.span(), faults);
         }
     }
+    // A key that an unknown one is a slip of is not missing as well.
+    let (meant, strangers) = unknown_keys(table, node, faults);
     if table.key(TEXT.zh.name).is_some() {
         texts::check(node, faults);
     }
@@ -71,20 +72,25 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
         !entries.clone().any(|entry| entry.name() == name)
             && !meant.iter().any(|meant| meant == name)
     };
-    for key in table
-        .keys
-        .iter()
-        .filter(|key| key.required && missing(key.name))
-    {
-        faults.push(missing_key(table, key.name, at));
+    let required = table.keys.iter().filter(|key| key.required);
+    let missing: Vec<&str> = required
+        .map(|key| key.name)
+        .filter(|name| missing(name))
+        .collect();
+    // Nor is one that any of them may be meant as.
+    if missing.len() > strangers && !node.lacks(faults.gaps(), at) {
+        faults.push(missing_keys(table, &missing, at));
     }
 }
 
-/// The key with which a text begins that was meant as a key and a value: `zh` of `zh：标签`.
-fn word_of(name: &str) -> Option<String> {
-    let name = half_width_text(name);
-    let word = name.split(':').next()?.trim();
-    (word.len() < name.len()).then(|| word.to_owned())
+/// Whether what was to stand below an empty key stands behind it, where it is no key: that is reported.
+pub(super) fn is_left_behind(table: &Table, node: Node<'_>, entry: Entry<'_>) -> bool {
+    let mut behind = node
+        .entries()
+        .skip_while(|other| other.key.span() != entry.key.span());
+    behind
+        .nth(1)
+        .is_some_and(|next| table.key(next.name()).is_none() && !next.value.is_null())
 }
 
 fn check_entries(
@@ -110,8 +116,17 @@ fn check_entries(
     };
     let mut numbers: HashMap<i128, Span> = HashMap::new();
     let mut count = 0;
+    let mut stray: Option<(Entry<'_>, &Table, usize)> = None;
     for entry in entries {
         count += 1;
+        if let Some(table) = misplaced(value, entry.value) {
+            faults.hide(entry.span());
+            match &mut stray {
+                Some((_, first, more)) if section_of(first) == section_of(table) => *more += 1,
+                _ => faults.extend(stray.replace((entry, table, 0)).map(misplaced_entry)),
+            }
+            continue;
+        }
         if let Some(slip) = entry.key.slip().filter(|_| entry.value.is_null()) {
             faults.push(slip);
             continue;
@@ -137,6 +152,7 @@ fn check_entries(
         }
         check_kind(value, entry.value, entry.key.span(), faults);
     }
+    faults.extend(stray.map(misplaced_entry));
     if count < min {
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
@@ -147,6 +163,72 @@ fn check_entries(
                 entries = if min == 1 { "entry" } else { "entries" }
             ),
         ));
+    }
+}
+
+/// What an operation or a type is by its keys, where entries of another kind stand.
+fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> {
+    let homes: Vec<&Table> = match value {
+        Kind::Map(table) => vec![table],
+        Kind::ByKey { tables, .. } => tables.iter().map(|(_, table)| *table).collect(),
+        _ => return None,
+    };
+    let is_home = |table: &Table| homes.iter().any(|home| home.name == table.name);
+    // Of entries of other kinds nothing is known.
+    let is_known = SECTIONS.iter().any(|(_, table)| is_home(table));
+    let table = looks_like(node).filter(|table| is_known && !is_home(table))?;
+    // One key of another kind is a slip in an entry of this one, unless it lacks what one has.
+    let is_stranger = |home: &&Table| {
+        let foreign = node
+            .entries()
+            .filter(|entry| home.key(entry.name()).is_none());
+        let required = home.keys.iter().filter(|key| key.required);
+        let lacking = required.filter(|key| node.entry(key.name).is_none());
+        match foreign.count() {
+            0 => false,
+            1 => lacking.count() > 1,
+            _ => true,
+        }
+    };
+    homes.iter().all(is_stranger).then_some(table)
+}
+
+/// The sections of operations and types, and what stands in each.
+const SECTIONS: [(&str, &Table); 6] = [
+    (FILE.commands.name, Command::TABLE),
+    (FILE.reports.name, Report::TABLE),
+    (FILE.streams.name, Stream::TABLE),
+    (FILE.types.name, Enum::TABLE),
+    (FILE.types.name, OneOf::TABLE),
+    (FILE.types.name, Struct::TABLE),
+];
+
+/// The section in which what is like this stands.
+fn section_of(table: &Table) -> &'static str {
+    let section = SECTIONS.iter().find(|(_, home)| home.name == table.name);
+    section.map_or("", |(section, _)| section)
+}
+
+/// The fault of entries that belong in another section: the first, what it is, and how many more there are.
+fn misplaced_entry((entry, table, more): (Entry<'_>, &Table, usize)) -> Diagnostic {
+    let name = entry.name();
+    let message = text!(
+        "`{name}` 写得像“{kind}”，而这里不能写“{kind}”",
+        "`{name}` is written like {kind}, which has no place here",
+        kind = article(table)
+    );
+    let section = section_of(table);
+    let fault = Diagnostic::error(FaultCode::MisplacedEntry, entry.key.span(), message);
+    let fault = fault.note(text!(
+        "它应写在 `{section}:` 之下；上面是否少了这一行？",
+        "it belongs under `{section}:`; is that line missing above it?"
+    ));
+    match more {
+        0 => fault,
+        _ => fault.note(text!(
+            "下面另有 {more} 处也是如此",
+            "so are {more} more below it"
+        )),
     }
 }
 
@@ -191,8 +273,21 @@ fn check_list(
         return;
     };
     let mut count = 0;
-    for item in items.clone() {
+    let mut rest = items.clone().peekable();
+    while let Some(item) = rest.next() {
         count += 1;
+        if let Some(second) = rest.next_if(|second| is_split(of, item, *second)) {
+            let message = text!("一项的键写成了两项", "the keys of one item are in two");
+            let fault = Diagnostic::error(FaultCode::SplitItem, second.span(), message);
+            faults.push(
+                fault
+                    .label(text!("应与上面的键同属一项", "these go with those above"))
+                    .also(item.span(), text!("缺少这些键", "which lack them"))
+                    .note(text!("删除第二个 `-`", "take out the second `-`")),
+            );
+            faults.hide(item.span().to(second.span()));
+            continue;
+        }
         check_kind(of, item, item.span(), faults);
     }
     if matches!(
@@ -217,6 +312,24 @@ fn check_list(
             ),
         ));
     }
+}
+
+/// Whether two items of a list lack of their table just what the other one has.
+fn is_split(of: &Kind, first: Node<'_>, second: Node<'_>) -> bool {
+    let Kind::Map(table) = of else { return false };
+    let lacks = |item: Node<'_>| -> Vec<&str> {
+        let required = table.keys.iter().filter(|key| key.required);
+        let names = required.map(|key| key.name);
+        names.filter(|name| item.entry(name).is_none()).collect()
+    };
+    let has = |item: Node<'_>, names: &[&str]| names.iter().all(|name| item.entry(name).is_some());
+    let is_apart = first
+        .entries()
+        .all(|entry| second.entry(entry.name()).is_none());
+    let (first_lacks, second_lacks) = (lacks(first), lacks(second));
+    let has_keys = |item: Node<'_>| item.entries().next().is_some();
+    let is_cut = !first_lacks.is_empty() && has_keys(first) && has_keys(second);
+    is_cut && is_apart && has(second, &first_lacks) && has(first, &second_lacks)
 }
 
 /// Lists of words say each once.
@@ -308,10 +421,14 @@ fn check_by_key(
         .iter()
         .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
     let Some((first, table)) = marks.next() else {
-        check_kind(otherwise, node, at, faults);
+        match likely(tables, otherwise, node) {
+            Some(table) => check_map(table, node, at, faults),
+            None => check_kind(otherwise, node, at, faults),
+        }
         return;
     };
     if let Some(marker) = misread_marker(node) {
+        faults.hide(node.span());
         let name = marker.name();
         let message = text!(
             "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
@@ -323,6 +440,7 @@ fn check_by_key(
         return;
     }
     if let Some((second, _)) = marks.next() {
+        faults.hide(node.span());
         faults.push(
             Diagnostic::error(
                 FaultCode::TwoForms,
@@ -344,8 +462,58 @@ fn check_by_key(
     check_map(table, node, at, faults);
 }
 
+/// The table of a mapping that lacks the key which decides, where its other keys tell what it was meant as.
+fn likely(
+    tables: &'static [(&'static str, &'static Table)],
+    otherwise: &Kind,
+    node: Node<'_>,
+) -> Option<&'static Table> {
+    let knows = |table: &Table| {
+        node.entries()
+            .all(|entry| table.key(entry.name()).is_some())
+    };
+    if let Kind::Body = otherwise {
+        let marks = tables.iter().map(|(mark, _)| *mark);
+        let near = node
+            .entries()
+            .find_map(|entry| nearest(entry.name(), marks.clone()));
+        let table = tables.iter().find(|(mark, _)| near == Some(*mark));
+        let table = table.or(tables.first()).map(|(_, table)| *table);
+        return table.filter(|_| lacks_form(node));
+    }
+    let is_otherwise = match otherwise {
+        Kind::Map(table) => knows(table),
+        _ => false,
+    };
+    let mut fitting = tables
+        .iter()
+        .map(|(_, table)| *table)
+        .filter(|table| knows(table));
+    fitting
+        .next()
+        .filter(|_| !is_otherwise && node.entries().count() > 0)
+}
+
+/// Whether a mapping has the text of a field's long form, and nothing that says which form it is: its keys are no wire
+/// keys.
+pub(super) fn lacks_form(node: Node<'_>) -> bool {
+    let has_form = FIELD_FORMS
+        .iter()
+        .any(|(mark, _)| node.entry(mark).is_some());
+    !has_form && has_text(node)
+}
+
+/// Whether it has a text that is no type, as a field's long form has.
+fn has_text(node: Node<'_>) -> bool {
+    let text = TEXT.zh.of(node).or(TEXT.en.of(node));
+    text.is_some_and(|text| text.as_scalar().is_some() && scalar::field_type(text).is_none())
+}
+
 /// The key of a field that marks a longhand and was most likely meant as a wire key.
 pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
+    if has_text(node) {
+        return None;
+    }
     let (marker, table) = FIELD_FORMS
         .iter()
         .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
@@ -386,6 +554,7 @@ fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
     if node.as_mapping().is_some() || node.is_null() {
         wrong_kind(&text!("类型", "a type"), node, at, faults);
     } else if scalar::field_type(node).is_none() {
+        faults.hide(node.span());
         let fault = Diagnostic::error(
             FaultCode::BadType,
             node.span(),
