@@ -1,5 +1,7 @@
 //! `fc check`.
 
+use std::fmt::Write as _;
+
 use clap::ValueEnum;
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
@@ -144,7 +146,11 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
     {
         let message = lang().text(message);
         let word = said(text!("已修改", "fixed"));
-        told += &format!("{} {path}:{line} {code}: {message}\n", print::good(&word));
+        let _ = writeln!(
+            told,
+            "{} {path}:{line} {code}: {message}",
+            print::good(&word)
+        );
     }
     if options.dry_run {
         print::result(&changed)?;

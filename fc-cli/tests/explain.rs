@@ -19,7 +19,10 @@ fn every_listed_code_can_be_explained() {
         // A fault has examples; a rule of `fc diff` says whom it breaks, one of `fc lint` how it is set.
         let has_examples = text.contains(" bad\n") && text.contains(" good\n");
         let is_of_diff = text.contains("\n- Wire: ");
-        assert!(has_examples || is_of_diff || text.contains("by default `"), "{text}");
+        assert!(
+            has_examples || is_of_diff || text.contains("by default `"),
+            "{text}"
+        );
     }
 }
 
