@@ -1,5 +1,7 @@
 //! `fc check`.
 
+use std::fmt::Write as _;
+
 use clap::ValueEnum;
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
@@ -143,8 +145,8 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
     } in &fixed.done
     {
         let message = lang().text(message);
-        let word = said!("已修改", "fixed");
-        told += &format!("{} {path}:{line} {code}: {message}\n", print::good(&word));
+        let fixed = print::good(&said!("已修改", "fixed"));
+        let _ = writeln!(told, "{fixed} {path}:{line} {code}: {message}");
     }
     if options.dry_run {
         print::result(&changed)?;

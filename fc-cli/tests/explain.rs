@@ -16,9 +16,13 @@ fn every_listed_code_can_be_explained() {
         let (code, title) = line.split_once("  ").expect("a code and its title");
         let text = project.fc(&["explain", code]).expect(0).stdout;
         assert!(text.starts_with(&format!("{code}: {title}\n\n")), "{text}");
-        // A fault has examples; a rule of `fc diff` says whom it breaks.
+        // A fault has examples; a rule of `fc diff` says whom it breaks, one of `fc lint` how it is set.
         let has_examples = text.contains(" bad\n") && text.contains(" good\n");
-        assert!(has_examples || text.contains("\n- Wire: "), "{text}");
+        let is_of_diff = text.contains("\n- Wire: ");
+        assert!(
+            has_examples || is_of_diff || text.contains("by default `"),
+            "{text}"
+        );
     }
 }
 
