@@ -156,7 +156,7 @@ fault_codes! {
     FC0239 UnusedCoordinates "未使用的坐标系" "unused coordinate system";
     FC0240 UnknownStore "未知的存储位置" "unknown store";
     FC0241 UnusedStore "未使用的存储位置" "unused store";
-    FC0242 BadWaiver "豁免没有对应的提示" "waiver of something that is no finding";
+    FC0242 BadWaiver "豁免没有对应的提示" "waiver of something that is not a finding";
     FC0301 DuplicateCode "两个接口的功能码相同" "two operations with the same code";
     FC0302 RetiredCode "停用的功能码" "retired code";
     FC0303 CodeOutsideRanges "功能码不在任何号段中" "code outside all ranges";

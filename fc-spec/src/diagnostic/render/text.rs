@@ -127,7 +127,10 @@ impl<'a> Cluster<'a> {
 
 /// The level of what there is to know.
 fn note_level(lang: Lang) -> Level<'static> {
-    Level::NOTE.with_name(lang.pick("说明", "note"))
+    match lang {
+        Lang::Zh => Level::NOTE.with_name("说明"),
+        Lang::En => Level::NOTE,
+    }
 }
 
 fn help<'a>(fix: &'a Fix, sources: &'a Sources, lang: Lang) -> Group<'a> {
