@@ -15,9 +15,17 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Duration;
 
 /// Most messages that wait here; the client's further ones wait in its pipe.
 const WAITING: usize = 256;
+
+/// How long nothing may come before all is checked: a client that changes a text asks about it at once, and what it asks
+/// need not wait for the check.
+const QUIET: Duration = Duration::from_millis(15);
+
+/// How often in a row something may come in that time.
+const AT_MOST: usize = 8;
 
 /// How often in a row checking may be begun anew because the client has typed on in the meantime.
 const SUPERSEDED: usize = 3;
@@ -40,7 +48,7 @@ impl std::error::Error for ServeError {}
 
 /// Serves a client until it says that it is done. Whether it has asked for that before, as it should.
 ///
-/// All messages that wait are taken at once; what is wrong is found out once behind them, and again rather than told
+/// All messages that wait are taken at once; what is wrong is found out once behind them, when no more come for a moment, and again rather than told
 /// when the client has typed on in the meantime.
 ///
 /// # Errors
@@ -103,8 +111,16 @@ impl Server<'_> {
         while let Ok(first) = waiting.recv() {
             let batch = std::iter::once(first).chain(waiting.try_iter());
             let mut next = self.handle(batch.take(WAITING).collect());
-            let mut superseded = 0;
+            let (mut waited, mut superseded) = (0, 0);
             while next == Next::GoOn && self.is_dirty {
+                if waited < AT_MOST
+                    && let Ok(first) = waiting.recv_timeout(QUIET)
+                {
+                    waited += 1;
+                    let batch = std::iter::once(first).chain(waiting.try_iter());
+                    next = self.handle(batch.take(WAITING).collect());
+                    continue;
+                }
                 if let Some(workspace) = &mut self.workspace {
                     workspace.snapshot().analysis();
                 }
@@ -113,6 +129,7 @@ impl Server<'_> {
                     superseded += 1;
                 } else {
                     self.publish();
+                    (waited, superseded) = (0, 0);
                 }
                 next = self.handle(more);
             }
