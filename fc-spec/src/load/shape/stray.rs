@@ -1,0 +1,91 @@
+//! Entries in the section of another kind, and items that are the halves of one.
+
+use super::keys::{article, looks_like};
+use crate::diagnostic::{Diagnostic, FaultCode};
+use crate::load::grammar::{Command, Enum, FILE, Kind, OneOf, Report, Stream, Struct, Table};
+use crate::syntax::{Entry, Node};
+use crate::text;
+
+/// What an operation or a type is by its keys, where entries of another kind stand.
+pub(super) fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> {
+    let homes: Vec<&Table> = match value {
+        Kind::Map(table) => vec![table],
+        Kind::ByKey { tables, .. } => tables.iter().map(|(_, table)| *table).collect(),
+        _ => return None,
+    };
+    let is_home = |table: &Table| homes.iter().any(|home| home.name == table.name);
+    // Of entries of other kinds nothing is known.
+    let is_known = SECTIONS.iter().any(|(_, table)| is_home(table));
+    let table = looks_like(node).filter(|table| is_known && !is_home(table))?;
+    // One key of another kind is a slip in an entry of this one, unless it lacks what one has.
+    let is_stranger = |home: &&Table| {
+        let foreign = node
+            .entries()
+            .filter(|entry| home.key(entry.name()).is_none());
+        let required = home.keys.iter().filter(|key| key.required);
+        let lacking = required.filter(|key| node.entry(key.name).is_none());
+        match foreign.count() {
+            0 => false,
+            1 => lacking.count() > 1,
+            _ => true,
+        }
+    };
+    homes.iter().all(is_stranger).then_some(table)
+}
+
+/// The sections of operations and types, and what stands in each.
+const SECTIONS: [(&str, &Table); 6] = [
+    (FILE.commands.name, Command::TABLE),
+    (FILE.reports.name, Report::TABLE),
+    (FILE.streams.name, Stream::TABLE),
+    (FILE.types.name, Enum::TABLE),
+    (FILE.types.name, OneOf::TABLE),
+    (FILE.types.name, Struct::TABLE),
+];
+
+/// The section in which what is like this stands.
+pub(super) fn section_of(table: &Table) -> &'static str {
+    let section = SECTIONS.iter().find(|(_, home)| home.name == table.name);
+    section.map_or("", |(section, _)| section)
+}
+
+/// The fault of entries that belong in another section: the first, what it is, and how many more there are.
+pub(super) fn misplaced_entry((entry, table, more): (Entry<'_>, &Table, usize)) -> Diagnostic {
+    let name = entry.name();
+    let message = text!(
+        "`{name}` 写得像“{kind}”，而这里不能写“{kind}”",
+        "`{name}` is written like {kind}, which has no place here",
+        kind = article(table)
+    );
+    let section = section_of(table);
+    let fault = Diagnostic::error(FaultCode::MisplacedEntry, entry.key.span(), message);
+    let fault = fault.note(text!(
+        "它应写在 `{section}:` 之下；上面是否少了这一行？",
+        "it belongs under `{section}:`; is that line missing above it?"
+    ));
+    match more {
+        0 => fault,
+        _ => fault.note(text!(
+            "下面另有 {more} 处也是如此",
+            "so are {more} more below it"
+        )),
+    }
+}
+
+/// Whether two items of a list lack of their table just what the other one has.
+pub(super) fn is_split(of: &Kind, first: Node<'_>, second: Node<'_>) -> bool {
+    let Kind::Map(table) = of else { return false };
+    let lacks = |item: Node<'_>| -> Vec<&str> {
+        let required = table.keys.iter().filter(|key| key.required);
+        let names = required.map(|key| key.name);
+        names.filter(|name| item.entry(name).is_none()).collect()
+    };
+    let has = |item: Node<'_>, names: &[&str]| names.iter().all(|name| item.entry(name).is_some());
+    let is_apart = first
+        .entries()
+        .all(|entry| second.entry(entry.name()).is_none());
+    let (first_lacks, second_lacks) = (lacks(first), lacks(second));
+    let has_keys = |item: Node<'_>| item.entries().next().is_some();
+    let is_cut = !first_lacks.is_empty() && has_keys(first) && has_keys(second);
+    is_cut && is_apart && has(second, &first_lacks) && has(first, &second_lacks)
+}
