@@ -105,7 +105,7 @@ fn a_dump_has_its_documented_keys() {
     assert_eq!(
         keys(Some(&dump)),
         sorted(
-            "format protocol groups operations types result_codes ranges retired_codes tables entities availability coordinates stores glossary conflicts answers \
+            "format protocol groups operations types result_codes ranges retired_codes tables entities availability coordinates stores glossary waivers conflicts answers \
          lost_sections changes open_questions questions"
         )
     );

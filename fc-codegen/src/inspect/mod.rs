@@ -35,6 +35,7 @@
 //! - `availability`: `{ audiences, hardware, releases }`, lists of `{ name, zh, en, place }`: the words of `available`
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
+//! - `waivers`: `{ id, zh, en, by, until, place }`, findings of `fc diff` that are accepted for a time; `zh` and `en` say why
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
 //! - `answers`: `{ ids, kind, subject, zh, en, about, runtime, confirmed, place }`, what the spec answers to them;
 //!   `about` are the facts that it governs, `{ path, meanwhile }`, `runtime` says that no value of the spec changes it, and
