@@ -39,8 +39,8 @@ pub enum VersionError {
         name: String,
         /// Its files.
         sources: Sources,
-        /// They.
-        faults: Faults,
+        /// They; boxed, since most results are none.
+        faults: Box<Faults>,
     },
     /// This version does not read the dump.
     Dump(String, DumpError),
@@ -180,7 +180,7 @@ impl Version {
             None => Err(VersionError::Faulty {
                 name,
                 sources,
-                faults,
+                faults: Box::new(faults),
             }),
         }
     }
