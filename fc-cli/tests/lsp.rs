@@ -3,7 +3,10 @@
 #![allow(
     clippy::expect_used,
     clippy::indexing_slicing,
+    clippy::needless_pass_by_value,
     clippy::panic,
+    clippy::single_match_else,
+    clippy::too_many_lines,
     reason = "tests"
 )]
 

@@ -3,7 +3,10 @@
 #![allow(
     clippy::expect_used,
     clippy::indexing_slicing,
+    clippy::needless_pass_by_value,
     clippy::panic,
+    clippy::single_match_else,
+    clippy::too_many_lines,
     reason = "tests"
 )]
 
@@ -462,10 +465,10 @@ fn what_is_chosen_makes_the_spec_right_again() {
         ),
     ] {
         let before = editor.text(path).to_owned();
-        if chosen != "unit" {
-            editor.replace(path, old, &new.replacen('|', "", 1));
-        } else {
+        if chosen == "unit" {
             editor.replace(path, old, "{ type: u16, , example");
+        } else {
+            editor.replace(path, old, &new.replacen('|', "", 1));
         }
         let marked = if chosen == "unit" {
             "{ type: u16, |, example"

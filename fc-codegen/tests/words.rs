@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 59] = [
+const TEXTS: [(&str, &[&str]); 60] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -33,7 +33,8 @@ const TEXTS: [(&str, &[&str]); 59] = [
     ("docs-site/.vitepress/search.ts", &["ts"]),
     ("docs-site/.vitepress/search-terms.ts", &["ts"]),
     ("docs-site/.vitepress/theme/components", &["vue"]),
-    ("editors", &["md"]),
+    ("editors/README.md", &["md"]),
+    ("editors/vscode/README.md", &["md"]),
     ("editors/vscode/extension.js", &["js"]),
     ("fc-cli/README.md", &["md"]),
     ("fc-codegen/README.md", &["md"]),

@@ -1,4 +1,4 @@
-//! Changes that mend a fault.
+//! Changes that fix a fault.
 
 use crate::diagnostics::diagnostic;
 use crate::snapshot::Snapshot;
@@ -6,7 +6,7 @@ use fc_spec::diagnostic::Fix;
 use fc_spec::model::Lang;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
-/// The changes that mend the faults in a range of a file.
+/// The changes that fix the faults in a range of a file.
 #[must_use]
 pub fn actions(snapshot: &Snapshot, uri: &Uri, range: Range) -> Vec<CodeAction> {
     let Some((file, start)) = snapshot.offset(uri, range.start) else {

@@ -54,7 +54,7 @@ pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
     }
 }
 
-/// Answers a request; without a snapshot, there being no project, with nothing.
+/// Makes the response to a request; without a snapshot, there being no project, with nothing.
 pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
     let Request { id, method, params } = request;
     let ask = Ask {

@@ -27,7 +27,7 @@ const QUIET: Duration = Duration::from_millis(15);
 /// How often in a row something may come in that time.
 const AT_MOST: usize = 8;
 
-/// How often in a row checking may be begun anew because the client has typed on in the meantime.
+/// How often in a row checking may be begun again because the client has typed on in the meantime.
 const SUPERSEDED: usize = 3;
 
 /// Why serving ended before the client said so.
