@@ -142,7 +142,7 @@ fault_codes! {
     FC0239 UnusedCoordinates "unused coordinate system";
     FC0240 UnknownStore "unknown store";
     FC0241 UnusedStore "unused store";
-    FC0242 BadWaiver "waiver of something that is no finding";
+    FC0242 BadWaiver "waiver of something that is not a finding";
     FC0301 DuplicateCode "two operations with the same code";
     FC0302 RetiredCode "retired code";
     FC0303 CodeOutsideRanges "code outside all ranges";
