@@ -64,7 +64,7 @@ pub fn run(
             let _ = sender.try_send(());
         }
     });
-    let mut watched = Watched {
+    let mut places = Watched {
         watcher: watcher.map_err(|error| cannot(&root, &error))?,
         paths: Vec::new(),
     };
@@ -73,7 +73,7 @@ pub fn run(
     while !ended.load(Ordering::Relaxed) {
         let spec = spec(&place);
         // Before reading, so that what changes from here on is told.
-        watched.renew(&root, &spec)?;
+        places.renew(&root, &spec)?;
         let now = Input::read(&root, &spec);
         if last.as_ref() != Some(&now) {
             print::done(
