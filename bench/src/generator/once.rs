@@ -32,7 +32,7 @@ pub fn ours(root: &str, products: &str) {
     let sources = syntax::read_dir(root, Path::new("spec"), &mut faults);
     step();
     let Some(model) = load::load(&sources, &mut faults).model() else {
-        faults.iter().for_each(|fault| eprintln!("{}", fault.message));
+        faults.iter().for_each(|fault| eprintln!("{}", fault.message.en));
         panic!("the spec has faults");
     };
     step();
