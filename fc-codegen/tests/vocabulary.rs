@@ -25,13 +25,14 @@ const SOURCES: [&str; 6] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 28] = [
+const ALSO: [(&str, &str); 29] = [
     (
         "code",
         "a key of operations, and of what products say of them",
     ),
     ("command", "what the grammar calls an entry of `commands`"),
     ("commands", "a top key of the spec, and a folder of pages"),
+    ("config", "a command of git"),
     ("data", "the data area of a frame"),
     ("effect", "a key of commands, and a word of the pages"),
     ("encoding", "what faults call an entry of `encodings`"),

@@ -14,7 +14,9 @@ const READERS: [&str; 2] = ["load", "scaffold.rs"];
 const HOME: &str = "load/grammar";
 
 /// Keys that mean something else as well, and what.
-const ALSO: [(&str, &str); 8] = [
+const ALSO: [(&str, &str); 13] = [
+    ("body", "what a fault calls a message"),
+    ("command", "what a fault calls an operation"),
     ("commands", "the folder of the groups' files"),
     ("data", "the wire key whose object has a title of its own"),
     ("encodings", "what a fault calls several of them"),
@@ -24,6 +26,9 @@ const ALSO: [(&str, &str); 8] = [
         "number",
         "what a fault calls a value, and what others call a type",
     ),
+    ("report", "what a fault calls an operation"),
+    ("request", "what a fault calls a message"),
+    ("response", "what a fault calls a message"),
     ("streams", "what a fault calls several of them"),
     (
         "text",
