@@ -12,7 +12,7 @@ pub struct Settings {
     pub encoding: Encoding,
     /// In which language it is told what is wrong; where both are shown, which comes first.
     pub lang: Lang,
-    /// Whether it has the command [`SHOW_REFERENCES`](crate::lens::SHOW_REFERENCES).
+    /// Whether it has the command by which a lens shows references.
     pub shows_references: bool,
     /// Whether it can be asked to watch files.
     pub can_watch: bool,
