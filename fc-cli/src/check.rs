@@ -117,8 +117,8 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
     }) else {
         if options.format == Shown::Text {
             print::done(&said!(
-                "没有可以直接做的修改\n",
-                "no fix that leaves no choice\n"
+                "没有能自动修改的错误\n",
+                "nothing that can be fixed without a choice\n"
             ))?;
         }
         return Ok(spec);
