@@ -15,6 +15,7 @@ namespace fc_runtime {
 
 /// The shortest decimal that reads as this number again, with a point or an exponent; otherwise `inf` or `nan` with its sign.
 [[nodiscard]] std::string float_text(double value);
+/// The same of a `float`, which takes fewer digits.
 [[nodiscard]] std::string float_text(float value);
 
 /// Appends JSON to a text. A value that breaks a constraint is noted, the first one only.
