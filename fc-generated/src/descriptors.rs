@@ -4,6 +4,11 @@
 //! 每个操作的说明数据，供不依赖具体类型的工具使用。
 //! Every operation as data, for tools that work without its types.
 //!
+//! 文件末尾是对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它们，新增指令时不必改动。
+//!
+//! The macros at the end expand once per operation: tests, mocks and tools that are driven by them
+//! cover a new command without a change.
+//!
 //! Tables are in the order of the spec: by group, then as in the group's file.
 
 use fc_runtime::OperationInfo;
@@ -985,5 +990,217 @@ mod operation {
         spec: "spec/commands/upper_body.yaml",
         request: BodyInfo::of::<messages::GetUpperBodyStatusRequest>(),
         response: BodyInfo::of::<messages::GetUpperBodyStatusResponse>(),
+    };
+}
+
+/// 对每个有编码的指令展开一次：方法名、请求类型、响应类型。
+/// Expands once per command that has a code: its method, request and response.
+///
+/// The macro it is given has to accept `$($method:ident $request:ident $response:ident;)*`.
+#[macro_export]
+macro_rules! for_each_command {
+    ($callback:ident) => {
+        $callback! {
+            list_iot_devices ListIotDevicesRequest ListIotDevicesResponse;
+            get_floors GetFloorsRequest GetFloorsResponse;
+            get_cell_config GetCellConfigRequest GetCellConfigResponse;
+            set_cell_config SetCellConfigRequest SetCellConfigResponse;
+            check_condition_0333 CheckCondition0333Request CheckCondition0333Response;
+            get_robot_sn GetRobotSnRequest GetRobotSnResponse;
+            get_firmware_versions GetFirmwareVersionsRequest GetFirmwareVersionsResponse;
+            get_laser_scan GetLaserScanRequest GetLaserScanResponse;
+            get_map_image GetMapImageRequest GetMapImageResponse;
+            list_maps ListMapsRequest ListMapsResponse;
+            get_map_info GetMapInfoRequest GetMapInfoResponse;
+            save_map SaveMapRequest SaveMapResponse;
+            download_maps DownloadMapsRequest DownloadMapsResponse;
+            upload_maps UploadMapsRequest UploadMapsResponse;
+            get_map_sync_progress GetMapSyncProgressRequest GetMapSyncProgressResponse;
+            start_recharge StartRechargeRequest StartRechargeResponse;
+            cancel_recharge CancelRechargeRequest CancelRechargeResponse;
+            get_recharge_status GetRechargeStatusRequest GetRechargeStatusResponse;
+            switch_0a08 Switch0a08Request Switch0a08Response;
+            set_voice_reminder SetVoiceReminderRequest SetVoiceReminderResponse;
+            switch_environment SwitchEnvironmentRequest SwitchEnvironmentResponse;
+            set_standby_position SetStandbyPositionRequest SetStandbyPositionResponse;
+            get_standby_position GetStandbyPositionRequest GetStandbyPositionResponse;
+            set_positions_0313 SetPositions0313Request SetPositions0313Response;
+            get_positions_0314 GetPositions0314Request GetPositions0314Response;
+            get_station GetStationRequest GetStationResponse;
+            upload_map_stations UploadMapStationsRequest UploadMapStationsResponse;
+            add_station AddStationRequest AddStationResponse;
+            delete_station DeleteStationRequest DeleteStationResponse;
+            rename_station RenameStationRequest RenameStationResponse;
+            list_faults ListFaultsRequest ListFaultsResponse;
+            get_self_check GetSelfCheckRequest GetSelfCheckResponse;
+            create_task CreateTaskRequest CreateTaskResponse;
+            get_task_status GetTaskStatusRequest GetTaskStatusResponse;
+            unnamed_0309 Unnamed0309Request Unnamed0309Response;
+            unnamed_0460 Unnamed0460Request Unnamed0460Response;
+            get_upper_body_status GetUpperBodyStatusRequest GetUpperBodyStatusResponse;
+        }
+    };
+}
+
+/// 对每个有编码的主动上报展开一次：方法名、消息类型、确认类型。
+/// Expands once per report that has a code: its method, message and acknowledgement.
+///
+/// The macro it is given has to accept `$($method:ident $report:ident $acknowledgement:ident;)*`.
+#[macro_export]
+macro_rules! for_each_report {
+    ($callback:ident) => {
+        $callback! {
+            map_sync_progress MapSyncProgress MapSyncProgressAck;
+            recharge_progress RechargeProgress RechargeProgressAck;
+            robot_status RobotStatus RobotStatusAck;
+            obstacle_announcement ObstacleAnnouncement ObstacleAnnouncementAck;
+            target_reached TargetReached TargetReachedAck;
+            task_progress TaskProgress TaskProgressAck;
+        }
+    };
+}
+
+/// 对每个消息结构体展开一次，包括没有编码的操作和嵌套的结构体。
+/// Expands once per message struct, those of operations without a code and those inside others
+/// included.
+///
+/// The macro it is given has to accept `$($message:ident;)*`.
+#[macro_export]
+macro_rules! for_each_message {
+    ($callback:ident) => {
+        $callback! {
+            ListIotDevicesRequest;
+            ListIotDevicesRequestData;
+            ListIotDevicesResponse;
+            GetFloorsRequest;
+            GetFloorsResponse;
+            IotDevice;
+            GetCellConfigRequest;
+            GetCellConfigResponse;
+            GetCellConfigResponseData;
+            SetCellConfigRequest;
+            SetCellConfigRequestDataActiveIndex;
+            SetCellConfigRequestDataOldLayout;
+            SetCellConfigResponse;
+            Cell;
+            OldCell;
+            CellLayout;
+            LayoutCell;
+            UploadContendedResourcesRequest;
+            UploadContendedResourcesResponse;
+            CheckCondition0333Request;
+            CheckCondition0333Response;
+            CheckCondition0333ResponseData;
+            GetRobotSnRequest;
+            GetRobotSnResponse;
+            GetRobotSnResponseData;
+            GetFirmwareVersionsRequest;
+            GetFirmwareVersionsResponse;
+            GetLaserScanRequest;
+            GetLaserScanResponse;
+            SetTargetMapRequest;
+            SetTargetMapResponse;
+            GetMapImageRequest;
+            GetMapImageResponse;
+            GetMapImageResponseOrigin;
+            ListMapsRequest;
+            ListMapsResponse;
+            GetMapInfoRequest;
+            GetMapInfoResponse;
+            SaveMapRequest;
+            SaveMapResponse;
+            DownloadMapsRequest;
+            DownloadMapsResponse;
+            UploadMapsRequest;
+            UploadMapsResponse;
+            GetMapSyncProgressRequest;
+            GetMapSyncProgressResponse;
+            MapSyncProgress;
+            MapSyncProgressAck;
+            MapInfo;
+            MapDownload;
+            MapSync;
+            StartRechargeRequest;
+            StartRechargeResponse;
+            CancelRechargeRequest;
+            CancelRechargeResponse;
+            GetRechargeStatusRequest;
+            GetRechargeStatusResponse;
+            GetRechargeStatusResponseData;
+            RechargeProgress;
+            RechargeProgressData;
+            RechargeProgressAck;
+            Switch0a08Request;
+            Switch0a08RequestData;
+            Switch0a08Response;
+            Switch0a08ResponseData;
+            SetVoiceReminderRequest;
+            SetVoiceReminderRequestData;
+            SetVoiceReminderResponse;
+            SetVoiceReminderResponseData;
+            SwitchEnvironmentRequest;
+            SwitchEnvironmentResponse;
+            SetStandbyPositionRequest;
+            SetStandbyPositionResponse;
+            GetStandbyPositionRequest;
+            GetStandbyPositionResponse;
+            SetPositions0313Request;
+            SetPositions0313Response;
+            GetPositions0314Request;
+            GetPositions0314Response;
+            StandbyPosition;
+            StationRef;
+            GetStationRequest;
+            GetStationRequestData;
+            GetStationResponse;
+            GetStationResponseData;
+            UploadMapStationsRequest;
+            UploadMapStationsResponse;
+            AddStationRequest;
+            AddStationResponse;
+            DeleteStationRequest;
+            DeleteStationResponse;
+            RenameStationRequest;
+            RenameStationResponse;
+            ListStationsRequest;
+            ListStationsResponse;
+            GetCurrentStationRequest;
+            GetCurrentStationResponse;
+            GetCurrentStationResponseData;
+            StationReached;
+            StationReachedAck;
+            ListedStation;
+            ListFaultsRequest;
+            ListFaultsResponse;
+            GetSelfCheckRequest;
+            GetSelfCheckResponse;
+            RobotStatus;
+            RobotStatusData;
+            RobotStatusAck;
+            Fault;
+            SelfCheckItem;
+            CreateTaskRequest;
+            CreateTaskResponse;
+            ExecuteTaskRequest;
+            ExecuteTaskResponse;
+            GetTaskStatusRequest;
+            GetTaskStatusResponse;
+            GetTaskHistoryRequest;
+            GetTaskHistoryResponse;
+            ObstacleAnnouncement;
+            ObstacleAnnouncementAck;
+            TargetReached;
+            TargetReachedAck;
+            TaskProgress;
+            TaskProgressAck;
+            TaskStation;
+            Unnamed0309Request;
+            Unnamed0309Response;
+            Unnamed0460Request;
+            Unnamed0460Response;
+            GetUpperBodyStatusRequest;
+            GetUpperBodyStatusResponse;
+            DoorLockInfo;
+        }
     };
 }

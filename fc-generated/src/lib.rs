@@ -49,7 +49,6 @@
 pub mod blocking;
 #[cfg(feature = "client")]
 mod client;
-mod each;
 mod protocol;
 #[cfg(feature = "server")]
 mod robot;

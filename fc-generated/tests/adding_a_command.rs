@@ -70,17 +70,14 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     for (path, part) in [
         (messages.as_str(), format!("pub struct {request} {{")),
         (&messages, "pub level: u8,".to_owned()),
-        (
-            "fc-generated/src/client.rs",
-            format!("pub async fn {name}("),
-        ),
+        (&messages, format!("pub async fn {name}(")),
         ("fc-generated/src/robot.rs", format!("async fn {name}(")),
         (
             "fc-generated/src/descriptors.rs",
             format!("const {}: OperationInfo", name.to_uppercase()),
         ),
         (
-            "fc-generated/src/each.rs",
+            "fc-generated/src/descriptors.rs",
             format!("{name} {request} {response};"),
         ),
         (
@@ -95,8 +92,8 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
             &format!("docs-site/en/reference/commands/{name}.md"),
             added.title.en.clone(),
         ),
-        ("docs-site/reference/codes.md", spelled(code)),
-        ("docs-site/en/reference/codes.md", spelled(code)),
+        ("docs-site/reference/index.md", spelled(code)),
+        ("docs-site/en/reference/index.md", spelled(code)),
     ] {
         let artifact = find(&artifacts, path);
         assert!(

@@ -1,5 +1,7 @@
-// The page of command codes, sorted and with what is free.
+// The page of command codes: those in use, sorted, and what is free.
 
+import { readFileSync } from 'node:fs'
+import path from 'node:path'
 import { hexNumber, protocol } from '../../lab/fc'
 import type { Core, Tokens } from './tables'
 
@@ -11,16 +13,39 @@ function rowsOf(tokens: Tokens, table: number) {
   return starts.slice(1).map((from, row, body) => ({ from, to: body[row + 1] ?? last, first: tokens[from + 2].content }))
 }
 
+/** The table of the operations with a code: the overview has them by group, in a table each. */
+function operations(state: Parameters<Core>[0]): Tokens {
+  const overview = path.join(path.dirname(state.env.path), 'index.md')
+  // VitePress makes this page again when that one changes.
+  state.env.includes?.push(overview)
+  const tokens = state.md.parse(readFileSync(overview, 'utf8'), {})
+  const tables = tokens.flatMap((token, index) => (token.type === 'table_open' ? [index] : []))
+  const rows = tables.map((table) => rowsOf(tokens, table).filter(({ first }) => CODED.test(first)))
+  const first = rows.findIndex((found) => found.length > 0)
+  if (first < 0) return []
+  const body = rows.flat().flatMap(({ from, to }) => tokens.slice(from, to))
+  const end = tokens.findIndex((token, index) => index > tables[first] && token.type === 'tbody_close')
+  return [...tokens.slice(tables[first], rows[first][0].from), ...body, ...tokens.slice(end, end + 2)]
+}
+
+/** The first cell of a row with a code in use, or with one that is retired. */
+const CODED = /^`0x[0-9A-F]{4}`(?: = |<br>)/
+
 /**
- * The map of codes. Committed, it is in the order of the groups and names no next free code: what any new
- * command changes would keep two branches from being merged. Here it is sorted, and says what is free.
+ * The map of codes. Committed, it lists neither the codes in use nor the next free one: what any new command
+ * changes would keep two branches from being merged. Here it has both, sorted.
  */
-export function codeMap(tokens: Tokens, state: Parameters<Core>[0]): Tokens {
+export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
+  const named = page.findIndex((token) => token.content === '<a id="in-use"></a>')
+  const place = page.findIndex((token, index) => index > named && token.type === 'heading_close') + 1
+  // In the place of the sentence that says where they are listed.
+  const rest = page.findIndex((token, index) => index > place && token.type === 'paragraph_close') + 1
+  const tokens = named < 0 ? page : [...page.slice(0, place), ...operations(state), ...page.slice(rest)]
   const tables = tokens.flatMap((token, index) => (token.type === 'table_open' ? [index] : []))
   const taken = new Set<number>()
   for (const table of tables) {
     const rows = rowsOf(tokens, table)
-    const coded = rows.filter(({ first }) => /^`0x[0-9A-F]{4}`(?: = |<br>)/.test(first))
+    const coded = rows.filter(({ first }) => CODED.test(first))
     for (const { first } of coded) taken.add(parseInt(first.slice(3), 16))
     if (!coded.length || coded.length < rows.length) continue
     const sorted = [...rows].sort((a, b) => (a.first < b.first ? -1 : 1)).flatMap(({ from, to }) => tokens.slice(from, to))

@@ -225,3 +225,69 @@ pub struct IotDevice {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 获取物联网设备列表
+    /// List the IoT devices of a type
+    ///
+    /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
+    ///
+    /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys
+    /// of the request and the response.
+    ///
+    /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
+    ///
+    /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    pub async fn list_iot_devices(
+        &self,
+        request: &ListIotDevicesRequest,
+    ) -> Result<ListIotDevicesResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取楼层信息
+    /// Get the floors
+    ///
+    /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
+    ///
+    /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title
+    /// is lost; the name is inferred from the keys of the response.
+    ///
+    /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
+    ///
+    /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
+    /// - Docs: `docs-site/reference/commands/get_floors.md`
+    pub async fn get_floors(
+        &self,
+        request: &GetFloorsRequest,
+    ) -> Result<GetFloorsResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 获取物联网设备列表
+    /// List the IoT devices of a type
+    ///
+    /// See [`Client::list_iot_devices`](crate::Client::list_iot_devices).
+    pub fn list_iot_devices(
+        &self,
+        request: &ListIotDevicesRequest,
+    ) -> Result<ListIotDevicesResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取楼层信息
+    /// Get the floors
+    ///
+    /// See [`Client::get_floors`](crate::Client::get_floors).
+    pub fn get_floors(
+        &self,
+        request: &GetFloorsRequest,
+    ) -> Result<GetFloorsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

@@ -120,3 +120,39 @@ pub struct CheckCondition0333ResponseData {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 检查条件是否满足（0x0333，用途不详）
+    /// Check a condition (0x0333, purpose unknown)
+    ///
+    /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
+    ///
+    /// The heading is lost. The request holds the envelope alone and the response says whether a
+    /// condition is met; which one is unknown.
+    ///
+    /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
+    ///
+    /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
+    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    pub async fn check_condition_0333(
+        &self,
+        request: &CheckCondition0333Request,
+    ) -> Result<CheckCondition0333Response, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 检查条件是否满足（0x0333，用途不详）
+    /// Check a condition (0x0333, purpose unknown)
+    ///
+    /// See [`Client::check_condition_0333`](crate::Client::check_condition_0333).
+    pub fn check_condition_0333(
+        &self,
+        request: &CheckCondition0333Request,
+    ) -> Result<CheckCondition0333Response, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

@@ -61,3 +61,38 @@ pub struct GetLaserScanResponse {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 获取激光数据
+    /// Get the lidar data
+    ///
+    /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
+    ///
+    /// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
+    ///
+    /// Code 0x0001. Only reads. Since 2023-08-10.
+    ///
+    /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
+    /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+    pub async fn get_laser_scan(
+        &self,
+        request: &GetLaserScanRequest,
+    ) -> Result<GetLaserScanResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 获取激光数据
+    /// Get the lidar data
+    ///
+    /// See [`Client::get_laser_scan`](crate::Client::get_laser_scan).
+    pub fn get_laser_scan(
+        &self,
+        request: &GetLaserScanRequest,
+    ) -> Result<GetLaserScanResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

@@ -856,3 +856,265 @@ pub enum MapSyncResult {
     #[fc(other)]
     Unknown(i8),
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 获取地图图像
+    /// Get the picture of a map
+    ///
+    /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
+    ///
+    /// Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64
+    /// inside the JSON, so the response may be large.
+    ///
+    /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
+    ///
+    /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_image.md`
+    pub async fn get_map_image(
+        &self,
+        request: &GetMapImageRequest,
+    ) -> Result<GetMapImageResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取地图列表
+    /// List the maps
+    ///
+    /// 返回地图列表，含各文件的路径、楼栋和楼层。
+    ///
+    /// Returns the maps with the paths of their files, their building and their floor.
+    ///
+    /// Code 0x0103. Only reads.
+    ///
+    /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/list_maps.md`
+    pub async fn list_maps(
+        &self,
+        request: &ListMapsRequest,
+    ) -> Result<ListMapsResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取地图信息
+    /// Get the details of a map
+    ///
+    /// Code 0x010C. Only reads.
+    ///
+    /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_info.md`
+    pub async fn get_map_info(
+        &self,
+        request: &GetMapInfoRequest,
+    ) -> Result<GetMapInfoResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 保存地图
+    /// Save the map
+    ///
+    /// 以指定的名称保存地图，并给出它的楼栋和楼层。
+    ///
+    /// Saves the map under a name, with its building and floor.
+    ///
+    /// Code 0x0109. Changes the configuration.
+    ///
+    /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/save_map.md`
+    pub async fn save_map(
+        &self,
+        request: &SaveMapRequest,
+    ) -> Result<SaveMapResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 下载地图
+    /// Download maps
+    ///
+    /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
+    /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用
+    /// `get_map_sync_progress` 查询。
+    ///
+    /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38,
+    /// "upload maps", tell what it does. The source does not say whether a response of 1001 means
+    /// that the download is complete; follow `map_sync_progress` or ask with
+    /// `get_map_sync_progress`.
+    ///
+    /// Code 0x0320. Changes the configuration, inferred.
+    ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`MapSyncProgress`]。
+    /// `.follow()` gives the response, and then each [`MapSyncProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：要由 app 停止。
+    ///
+    /// No state is said to be final: the app has to stop it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
+    /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/download_maps.md`
+    pub fn download_maps<'a>(
+        &'a self,
+        request: &'a DownloadMapsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, DownloadMapsRequest> {
+        self.connection.call(request)
+    }
+
+    /// 上传地图
+    /// Upload maps
+    ///
+    /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
+    /// `map_sync_progress`。
+    ///
+    /// Uploads maps. The source does not say which maps, where to, or whether anything changes on
+    /// the robot; follow `map_sync_progress`.
+    ///
+    /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
+    ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`MapSyncProgress`]。
+    /// `.follow()` gives the response, and then each [`MapSyncProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：要由 app 停止。
+    ///
+    /// No state is said to be final: the app has to stop it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
+    /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_maps.md`
+    pub fn upload_maps<'a>(
+        &'a self,
+        request: &'a UploadMapsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, UploadMapsRequest> {
+        self.connection.call(request)
+    }
+
+    /// 获取正在同步的地图进度
+    /// Get the progress of map synchronisation
+    ///
+    /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
+    ///
+    /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress`
+    /// also reports.
+    ///
+    /// Code 0x0322. Only reads.
+    ///
+    /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    pub async fn get_map_sync_progress(
+        &self,
+        request: &GetMapSyncProgressRequest,
+    ) -> Result<GetMapSyncProgressResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 获取地图图像
+    /// Get the picture of a map
+    ///
+    /// See [`Client::get_map_image`](crate::Client::get_map_image).
+    pub fn get_map_image(
+        &self,
+        request: &GetMapImageRequest,
+    ) -> Result<GetMapImageResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取地图列表
+    /// List the maps
+    ///
+    /// See [`Client::list_maps`](crate::Client::list_maps).
+    pub fn list_maps(
+        &self,
+        request: &ListMapsRequest,
+    ) -> Result<ListMapsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取地图信息
+    /// Get the details of a map
+    ///
+    /// See [`Client::get_map_info`](crate::Client::get_map_info).
+    pub fn get_map_info(
+        &self,
+        request: &GetMapInfoRequest,
+    ) -> Result<GetMapInfoResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 保存地图
+    /// Save the map
+    ///
+    /// See [`Client::save_map`](crate::Client::save_map).
+    pub fn save_map(
+        &self,
+        request: &SaveMapRequest,
+    ) -> Result<SaveMapResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 下载地图
+    /// Download maps
+    ///
+    /// See [`Client::download_maps`](crate::Client::download_maps).
+    pub fn download_maps(
+        &self,
+        request: &DownloadMapsRequest,
+    ) -> Result<DownloadMapsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 上传地图
+    /// Upload maps
+    ///
+    /// See [`Client::upload_maps`](crate::Client::upload_maps).
+    pub fn upload_maps(
+        &self,
+        request: &UploadMapsRequest,
+    ) -> Result<UploadMapsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取正在同步的地图进度
+    /// Get the progress of map synchronisation
+    ///
+    /// See [`Client::get_map_sync_progress`](crate::Client::get_map_sync_progress).
+    pub fn get_map_sync_progress(
+        &self,
+        request: &GetMapSyncProgressRequest,
+    ) -> Result<GetMapSyncProgressResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}
+
+#[cfg(feature = "server")]
+impl crate::Reporter {
+    /// 上报地图同步进度
+    /// Progress of map synchronisation
+    ///
+    /// 地图下载或上传期间上报，进度从 0 到 100。
+    ///
+    /// Sent while maps are downloaded or uploaded, from 0 to 100.
+    ///
+    /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
+    /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+    pub async fn map_sync_progress(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &MapSyncProgress,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+}

@@ -331,3 +331,150 @@ pub enum RechargeError {
     #[fc(other)]
     Unknown(u8),
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 发起一键回充
+    /// Start returning to dock
+    ///
+    /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
+    /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
+    /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
+    ///
+    /// The robot drives to its charging dock, docks and starts charging. It sends
+    /// `recharge_progress` on every change of state; `get_recharge_status` returns the current one.
+    /// The source does not say whether a response of 1001 means that the robot has set off, so rely
+    /// on these two.
+    ///
+    /// Code 0x0A04. Moves the robot. Since 2023-05.
+    ///
+    /// `.follow()`：先取得响应，再逐个取得它引起的 [`RechargeProgress`]。
+    /// `.follow()` gives the response, and then each [`RechargeProgress`] that it sets off.
+    ///
+    /// 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+    ///
+    /// No state is said to be final: it ends only when `data.errorStatus` says that something
+    /// failed, or when the app stops it.
+    ///
+    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    ///
+    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
+    /// off come as well.
+    ///
+    /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/start_recharge.md`
+    pub fn start_recharge<'a>(
+        &'a self,
+        request: &'a StartRechargeRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, StartRechargeRequest> {
+        self.connection.call(request)
+    }
+
+    /// 取消一键回充
+    /// Cancel returning to dock
+    ///
+    /// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
+    ///
+    /// The robot stops and the charging state becomes idle. If the robot is on the dock, it first
+    /// backs off and then stops.
+    ///
+    /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
+    ///
+    /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    pub async fn cancel_recharge(
+        &self,
+        request: &CancelRechargeRequest,
+    ) -> Result<CancelRechargeResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取回充状态
+    /// Get the charging state
+    ///
+    /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
+    ///
+    /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
+    /// that has just connected.
+    ///
+    /// Code 0x0A06. Only reads, inferred. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    pub async fn get_recharge_status(
+        &self,
+        request: &GetRechargeStatusRequest,
+    ) -> Result<GetRechargeStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 发起一键回充
+    /// Start returning to dock
+    ///
+    /// See [`Client::start_recharge`](crate::Client::start_recharge).
+    pub fn start_recharge(
+        &self,
+        request: &StartRechargeRequest,
+    ) -> Result<StartRechargeResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 取消一键回充
+    /// Cancel returning to dock
+    ///
+    /// See [`Client::cancel_recharge`](crate::Client::cancel_recharge).
+    pub fn cancel_recharge(
+        &self,
+        request: &CancelRechargeRequest,
+    ) -> Result<CancelRechargeResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取回充状态
+    /// Get the charging state
+    ///
+    /// See [`Client::get_recharge_status`](crate::Client::get_recharge_status).
+    pub fn get_recharge_status(
+        &self,
+        request: &GetRechargeStatusRequest,
+    ) -> Result<GetRechargeStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}
+
+#[cfg(feature = "server")]
+impl crate::Reporter {
+    /// 主动上报回充过程和结果
+    /// Progress and result of charging
+    ///
+    /// 机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
+    ///
+    /// - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
+    /// - 异常：`errorStatus` 为 1，`rechargeStatus`
+    ///   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
+    ///
+    /// The robot may retry and so change state by itself; the same state can then be reported
+    /// again, and the receiver has to cope.
+    ///
+    /// - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
+    /// - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be
+    ///   ignored. From then on the robot acts only on a command, such as starting to return to
+    ///   dock.
+    ///
+    /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
+    /// - Docs: `docs-site/reference/reports/recharge_progress.md`
+    pub async fn recharge_progress(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &RechargeProgress,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+}

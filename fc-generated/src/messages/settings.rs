@@ -297,3 +297,110 @@ pub enum SwitchState {
     #[fc(other)]
     Unknown(String),
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 读取或设置开关（0x0A08，用途不详）
+    /// Read or set a switch (0x0A08, purpose unknown)
+    ///
+    /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off`
+    /// 时设置；响应返回开关的状态。
+    ///
+    /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
+    /// it. The response returns the state of the switch.
+    ///
+    /// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only
+    /// in `adp` from 3.8.
+    ///
+    /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+    pub async fn switch_0a08(
+        &self,
+        request: &Switch0a08Request,
+    ) -> Result<Switch0a08Response, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 语音提醒的开关
+    /// Voice reminder switch
+    ///
+    /// 语音提醒的开关，状态记录于机器人本体。
+    ///
+    /// The switch of the voice reminder; its state is stored on the robot.
+    ///
+    /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
+    ///
+    /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
+    /// whether robots still support the command. Do not use it in new code.
+    ///
+    /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
+    ///
+    /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    #[deprecated(
+        note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
+    )]
+    pub async fn set_voice_reminder(
+        &self,
+        request: &SetVoiceReminderRequest,
+    ) -> Result<SetVoiceReminderResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 切换业务环境
+    /// Switch the environment
+    ///
+    /// 切换 release 环境（生产）和 alpha 环境（测试）。
+    ///
+    /// Switches between the release environment (production) and the alpha environment (testing).
+    ///
+    /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
+    ///
+    /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
+    /// - Docs: `docs-site/reference/commands/switch_environment.md`
+    pub async fn switch_environment(
+        &self,
+        request: &SwitchEnvironmentRequest,
+    ) -> Result<SwitchEnvironmentResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 读取或设置开关（0x0A08，用途不详）
+    /// Read or set a switch (0x0A08, purpose unknown)
+    ///
+    /// See [`Client::switch_0a08`](crate::Client::switch_0a08).
+    pub fn switch_0a08(
+        &self,
+        request: &Switch0a08Request,
+    ) -> Result<Switch0a08Response, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 语音提醒的开关
+    /// Voice reminder switch
+    ///
+    /// See [`Client::set_voice_reminder`](crate::Client::set_voice_reminder).
+    #[deprecated(
+        note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
+    )]
+    pub fn set_voice_reminder(
+        &self,
+        request: &SetVoiceReminderRequest,
+    ) -> Result<SetVoiceReminderResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 切换业务环境
+    /// Switch the environment
+    ///
+    /// See [`Client::switch_environment`](crate::Client::switch_environment).
+    pub fn switch_environment(
+        &self,
+        request: &SwitchEnvironmentRequest,
+    ) -> Result<SwitchEnvironmentResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

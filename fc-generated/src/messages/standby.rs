@@ -251,3 +251,119 @@ pub struct StationRef {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 设置机器人待命时的位置
+    /// Set the standby position
+    ///
+    /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
+    ///
+    /// Says at which point, of type charging or standby, the robot stands by. It is an array in
+    /// case several standby points can be set one day.
+    ///
+    /// Code 0x0311. Changes the configuration. Since 2024-01-02.
+    ///
+    /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
+    /// - Docs: `docs-site/reference/commands/set_standby_position.md`
+    pub async fn set_standby_position(
+        &self,
+        request: &SetStandbyPositionRequest,
+    ) -> Result<SetStandbyPositionResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取机器人待命时的位置
+    /// Get the standby position
+    ///
+    /// Code 0x0312. Only reads. Since 2024-01-02.
+    ///
+    /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
+    /// - Docs: `docs-site/reference/commands/get_standby_position.md`
+    pub async fn get_standby_position(
+        &self,
+        request: &GetStandbyPositionRequest,
+    ) -> Result<GetStandbyPositionResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 设置点位（0x0313，用途不详）
+    /// Set points (0x0313, purpose unknown)
+    ///
+    /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
+    ///
+    /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
+    /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+    pub async fn set_positions_0313(
+        &self,
+        request: &SetPositions0313Request,
+    ) -> Result<SetPositions0313Response, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取点位（0x0314，用途不详）
+    /// Get points (0x0314, purpose unknown)
+    ///
+    /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
+    ///
+    /// Its response has the structure of the request of `set_positions_0313`, so it may return the
+    /// points set by that command.
+    ///
+    /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
+    ///
+    /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
+    /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+    pub async fn get_positions_0314(
+        &self,
+        request: &GetPositions0314Request,
+    ) -> Result<GetPositions0314Response, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 设置机器人待命时的位置
+    /// Set the standby position
+    ///
+    /// See [`Client::set_standby_position`](crate::Client::set_standby_position).
+    pub fn set_standby_position(
+        &self,
+        request: &SetStandbyPositionRequest,
+    ) -> Result<SetStandbyPositionResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取机器人待命时的位置
+    /// Get the standby position
+    ///
+    /// See [`Client::get_standby_position`](crate::Client::get_standby_position).
+    pub fn get_standby_position(
+        &self,
+        request: &GetStandbyPositionRequest,
+    ) -> Result<GetStandbyPositionResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 设置点位（0x0313，用途不详）
+    /// Set points (0x0313, purpose unknown)
+    ///
+    /// See [`Client::set_positions_0313`](crate::Client::set_positions_0313).
+    pub fn set_positions_0313(
+        &self,
+        request: &SetPositions0313Request,
+    ) -> Result<SetPositions0313Response, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取点位（0x0314，用途不详）
+    /// Get points (0x0314, purpose unknown)
+    ///
+    /// See [`Client::get_positions_0314`](crate::Client::get_positions_0314).
+    pub fn get_positions_0314(
+        &self,
+        request: &GetPositions0314Request,
+    ) -> Result<GetPositions0314Response, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

@@ -699,3 +699,144 @@ pub struct ListedStation {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 根据站点 ID 获取站点信息
+    /// Get a station by its ID
+    ///
+    /// Code 0x0A03. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/get_station.md`
+    pub async fn get_station(
+        &self,
+        request: &GetStationRequest,
+    ) -> Result<GetStationResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 一键上报地图点位信息
+    /// Report the stations of the map
+    ///
+    /// 按 type（0x01），这是 app
+    /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+    ///
+    /// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to
+    /// whom, of which map, and how the result is told has not survived in the source.
+    ///
+    /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
+    ///
+    /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    pub async fn upload_map_stations(
+        &self,
+        request: &UploadMapStationsRequest,
+    ) -> Result<UploadMapStationsResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 添加站点信息
+    /// Add a station
+    ///
+    /// 请求中没有坐标，印出的响应中没有站点 ID。
+    ///
+    /// The request carries no coordinates and the printed response no station ID.
+    ///
+    /// Code 0x0302. Changes the configuration. Since 2023-07-17.
+    ///
+    /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/add_station.md`
+    pub async fn add_station(
+        &self,
+        request: &AddStationRequest,
+    ) -> Result<AddStationResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 删除站点信息
+    /// Delete a station
+    ///
+    /// Code 0x0304. Changes the configuration. Since 2023-10-13.
+    ///
+    /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/delete_station.md`
+    pub async fn delete_station(
+        &self,
+        request: &DeleteStationRequest,
+    ) -> Result<DeleteStationResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 重命名站点
+    /// Rename a station
+    ///
+    /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+    ///
+    /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+    /// - Docs: `docs-site/reference/commands/rename_station.md`
+    pub async fn rename_station(
+        &self,
+        request: &RenameStationRequest,
+    ) -> Result<RenameStationResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 根据站点 ID 获取站点信息
+    /// Get a station by its ID
+    ///
+    /// See [`Client::get_station`](crate::Client::get_station).
+    pub fn get_station(
+        &self,
+        request: &GetStationRequest,
+    ) -> Result<GetStationResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 一键上报地图点位信息
+    /// Report the stations of the map
+    ///
+    /// See [`Client::upload_map_stations`](crate::Client::upload_map_stations).
+    pub fn upload_map_stations(
+        &self,
+        request: &UploadMapStationsRequest,
+    ) -> Result<UploadMapStationsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 添加站点信息
+    /// Add a station
+    ///
+    /// See [`Client::add_station`](crate::Client::add_station).
+    pub fn add_station(
+        &self,
+        request: &AddStationRequest,
+    ) -> Result<AddStationResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 删除站点信息
+    /// Delete a station
+    ///
+    /// See [`Client::delete_station`](crate::Client::delete_station).
+    pub fn delete_station(
+        &self,
+        request: &DeleteStationRequest,
+    ) -> Result<DeleteStationResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 重命名站点
+    /// Rename a station
+    ///
+    /// See [`Client::rename_station`](crate::Client::rename_station).
+    pub fn rename_station(
+        &self,
+        request: &RenameStationRequest,
+    ) -> Result<RenameStationResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

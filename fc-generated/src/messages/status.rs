@@ -482,3 +482,93 @@ pub enum SelfCheckStatus {
     #[fc(other)]
     Other(String),
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 获取异常列表
+    /// List the faults
+    ///
+    /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
+    ///
+    /// Returns a list of faults, each with its code, level, source, possible cause and guidance.
+    ///
+    /// Code 0x0A0C. Only reads, inferred.
+    ///
+    /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
+    /// - Docs: `docs-site/reference/commands/list_faults.md`
+    pub async fn list_faults(
+        &self,
+        request: &ListFaultsRequest,
+    ) -> Result<ListFaultsResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取自检结果
+    /// Get the result of the self-check
+    ///
+    /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
+    ///
+    /// Tells whether each module of the robot is working normally. After power-on all items are
+    /// checked in parallel; the timeout is 2 minutes by default.
+    ///
+    /// Code 0x0A0D. Only reads, inferred.
+    ///
+    /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
+    /// - Docs: `docs-site/reference/commands/get_self_check.md`
+    pub async fn get_self_check(
+        &self,
+        request: &GetSelfCheckRequest,
+    ) -> Result<GetSelfCheckResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 获取异常列表
+    /// List the faults
+    ///
+    /// See [`Client::list_faults`](crate::Client::list_faults).
+    pub fn list_faults(
+        &self,
+        request: &ListFaultsRequest,
+    ) -> Result<ListFaultsResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取自检结果
+    /// Get the result of the self-check
+    ///
+    /// See [`Client::get_self_check`](crate::Client::get_self_check).
+    pub fn get_self_check(
+        &self,
+        request: &GetSelfCheckRequest,
+    ) -> Result<GetSelfCheckResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}
+
+#[cfg(feature = "server")]
+impl crate::Reporter {
+    /// 主动上报机器人状态
+    /// Status of the robot
+    ///
+    /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
+    ///
+    /// Reports the robot's state, sub-state and fault code. The source does not say when, on a
+    /// change or at intervals.
+    ///
+    /// Code 0x0342. Since 2023-05.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
+    /// - Docs: `docs-site/reference/reports/robot_status.md`
+    pub async fn robot_status(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &RobotStatus,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+}

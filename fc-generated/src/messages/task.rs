@@ -538,3 +538,136 @@ pub enum TaskProcess {
     #[fc(other)]
     Unknown(u8),
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 创建巡游/送物任务
+    /// Create a patrol or delivery task
+    ///
+    /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
+    /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
+    ///
+    /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name
+    /// and ID. Executing it is a command of its own, `execute_task`; query it with
+    /// `get_task_status` and `get_task_history`.
+    ///
+    /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
+    ///
+    /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/create_task.md`
+    pub async fn create_task(
+        &self,
+        request: &CreateTaskRequest,
+    ) -> Result<CreateTaskResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+
+    /// 获取任务状态
+    /// Get a task's status
+    ///
+    /// Code 0x0353. Only reads. Since 2023-05.
+    ///
+    /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/commands/get_task_status.md`
+    pub async fn get_task_status(
+        &self,
+        request: &GetTaskStatusRequest,
+    ) -> Result<GetTaskStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 创建巡游/送物任务
+    /// Create a patrol or delivery task
+    ///
+    /// See [`Client::create_task`](crate::Client::create_task).
+    pub fn create_task(
+        &self,
+        request: &CreateTaskRequest,
+    ) -> Result<CreateTaskResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+
+    /// 获取任务状态
+    /// Get a task's status
+    ///
+    /// See [`Client::get_task_status`](crate::Client::get_task_status).
+    pub fn get_task_status(
+        &self,
+        request: &GetTaskStatusRequest,
+    ) -> Result<GetTaskStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}
+
+#[cfg(feature = "server")]
+impl crate::Reporter {
+    /// 遇障语音播报
+    /// Voice announcement of an obstacle
+    ///
+    /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
+    /// 还是机器人播报、播报什么，源文档没有说明。
+    ///
+    /// Judging by the title, the robot presumably sends this when it meets an obstacle, so that a
+    /// voice announcement is made. The source does not say whether the app or the robot makes it,
+    /// nor what it says.
+    ///
+    /// Code 0x0341. Since 2023-05.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+    pub async fn obstacle_announcement(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &ObstacleAnnouncement,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 到达目标点通知上报
+    /// Target reached
+    ///
+    /// 机器人到达目标点时上报。
+    ///
+    /// Sent when the robot has reached its target.
+    ///
+    /// Code 0x0340, inferred. Since 2023-05.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/target_reached.md`
+    pub async fn target_reached(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &TargetReached,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+
+    /// 上报机器人任务进度
+    /// Task progress
+    ///
+    /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
+    ///
+    /// Reports the progress of the robot's task: general progress, and the stages of passing gates
+    /// and doors and of taking an elevator.
+    ///
+    /// Code 0x0345. Since 2024-01-29.
+    ///
+    /// Returns what became of it at each connection.
+    ///
+    /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
+    /// - Docs: `docs-site/reference/reports/task_progress.md`
+    pub async fn task_progress(
+        &self,
+        audience: fc_runtime::Audience,
+        report: &TaskProgress,
+    ) -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {
+        self.handle.push(audience, report).await
+    }
+}

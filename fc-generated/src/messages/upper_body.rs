@@ -151,3 +151,40 @@ pub struct DoorLockInfo {
     #[fc(extra)]
     pub extra: Extra,
 }
+
+#[cfg(feature = "client")]
+impl crate::Client {
+    /// 查询上装
+    /// Get the upper body's status
+    ///
+    /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
+    ///
+    /// Returns the status of the push rod, of the released compartment and of the door locks. The
+    /// source calls it an existing command, unchanged: the upper body is queried before a
+    /// compartment is operated, and the app controls the doors according to the status returned.
+    ///
+    /// Code 0x0204. Only reads.
+    ///
+    /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
+    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    pub async fn get_upper_body_status(
+        &self,
+        request: &GetUpperBodyStatusRequest,
+    ) -> Result<GetUpperBodyStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request).await
+    }
+}
+
+#[cfg(feature = "blocking")]
+impl crate::blocking::Client {
+    /// 查询上装
+    /// Get the upper body's status
+    ///
+    /// See [`Client::get_upper_body_status`](crate::Client::get_upper_body_status).
+    pub fn get_upper_body_status(
+        &self,
+        request: &GetUpperBodyStatusRequest,
+    ) -> Result<GetUpperBodyStatusResponse, fc_runtime::CallError> {
+        self.connection.call(request)
+    }
+}

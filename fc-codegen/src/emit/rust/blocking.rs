@@ -1,16 +1,12 @@
 //! `blocking.rs`: the app's stub without `async`, for tools and tests.
 
-use super::context::{Context, message};
-use super::literal::literal;
+use super::context::Context;
 use super::source::Source;
 use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::surface::package::Call;
 
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
-    let commands = context.commands();
 
     let mut out = Source::rust();
     let mut docs = Docs::default();
@@ -28,26 +24,23 @@ pub fn file(context: &Context<'_>) -> String {
     );
     out.inner_docs(&docs);
     out.blank();
-    let mut own = vec!["AnyReport"];
-    let mut runtime = vec!["BodyError", "ClientConfig", "ConnectError", "blocking"];
-    if !commands.is_empty() {
-        own.push("messages");
-        runtime.push("CallError");
-    }
+    out.import("super", &["AnyReport"]);
     out.import("super::protocol", &[protocol]);
-    out.import("super", &own);
-    out.import("fc_runtime", &runtime);
+    out.import(
+        "fc_runtime",
+        &["BodyError", "ClientConfig", "ConnectError", "blocking"],
+    );
     out.import("std::time", &["Duration"]);
     out.blank();
     out.line("pub use fc_runtime::blocking::ReportError;");
     out.blank();
-    client(&mut out, protocol, &commands);
+    client(&mut out, protocol);
     out.blank();
     reports(&mut out, protocol);
     out.finish()
 }
 
-fn client(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
+fn client(out: &mut Source, protocol: &str) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -56,7 +49,7 @@ fn client(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
 /// connection.
 #[derive(Clone, Debug)]
 pub struct Client {{
-    connection: blocking::Connection<{protocol}>,
+    pub(crate) connection: blocking::Connection<{protocol}>,
 }}"
     ));
     out.blank();
@@ -89,35 +82,7 @@ pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())
 }}"
         ));
-        for command in commands {
-            out.blank();
-            call(out, command);
-        }
     });
-}
-
-fn call(out: &mut Source, command: &Call<'_>) {
-    let method = command.method;
-    let mut docs = Docs::of(&command.operation.title);
-    docs.raw(format!(
-        "See [`Client::{method}`](crate::Client::{method})."
-    ));
-    out.docs(&docs);
-    if let Some(deprecation) = &command.operation.deprecated {
-        let note = literal(&facts::withdrawn_note(deprecation));
-        out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
-    }
-    let params = [
-        "&self".to_owned(),
-        format!("request: &{}", message(command.request)),
-    ];
-    out.list(
-        &format!("pub fn {method}("),
-        &params,
-        &format!(") -> Result<{}, CallError> {{", message(command.response)),
-    );
-    out.line("    self.connection.call(request)");
-    out.line("}");
 }
 
 fn reports(out: &mut Source, protocol: &str) {

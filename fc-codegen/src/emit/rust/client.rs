@@ -1,12 +1,9 @@
-//! `client.rs`: the app's stub. One method per command, one enum over all reports.
+//! `client.rs`: the app's stub, whose commands the files of the groups add, and one enum over all reports.
 
 use super::context::{Context, message};
-use super::literal::literal;
 use super::source::Source;
 use super::streams;
 use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
 use crate::surface::name::free;
 use crate::surface::package::Call;
 use fc_spec::model::Side;
@@ -14,19 +11,20 @@ use fc_spec::model::Side;
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
-    let commands = context.commands();
     let reports = context.reports();
 
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    docs.paragraph("app 端：每条指令一个方法，全部主动上报汇成一个枚举。");
-    docs.paragraph("The app's side: one method per command, one enum over all reports.");
+    docs.paragraph("app 端：连接，以及汇成一个枚举的全部主动上报。每条指令的方法与它的消息类型在同一个文件里。");
+    docs.paragraph(
+        "The app's side: the connection, and one enum over all reports. The method of each command is in \
+         the file of its messages.",
+    );
     out.inner_docs(&docs);
     out.blank();
-    let follows = (commands.iter()).any(|it| process::is_followed(context, it.operation));
-    imports(&mut out, context, protocol, follows, &commands, &reports);
+    imports(&mut out, context, protocol, &reports);
     out.blank();
-    client(&mut out, context, protocol, &commands);
+    client(&mut out, protocol);
     out.blank();
     stream(&mut out, protocol);
     out.blank();
@@ -38,15 +36,8 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn imports(
-    out: &mut Source,
-    context: &Context<'_>,
-    protocol: &str,
-    follows: bool,
-    commands: &[Call<'_>],
-    reports: &[Call<'_>],
-) {
-    if !commands.is_empty() || !reports.is_empty() || streams::has_type(context, Side::ALL) {
+fn imports(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[Call<'_>]) {
+    if !reports.is_empty() || streams::has_type(context, Side::ALL) {
         out.import("super", &["messages"]);
     }
     out.import("super::protocol", &[protocol]);
@@ -63,20 +54,14 @@ fn imports(
         "RawReport",
         "RawReports",
     ];
-    if !commands.is_empty() {
-        runtime.push("CallError");
-    }
     runtime.extend(streams::imports_of_app(context));
-    if follows {
-        runtime.push("Call");
-    }
     out.import("fc_runtime", &runtime);
     out.import("futures_core", &["Stream"]);
     out.import("std::pin", &["Pin"]);
     out.import("std::task", &["Context", "Poll"]);
 }
 
-fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Call<'_>]) {
+fn client(out: &mut Source, protocol: &str) {
     out.line(format!(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法。
@@ -85,7 +70,7 @@ fn client(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[C
 /// connection.
 #[derive(Clone, Debug)]
 pub struct Client {{
-    connection: Connection<{protocol}>,
+    pub(crate) connection: Connection<{protocol}>,
 }}"
     ));
     out.blank();
@@ -159,10 +144,6 @@ pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())
 }}"
         ));
-        for command in commands {
-            out.blank();
-            call(out, context, command);
-        }
     });
     out.blank();
     out.line(format!(
@@ -173,37 +154,6 @@ impl From<Connection<{protocol}>> for Client {{
     }}
 }}"
     ));
-}
-
-fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
-    let docs = facts::call_docs(context, command.operation, |error| {
-        format!("[`CallError::declared`] says which [`messages::{error}`] it was.")
-    });
-    out.docs(&docs);
-    if let Some(deprecation) = &command.operation.deprecated {
-        let note = literal(&facts::withdrawn_note(deprecation));
-        out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
-    }
-    let request = message(command.request);
-    if process::is_followed(context, command.operation) {
-        // The call itself, which can be awaited or followed.
-        out.list(
-            &format!("pub fn {}<'a>(", command.method),
-            &["&'a self".to_owned(), format!("request: &'a {request}")],
-            &format!(") -> Call<'a, {}, {request}> {{", context.package.name),
-        );
-        out.line("    self.connection.call(request)");
-        out.line("}");
-        return;
-    }
-    let params = ["&self".to_owned(), format!("request: &{request}")];
-    out.list(
-        &format!("pub async fn {}(", command.method),
-        &params,
-        &format!(") -> Result<{}, CallError> {{", message(command.response)),
-    );
-    out.line("    self.connection.call(request).await");
-    out.line("}");
 }
 
 fn stream(out: &mut Source, protocol: &str) {

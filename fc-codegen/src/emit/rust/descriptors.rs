@@ -1,6 +1,8 @@
-//! `descriptors.rs`: every operation as data, for tools that work without its types.
+//! `descriptors.rs`: every operation as data, for tools that work without its types, and macros that expand once for
+//! each.
 
 use super::context::{Context, message, page_of};
+use super::each;
 use super::literal::literal;
 use super::source::Source;
 use crate::emit::stub::docs::Docs;
@@ -38,6 +40,13 @@ pub fn file(context: &Context<'_>) -> String {
     let mut docs = Docs::default();
     docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
     docs.paragraph("Every operation as data, for tools that work without its types.");
+    docs.paragraph(
+        "文件末尾是对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它们，新增指令时不必改动。",
+    );
+    docs.paragraph(
+        "The macros at the end expand once per operation: tests, mocks and tools that are driven by them \
+         cover a new command without a change.",
+    );
     docs.paragraph("Tables are in the order of the spec: by group, then as in the group's file.");
     out.inner_docs(&docs);
     out.blank();
@@ -75,6 +84,7 @@ pub fn file(context: &Context<'_>) -> String {
             }
         });
     }
+    each::macros(&mut out, context);
     out.finish()
 }
 

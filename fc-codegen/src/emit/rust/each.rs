@@ -1,4 +1,5 @@
-//! `each.rs`: macros that hand every operation to a macro of the user's.
+//! Macros that hand every operation to a macro of the user's: the end of `descriptors.rs`, so that one file lists the
+//! operations.
 
 use super::context::Context;
 use super::source::Source;
@@ -15,21 +16,12 @@ struct Each {
     rows: Vec<String>,
 }
 
-/// The file.
-pub fn file(context: &Context<'_>) -> String {
-    let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它，新增指令时不必改动。");
-    docs.paragraph(
-        "Macros that expand once per operation: tests, mocks and tools that are driven by them \
-         cover a new command without a change.",
-    );
-    out.inner_docs(&docs);
+/// All of them.
+pub fn macros(out: &mut Source, context: &Context<'_>) {
     for each in all(context) {
         out.blank();
-        write(&mut out, &each);
+        write(out, &each);
     }
-    out.finish()
 }
 
 fn all(context: &Context<'_>) -> [Each; 3] {

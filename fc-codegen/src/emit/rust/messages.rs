@@ -1,5 +1,6 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
+use super::calls;
 use super::conditions::{self, Conditions};
 use super::constants::{Place, extra_name, spelled};
 use super::context::Context;
@@ -27,6 +28,7 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
         body.blank();
         declaration(&mut body, &mut used, context, samples, item);
     }
+    calls::methods(&mut body, context, module);
 
     let mut out = Source::rust();
     let mut docs = Docs::default();

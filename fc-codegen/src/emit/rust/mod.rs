@@ -4,6 +4,7 @@
 //! parser, no formatter and no installed tool; the tests hold it to both.
 
 mod blocking;
+mod calls;
 mod client;
 mod conditions;
 mod constants;
@@ -47,7 +48,6 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),
         file("src/descriptors.rs", || descriptors::file(context)),
-        file("src/each.rs", || each::file(context)),
         file("src/lib.rs", || root::file(context)),
         file("src/messages/mod.rs", || root::messages(context)),
         file("src/prelude.rs", || root::prelude(context, targets.krate())),

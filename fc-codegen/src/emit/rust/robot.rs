@@ -14,27 +14,26 @@ use fc_spec::model::{CodeRange, Effect, Side};
 pub fn file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let commands = context.commands();
-    let reports = context.reports();
     let ranges = pass_through(context);
 
     let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(
-        "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，带类型的主动上报。",
+        "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，以及主动上报的发送端；每种上报的方法与它的消息类型在同一个文件里。",
     );
     docs.paragraph(
         "The robot's side: a trait with one method per command, a robot that responds with the \
-         examples in the spec, and typed reports.",
+         examples in the spec, and what sends reports, whose methods are in the files of their messages.",
     );
     out.inner_docs(&docs);
     out.blank();
-    imports(&mut out, context, protocol, &commands, &reports);
+    imports(&mut out, context, protocol, &commands);
     out.blank();
     robot(&mut out, context, protocol, &commands, &ranges);
     out.blank();
     example(&mut out, protocol, &commands);
     out.blank();
-    reporter(&mut out, context, protocol, &reports);
+    reporter(&mut out, protocol);
     if streams::are_any(context) {
         out.blank();
         streams::robot(&mut out, context, protocol);
@@ -42,14 +41,8 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn imports(
-    out: &mut Source,
-    context: &Context<'_>,
-    protocol: &str,
-    commands: &[Call<'_>],
-    reports: &[Call<'_>],
-) {
-    if !commands.is_empty() || !reports.is_empty() || streams::has_type(context, &[Side::Robot]) {
+fn imports(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Call<'_>]) {
+    if !commands.is_empty() || streams::has_type(context, &[Side::Robot]) {
         out.import("super", &["messages"]);
     }
     out.import("super::protocol", &[protocol]);
@@ -63,9 +56,6 @@ fn imports(
     ];
     if !commands.is_empty() {
         runtime.push("Message");
-    }
-    if !reports.is_empty() {
-        runtime.extend(["Acknowledgement", "Audience", "PushError"]);
     }
     runtime.extend(streams::imports_of_robot(context));
     out.import("fc_runtime", &runtime);
@@ -245,7 +235,7 @@ pub struct ExampleRobot {
     });
 }
 
-fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[Call<'_>]) {
+fn reporter(out: &mut Source, protocol: &str) {
     out.line(format!(
         "\
 /// 主动上报：每种上报一个方法。
@@ -253,7 +243,7 @@ fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str, reports: &[
 /// Pushes reports: one method per report. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Reporter {{
-    handle: ServerHandle<{protocol}>,
+    pub(crate) handle: ServerHandle<{protocol}>,
 }}"
     ));
     out.blank();
@@ -268,25 +258,5 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
     Self {{ handle }}
 }}"
         ));
-        for report in reports {
-            let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(context.style, &mut docs, report.operation);
-            docs.paragraph("Returns what became of it at each connection.");
-            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
-            out.blank();
-            out.docs(&docs);
-            let params = [
-                "&self".to_owned(),
-                "audience: Audience".to_owned(),
-                format!("report: &{}", message(report.request)),
-            ];
-            out.list(
-                &format!("pub async fn {}(", report.method),
-                &params,
-                ") -> Result<Vec<Acknowledgement>, PushError> {",
-            );
-            out.line("    self.handle.push(audience, report).await");
-            out.line("}");
-        }
     });
 }

@@ -68,7 +68,6 @@ pub fn file(context: &Context<'_>) -> String {
 pub mod blocking;
 #[cfg(feature = \"client\")]
 mod client;
-mod each;
 mod protocol;
 #[cfg(feature = \"server\")]
 mod robot;

@@ -13,7 +13,7 @@ pub static RUST: Style = Style {
     indent: "    ",
     comment: OUTER,
     link: |name| format!("[`{name}`]"),
-    elsewhere: super::context::message,
+    elsewhere: |item| item.ty.name.to_string(),
     integer: crate::emit::stub::digits::grouped,
     redacted: "Never shown by `Debug`.",
 };

@@ -1,6 +1,7 @@
 //! The map of command codes.
 
 use super::shared::{AnswerView, Desk, OperationEntry};
+use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::words::Word as _;
 use fc_spec::model::{CodeRange, Declared, Subject};
 use serde::Serialize;
@@ -9,7 +10,7 @@ use serde::Serialize;
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct CodesView {
     ranges: Vec<RangeView>,
-    used: Vec<OperationEntry>,
+    operations: String,
     unassigned: Vec<OperationEntry>,
     retired: Vec<RetiredView>,
     answers: Vec<AnswerView>,
@@ -42,12 +43,10 @@ struct RetiredView {
 
 pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
     let model = desk.book.model;
-    // By group, without counts and without the next free code: a line that every new operation moves
-    // keeps two branches from being merged. The site sorts by code and computes what is free.
-    let (used, unassigned) = model
-        .operations
-        .iter()
-        .partition::<Vec<_>, _>(|operation| operation.code.value.is_some());
+    // Without the codes in use, which the overview lists, and without the next free one: a line that every new
+    // operation moves keeps two branches from being merged. The site lists them here by code, and computes what is free.
+    let operations = model.operations.iter();
+    let unassigned = operations.filter(|operation| operation.code.value.is_none());
     let retired = model.retired.iter().map(|retired| RetiredView {
         code: retired.spelling.clone(),
         decimal: retired.code,
@@ -66,14 +65,8 @@ pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
             .iter()
             .map(|range| range_view(desk, range))
             .collect(),
-        used: used
-            .into_iter()
-            .map(|operation| desk.entry(operation))
-            .collect(),
-        unassigned: unassigned
-            .into_iter()
-            .map(|operation| desk.entry(operation))
-            .collect(),
+        operations: desk.link(Page::Index, Anchor::named("operations")),
+        unassigned: unassigned.map(|operation| desk.entry(operation)).collect(),
         retired: retired.collect(),
         answers: desk.answers_to(&Subject::Codes),
         audiences: words(&model.availability.audiences),

@@ -1,0 +1,138 @@
+//! The methods of the stubs that carry the messages of one group, in the group's file: a new command changes no file
+//! of another group, and whoever reads about its messages finds how they are sent.
+
+use super::context::{Context, page_of};
+use super::literal::literal;
+use super::source::Source;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::process;
+use crate::surface::package::{Call, Module};
+use fc_spec::model::{Direction, Kind};
+
+/// The methods of the messages of a module. Whatever they take from elsewhere stands with its path, since each stub has
+/// a feature of its own.
+pub fn methods(out: &mut Source, context: &Context<'_>, module: &Module<'_>) {
+    let commands = calls(context, module, Kind::Command);
+    let reports = calls(context, module, Kind::Report);
+    stub(out, "client", "crate::Client", &commands, |out, command| {
+        call(out, context, command);
+    });
+    stub(
+        out,
+        "blocking",
+        "crate::blocking::Client",
+        &commands,
+        blocking_call,
+    );
+    stub(out, "server", "crate::Reporter", &reports, |out, report| {
+        push(out, context, report);
+    });
+}
+
+/// Those of a kind whose requests the module holds.
+fn calls<'p>(context: &'p Context<'_>, module: &'p Module<'_>, kind: Kind) -> Vec<Call<'p>> {
+    let requests = module.items.iter().filter_map(|item| {
+        let (operation, direction) = item.body_of()?;
+        (operation.kind() == kind && direction == Direction::Request).then_some(operation)
+    });
+    let calls = requests.filter_map(|operation| context.package.call(operation));
+    calls.collect()
+}
+
+/// An `impl` of a stub, if it has any method here.
+fn stub(
+    out: &mut Source,
+    feature: &str,
+    path: &str,
+    calls: &[Call<'_>],
+    method: impl Fn(&mut Source, &Call<'_>),
+) {
+    if calls.is_empty() {
+        return;
+    }
+    out.blank();
+    out.line(format!("#[cfg(feature = \"{feature}\")]"));
+    out.block(format!("impl {path}"), |out| {
+        for call in calls {
+            out.blank();
+            method(out, call);
+        }
+    });
+}
+
+fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
+    let docs = facts::call_docs(context, command.operation, |error| {
+        format!(
+            "[`CallError::declared`](fc_runtime::CallError::declared) says which [`{error}`] it was."
+        )
+    });
+    out.docs(&docs);
+    deprecation(out, command);
+    let request = &command.request.ty.name;
+    if process::is_followed(context, command.operation) {
+        // The call itself, which can be awaited or followed.
+        let protocol = &context.package.name;
+        out.list(
+            &format!("pub fn {}<'a>(", command.method),
+            &["&'a self".to_owned(), format!("request: &'a {request}")],
+            &format!(") -> fc_runtime::Call<'a, crate::{protocol}, {request}> {{"),
+        );
+        out.line("    self.connection.call(request)");
+        out.line("}");
+        return;
+    }
+    signature(out, "async fn", command);
+    out.line("    self.connection.call(request).await");
+    out.line("}");
+}
+
+fn blocking_call(out: &mut Source, command: &Call<'_>) {
+    let method = command.method;
+    let mut docs = Docs::of(&command.operation.title);
+    docs.raw(format!(
+        "See [`Client::{method}`](crate::Client::{method})."
+    ));
+    out.docs(&docs);
+    deprecation(out, command);
+    signature(out, "fn", command);
+    out.line("    self.connection.call(request)");
+    out.line("}");
+}
+
+fn signature(out: &mut Source, function: &str, command: &Call<'_>) {
+    let request = format!("request: &{}", command.request.ty.name);
+    let response = &command.response.ty.name;
+    out.list(
+        &format!("pub {function} {}(", command.method),
+        &["&self".to_owned(), request],
+        &format!(") -> Result<{response}, fc_runtime::CallError> {{"),
+    );
+}
+
+fn deprecation(out: &mut Source, command: &Call<'_>) {
+    if let Some(deprecation) = &command.operation.deprecated {
+        let note = literal(&facts::withdrawn_note(deprecation));
+        out.attribute("#[deprecated(", &[format!("note = {note}")], ")]");
+    }
+}
+
+fn push(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
+    let mut docs = facts::operation_docs(report.operation);
+    facts::operation_end(context.style, &mut docs, report.operation);
+    docs.paragraph("Returns what became of it at each connection.");
+    docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
+    out.docs(&docs);
+    let params = [
+        "&self".to_owned(),
+        "audience: fc_runtime::Audience".to_owned(),
+        format!("report: &{}", report.request.ty.name),
+    ];
+    out.list(
+        &format!("pub async fn {}(", report.method),
+        &params,
+        ") -> Result<Vec<fc_runtime::Acknowledgement>, fc_runtime::PushError> {",
+    );
+    out.line("    self.handle.push(audience, report).await");
+    out.line("}");
+}
