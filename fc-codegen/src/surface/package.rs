@@ -181,6 +181,13 @@ impl<'m> Package<'m> {
             Spelled { name, of }
         });
         let ids = ids.collect();
+        for group in &model.groups {
+            for part in language.group_types {
+                let words = format!("{}_{part}", group.id);
+                let who = Named::alone("group", &group.id);
+                types.claim_made(&words, who, &mut names.clashes);
+            }
+        }
         let is_stream = |operation: &&Operation| operation.kind() == Kind::Stream;
         let (streams, calls): (Vec<_>, Vec<_>) = model.operations.iter().partition(is_stream);
         let methods = names.all(Role::Method, calls, |it| {

@@ -1,37 +1,29 @@
-//! The app's side: one method per command, following, and the streams of the data port.
+//! The app's side: one method per command, and following.
 
+use super::group::{Group, heading, parts, wrapper};
 use super::messages::both;
 use super::operations::{deprecated, way};
+use super::streams;
 use super::text::STYLE;
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::process::{ending, set_off};
 use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Item, Spelled};
-use fc_spec::model::{Direction, Operation, Side};
+use crate::surface::package::{Call, Item};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> Source {
+pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     let mut out = Source::new(&STYLE);
-    client(&mut out, context);
-    if !context.package.streams.is_empty() {
-        out.blank();
-        streams(&mut out, context);
-    }
-    out
-}
-
-fn client(out: &mut Source, context: &Context<'_>) {
     let protocol = &context.package.name;
+    let parts = parts(groups, "Client", |it| !it.commands.is_empty());
     out.docs(&Docs::said(&[
         "一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。",
         "A robot as seen from the app: one method per command; `suspend` for coroutines, `Async` for Java.",
     ]));
-    out.line("public class Client(");
-    out.line("    /** 底层连接。The underlying connection: raw commands and options of a call. */");
-    out.line("    public val connection: Connection,");
-    out.block(") : AutoCloseable", |out| {
+    wrapper(&mut out, "Client", PROPERTY, CONNECTION, &parts);
+    let supers: Vec<String> = [vec!["AutoCloseable".to_owned()], parts].concat();
+    out.block(heading(")", &supers), |out| {
         out.line(
             "\
 /** 此刻的连接状态。Whether there is a connection at this moment, and why not. */
@@ -58,9 +50,6 @@ public fun data(): DataConnection = connection.data()
 /** 关闭连接。Closes the connection. */
 override fun close(): Unit = connection.close()",
         );
-        for command in context.commands() {
-            call(out, context, &command);
-        }
         out.blank();
         out.docs(&both("建立连接。", "Makes connections."));
         out.block("public companion object", |out| {
@@ -94,6 +83,32 @@ public fun connectLazy(config: ClientConfig = ClientConfig()): Client = Client(C
             ));
         });
     });
+    streams::for_app(&mut out, groups);
+    out
+}
+
+const PROPERTY: &str = "connection: Connection";
+
+const CONNECTION: &str =
+    "/** 底层连接。The underlying connection: raw commands and options of a call. */";
+
+/// The methods for the commands of a group.
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    if group.commands.is_empty() {
+        return;
+    }
+    out.blank();
+    out.docs(&group.docs("Client"));
+    out.block(
+        format!("public interface {}", group.part("Client")),
+        |out| {
+            out.line(CONNECTION);
+            out.line(format!("public val {PROPERTY}"));
+            for command in &group.commands {
+                call(out, context, command);
+            }
+        },
+    );
 }
 
 /// Whether a request can be made of nothing.
@@ -119,12 +134,12 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &command.request.ty.name,
         &command.response.ty.name,
     );
-    let bare = if is_bare(command.request) {
-        format!(" = {request} {{}}")
-    } else {
-        String::new()
+    let bare = is_bare(command.request).then(|| format!("{request} {{}}"));
+    let given = format!("request: {request}");
+    let parameter = match &bare {
+        Some(bare) => format!("{given} = {bare}"),
+        None => given.clone(),
     };
-    let parameter = format!("request: {request}{bare}");
     function(
         out,
         &format!("public suspend fun {method}("),
@@ -134,19 +149,22 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     );
     let mut docs = Docs::default();
     docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-    out.blank();
-    out.docs(&docs);
-    deprecated(out, operation);
-    if !bare.is_empty() {
-        out.line("@JvmOverloads");
-    }
-    function(
-        out,
-        &format!("public fun {method}Async("),
-        &parameter,
-        &format!("): CompletableFuture<{response}> ="),
+    let mut for_java = |parameter: &str, body: &str| {
+        out.blank();
+        out.docs(&docs);
+        deprecated(out, operation);
+        let open = format!("public fun {method}Async(");
+        let close = format!("): CompletableFuture<{response}> =");
+        function(out, &open, parameter, &close, body);
+    };
+    for_java(
+        &given,
         &format!("connection.callAsync(Operations.{method}, request)"),
     );
+    // An interface cannot have overloads made for it.
+    if let Some(bare) = bare {
+        for_java("", &format!("{method}Async({bare})"));
+    }
     followed(out, context, command, &parameter);
 }
 
@@ -222,51 +240,5 @@ fn function(out: &mut Source, open: &str, parameter: &str, close: &str, body: &s
     } else {
         out.enclose(open, "", |out| out.line(format!("{parameter},")));
         out.enclose(close, "", |out| out.line(body));
-    }
-}
-
-/// What a stream carries, as a type; `None` for raw bytes.
-pub fn content<'c>(context: &'c Context<'_>, stream: &Operation) -> Option<&'c str> {
-    Some(context.name_of(&stream.body(Direction::Request)?.ty))
-}
-
-/// The comment on a stream.
-pub fn stream_docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(&STYLE, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    docs
-}
-
-fn streams(out: &mut Source, context: &Context<'_>) {
-    out.docs(&both(
-        "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
-        "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
-    ));
-    out.line("public class Streams(");
-    out.line("    /** 数据连接。The data connection: its state, and frames that nobody has subscribed to. */");
-    out.line("    public val data: DataConnection,");
-    out.block(")", |out| {
-        for stream in &context.package.streams {
-            one_stream(out, context, stream);
-        }
-    });
-}
-
-fn one_stream(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
-    let (name, code) = (super::method_of(stream), &stream.code.spelling);
-    let carried = content(context, stream);
-    out.blank();
-    out.docs(&stream_docs(context, stream));
-    if stream.sender == Side::Robot {
-        let (ty, more) = carried.map_or(("ByteArray", String::new()), |ty| (ty, format!(", {ty}")));
-        let head = format!("public fun subscribe{name}(): Subscription<{ty}> =");
-        out.line(format!("{head} data.subscribe({code}{more})"));
-    } else {
-        let ty = carried.unwrap_or("ByteArray");
-        out.line("@JvmSynthetic");
-        out.line(format!(
-            "public suspend fun send{name}(id: Long, content: {ty}): Unit = data.send({code}, id, content)"
-        ));
     }
 }

@@ -1,4 +1,4 @@
-//! The message types of one group: messages, enums and choices.
+//! Message types: messages, enums and choices.
 
 use super::expr;
 use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
@@ -14,18 +14,26 @@ use fc_spec::model::{
     Condition, EnumRepr, EnumType, EnumValue, Field, Quirk, StateOrder, Type, Value, Variant,
 };
 
-/// The types of a module.
-pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> Source {
+/// The file of the types that several groups share.
+pub fn shared(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     let mut out = Source::new(&STYLE);
+    let mut modules = context.package.modules.iter();
+    if let Some(shared) = modules.find(|it| it.group.is_none()) {
+        module(&mut out, context, samples, shared);
+    }
+    out
+}
+
+/// The types of a module.
+pub fn module(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) {
     for item in &module.items {
         out.blank();
         match &item.shape {
-            Shape::Record(_, fields) => message(&mut out, context, samples, item, fields),
-            Shape::Enum(shape, values) => enumeration(&mut out, context, item, shape, values),
-            Shape::Choice(_, variants) => choice(&mut out, context, item, variants),
+            Shape::Record(_, fields) => message(out, context, samples, item, fields),
+            Shape::Enum(shape, values) => enumeration(out, context, item, shape, values),
+            Shape::Choice(_, variants) => choice(out, context, item, variants),
         }
     }
-    out
 }
 
 /// The constant that stands for a field: not what a type of the package is called.

@@ -1,5 +1,7 @@
 //! `Operations`: every command and report as a value, with what the runtime needs of it.
 
+use super::group::{Group, heading, parts};
+use super::messages::both;
 use super::text::{STYLE, literal};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
@@ -7,34 +9,102 @@ use crate::emit::stub::facts;
 use crate::emit::stub::process::state;
 use crate::emit::stub::source::Source;
 use crate::surface::package::{Call, Shape};
-use fc_spec::model::{Accepted, Cadence, Exchange, Field, Operation, StructRef, Type, TypeRef};
+use fc_spec::model::{
+    Accepted, Cadence, Exchange, Field, Kind, Operation, StructRef, Type, TypeRef,
+};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> Source {
+pub fn file(groups: &[Group<'_>]) -> Source {
     let mut out = Source::new(&STYLE);
     out.docs(&Docs::said(&[
         "每条指令和每个主动上报。",
         "Every command and every report.",
     ]));
-    out.block("public object Operations", |out| {
-        for command in context.commands() {
-            command_value(out, context, &command);
-        }
-        for report in context.reports() {
-            report_value(out, context, &report);
-        }
-    });
+    let parts = parts(groups, "Operations", has_calls);
+    out.line(heading("public object Operations", &parts));
     out
 }
 
-fn docs(out: &mut Source, context: &Context<'_>, operation: &Operation) {
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(&STYLE, &mut docs, operation);
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+fn has_calls(group: &Group<'_>) -> bool {
+    !(group.commands.is_empty() && group.reports.is_empty())
+}
+
+/// The commands and reports of a group. Java has constants from an interface, and Kotlin has properties: neither has the other's.
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    if !has_calls(group) {
+        return;
+    }
+    out.blank();
+    out.docs(&group.docs("Operations"));
+    let head = format!("public interface {}", group.part("Operations"));
+    out.block(head, |out| {
+        for call in group.commands.iter().chain(&group.reports) {
+            let mut docs = facts::operation_docs(call.operation);
+            facts::operation_end(&STYLE, &mut docs, call.operation);
+            docs.paragraph(links(context, call.operation));
+            out.blank();
+            out.docs(&docs);
+            deprecated(out, call.operation);
+            let (method, ty) = (call.method, type_of(call));
+            let head = format!("public val {method}: {ty}");
+            let getter = format!("get() = Companion.{method}");
+            if out.has_room([&head, " ", &getter]) {
+                out.line([&head, " ", &getter].concat());
+            } else {
+                out.enclose(&head, "", |out| out.line(getter));
+            }
+        }
+        out.blank();
+        out.docs(&both(
+            "这些常量供 Java 使用。",
+            "The same as constants, for Java.",
+        ));
+        out.block("public companion object", |out| {
+            for command in &group.commands {
+                command_value(out, context, command);
+            }
+            for report in &group.reports {
+                report_value(out, context, report);
+            }
+            list(out, "commands", "Command<*, *>", &group.commands);
+            list(out, "reports", "Report<*>", &group.reports);
+        });
+    });
+}
+
+/// What the protocol knows of the group.
+fn list(out: &mut Source, name: &str, ty: &str, calls: &[Call<'_>]) {
+    if calls.is_empty() {
+        return;
+    }
+    let methods: Vec<&str> = calls.iter().map(|it| it.method).collect();
+    out.blank();
+    out.enclose(&format!("internal fun {name}(): List<{ty}> ="), "", |out| {
+        out.lines("listOf(", &methods, ")")
+    });
+}
+
+fn type_of(call: &Call<'_>) -> String {
+    let (request, response) = (&call.request.ty.name, &call.response.ty.name);
+    match call.operation.kind() {
+        Kind::Report => format!("Report<{request}>"),
+        Kind::Command | Kind::Stream => format!("Command<{request}, {response}>"),
+    }
+}
+
+fn links(context: &Context<'_>, operation: &Operation) -> String {
+    context.links(&operation.location, &page_of(operation))
+}
+
+/// The head of a constant.
+fn constant(out: &mut Source, context: &Context<'_>, call: &Call<'_>) -> String {
+    let mut docs = Docs::of(&call.operation.title);
+    docs.paragraph(links(context, call.operation));
     out.blank();
     out.docs(&docs);
-    deprecated(out, operation);
+    deprecated(out, call.operation);
     out.line("@JvmField");
+    format!("public val {}: {} =", call.method, type_of(call))
 }
 
 /// The mark of what is withdrawn.
@@ -50,12 +120,8 @@ fn command_value(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let Exchange::Command { effect, .. } = &operation.exchange else {
         return;
     };
-    docs(out, context, operation);
+    let head = constant(out, context, command);
     let (request, response) = (&command.request.ty.name, &command.response.ty.name);
-    let head = format!(
-        "public val {}: Command<{request}, {response}> =",
-        command.method
-    );
     let mut made = vec![format!(
         "Command({}, {}, Effect.{}, {request}, {response})",
         literal(&operation.name),
@@ -121,9 +187,8 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
     else {
         return;
     };
-    docs(out, context, operation);
+    let head = constant(out, context, report);
     let (request, response) = (&report.request.ty.name, &report.response.ty.name);
-    let head = format!("public val {}: Report<{request}> =", report.method);
     let (name, code) = (literal(&operation.name), &operation.code.spelling);
     let mut made = vec![
         format!("Report({name}, {code}, {request}, {response})"),

@@ -1,5 +1,6 @@
 //! The protocol itself: header, envelopes, result codes, ports and limits.
 
+use super::group::{Group, parts};
 use super::messages::both;
 use super::text::{STYLE, integer, literal, plain_codec, type_of};
 use crate::emit::stub::about;
@@ -13,9 +14,9 @@ use fc_spec::model::{
 };
 
 /// The file.
-pub fn file(context: &Context<'_>) -> Source {
+pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     let mut out = Source::new(&STYLE);
-    protocol(&mut out, context);
+    protocol(&mut out, context, groups);
     let package = &context.package;
     for (name, said, fields) in [
         (
@@ -38,7 +39,7 @@ pub fn file(context: &Context<'_>) -> Source {
     out
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>) {
+fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
     let model = context.model();
     let (frame, kinds) = (&model.frame, &model.frame.kinds);
     let mut docs = Docs::of(&model.protocol.title);
@@ -131,24 +132,32 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
             });
             out.blank();
             defaults(out, context);
-            operations(out, context);
+            operations(out, groups);
         },
     );
 }
 
 /// The commands and reports, which know the protocol as little as the runtime does.
-fn operations(out: &mut Source, context: &Context<'_>) {
-    for (name, ty, calls) in [
-        ("commands", "Command<*, *>", context.commands()),
-        ("reports", "Report<*>", context.reports()),
+fn operations(out: &mut Source, groups: &[Group<'_>]) {
+    let lists = |name: &str, has: fn(&Group<'_>) -> bool| {
+        let parts = parts(groups, "Operations", has).into_iter();
+        parts.map(|part| format!("{part}.{name}()")).collect()
+    };
+    let commands: Vec<String> = lists("commands", |it| !it.commands.is_empty());
+    let reports: Vec<String> = lists("reports", |it| !it.reports.is_empty());
+    for (name, ty, lists) in [
+        ("commands", "Command<*, *>", commands),
+        ("reports", "Report<*>", reports),
     ] {
-        let calls = calls.iter();
-        let calls: Vec<String> = calls
-            .map(|it| format!("Operations.{}", it.method))
-            .collect();
         let open = format!("override val {name}: List<{ty}> by lazy {{");
         out.blank();
-        out.enclose(&open, "}", |out| out.lines("listOf(", &calls, ")"));
+        out.enclose(&open, "}", |out| {
+            if lists.is_empty() {
+                out.line("emptyList()");
+            } else {
+                out.lines("listOf(", &lists, ").flatten()");
+            }
+        });
     }
 }
 

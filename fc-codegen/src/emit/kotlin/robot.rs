@@ -1,7 +1,8 @@
 //! The robot's side: complete, partial, by example; typed reports and streams.
 
-use super::client::{content, stream_docs};
+use super::group::{Group, heading, parts, wrapper};
 use super::messages::both;
+use super::streams::{self, SERVER, SERVER_DOCS};
 use super::text::STYLE;
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
@@ -10,13 +11,13 @@ use crate::emit::stub::ranges::{UNKNOWN, pass_through};
 use crate::emit::stub::source::Source;
 use crate::surface::language::{KOTLIN, Role};
 use crate::surface::package::Call;
-use fc_spec::model::{Effect, Exchange, Side};
+use fc_spec::model::{Effect, Exchange};
 use std::borrow::Cow;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> Source {
+pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     let mut out = Source::new(&STYLE);
-    let commands = context.commands();
+    let handlers = parts(groups, "Handlers", has_commands);
     let ranges = pass_through(context).into_iter();
     let ranges: Vec<_> = ranges
         .map(|(words, range)| (method(&words).into_owned(), range))
@@ -28,16 +29,7 @@ pub fn file(context: &Context<'_>) -> Source {
         "处理超时或断线之后不再有人等待应答。会引起动作的指令，以及作用不详的指令，处理程序仍运行到结束，`Context.isAbandoned` 让它知道；其他指令的处理程序被取消。",
         "After a timeout or a loss nobody waits for the answer any more. The handler of a command that sets something in motion, or whose effect is unknown, still runs to its end, and `Context.isAbandoned` tells it; that of any other command is cancelled.",
     ]));
-    out.block("public interface Robot", |out| {
-        for command in &commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(&STYLE, &mut docs, command.operation);
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
-            docs.raw("@throws fc.runtime.Refusal to answer with another result than success");
-            out.blank();
-            out.docs(&docs);
-            out.line(signature("public suspend fun", command));
-        }
+    out.block(heading("public interface Robot", &handlers), |out| {
         for (name, range) in &ranges {
             let mut docs = Docs::of(&range.text);
             let (first, last) = (&range.first_spelling, &range.last_spelling);
@@ -57,17 +49,13 @@ pub fn file(context: &Context<'_>) -> Source {
         "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot that has some of the commands so far: what it leaves out is refused as not implemented.",
     ));
-    out.block("public interface PartialRobot : Robot", |out| {
-        for command in &commands {
-            out.blank();
-            let head = signature("override suspend fun", command);
-            out.enclose(&[&head, " ="].concat(), "", |out| {
-                out.line("throw context.notImplemented()");
-            });
-        }
-    });
+    let partial = parts(groups, "Partial", has_commands);
+    out.line(heading(
+        "public interface PartialRobot",
+        &robot_and(partial.into_iter()),
+    ));
     out.blank();
-    example(&mut out, &commands);
+    example(&mut out, groups);
     out.blank();
     out.docs(&both(
         "由此机器人处理的全部指令，供 [Server.bind] 使用。",
@@ -75,10 +63,8 @@ pub fn file(context: &Context<'_>) -> Source {
     ));
     out.enclose("public fun Robot.service(): Service =", "", |out| {
         out.line("Service()");
-        for Call { method, .. } in &commands {
-            out.line(format!(
-                "    .on(Operations.{method}) {{ context, request -> {method}(context, request) }}"
-            ));
+        for group in groups.iter().filter(|it| has_commands(it)) {
+            out.line(format!("    .{}(this)", registration(group)));
         }
         for (name, range) in &ranges {
             let (first, last) = (&range.first_spelling, &range.last_spelling);
@@ -91,17 +77,83 @@ pub fn file(context: &Context<'_>) -> Source {
         ));
     });
     out.blank();
-    reporter(&mut out, context);
-    if context
-        .package
-        .streams
-        .iter()
-        .any(|stream| stream.sender == Side::Robot)
-    {
-        out.blank();
-        streamer(&mut out, context);
-    }
+    reporter(&mut out, groups);
+    streams::for_robot(&mut out, groups);
     out
+}
+
+fn has_commands(group: &Group<'_>) -> bool {
+    !group.commands.is_empty()
+}
+
+/// What is a `Robot` by these parts.
+fn robot_and(parts: impl Iterator<Item = String>) -> Vec<String> {
+    let robot = "Robot".to_owned();
+    std::iter::once(robot).chain(parts).collect()
+}
+
+/// The function that has a robot serve the commands of a group.
+fn registration(group: &Group<'_>) -> String {
+    ["on", &group.name].concat()
+}
+
+/// The robot's side of a group.
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    if has_commands(group) {
+        handlers(out, context, group);
+        served(out, group);
+        answers(out, group);
+    }
+    if !group.reports.is_empty() {
+        reports(out, context, group);
+    }
+}
+
+fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    out.blank();
+    out.docs(&group.docs("Robot"));
+    let name = group.part("Handlers");
+    out.block(format!("public interface {name}"), |out| {
+        for command in &group.commands {
+            let mut docs = facts::operation_docs(command.operation);
+            facts::operation_end(&STYLE, &mut docs, command.operation);
+            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
+            docs.raw("@throws fc.runtime.Refusal to answer with another result than success");
+            out.blank();
+            out.docs(&docs);
+            out.line(signature("public suspend fun", command));
+        }
+    });
+    out.blank();
+    out.docs(&group.docs("PartialRobot"));
+    let head = format!("public interface {} : {name}", group.part("Partial"));
+    out.block(head, |out| {
+        for command in &group.commands {
+            out.blank();
+            let head = signature("override suspend fun", command);
+            out.enclose(&[&head, " ="].concat(), "", |out| {
+                out.line("throw context.notImplemented()");
+            });
+        }
+    });
+}
+
+fn served(out: &mut Source, group: &Group<'_>) {
+    out.blank();
+    let (registration, handlers) = (registration(group), group.part("Handlers"));
+    out.line("@JvmSynthetic");
+    let head = format!("internal fun Service.{registration}(robot: {handlers}): Service = apply");
+    out.block(head, |out| {
+        for Call { method, .. } in &group.commands {
+            let open = format!("on(Operations.{method}) {{ context, request ->");
+            let body = format!("robot.{method}(context, request)");
+            if out.has_room([&open, " ", &body, " }"]) {
+                out.line([&open, " ", &body, " }"].concat());
+            } else {
+                out.enclose(&open, "}", |out| out.line(body));
+            }
+        }
+    });
 }
 
 /// The method for what has no type, from words that a language joins in its own way.
@@ -122,7 +174,7 @@ fn raw(out: &mut Source, name: &str, mut docs: Docs<'_>) {
     out.line("    throw context.unknown()");
 }
 
-fn example(out: &mut Source, commands: &[Call<'_>]) {
+fn example(out: &mut Source, groups: &[Group<'_>]) {
     out.docs(&Docs::said(&[
         "用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
         "Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `PartialRobot`.",
@@ -130,27 +182,55 @@ fn example(out: &mut Source, commands: &[Call<'_>]) {
         "It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented, unless \
          `pretendMotion` tells it to pretend.",
     ]));
-    out.block(
-        "public open class ExampleRobot(private val pretendMotion: Boolean = false) : Robot",
-        |out| {
-            for command in commands {
-                let Exchange::Command { effect, .. } = &command.operation.exchange else {
-                    continue;
-                };
-                let moves = matches!(effect, Effect::Motion | Effect::Unknown);
-                let response = format!("{}.example()", command.response.ty.name);
-                out.blank();
-                let head = signature("override suspend fun", command);
-                out.enclose(&[&head, " ="].concat(), "", |out| {
-                    out.line(if moves {
-                        format!("if (pretendMotion) {response} else throw context.notImplemented()")
-                    } else {
-                        response
-                    });
-                });
-            }
-        },
+    let groups = groups.iter().filter(|it| has_commands(it));
+    let answers = groups.map(|group| {
+        let [handlers, example] = ["Handlers", "Example"].map(|whole| group.part(whole));
+        format!("{handlers} by {example}(pretendMotion)")
+    });
+    out.line(heading(
+        "public open class ExampleRobot(pretendMotion: Boolean = false)",
+        &robot_and(answers),
+    ));
+    out.blank();
+    out.line(
+        "\
+/** 各指令组的示例共有的部分。What the examples of all groups have in common. */
+internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
+    /** The answer to what may set something in motion. */
+    protected fun <A : Message> pretended(context: Context, response: MessageType<A>): A =
+        if (pretendMotion) response.example() else throw context.notImplemented()
+}",
     );
+}
+
+/// The examples of a group as a robot's answers.
+fn answers(out: &mut Source, group: &Group<'_>) {
+    let head = format!(
+        "internal class {}(pretendMotion: Boolean)",
+        group.part("Example")
+    );
+    let supers = [
+        "ExampleAnswers(pretendMotion)".to_owned(),
+        group.part("Handlers"),
+    ];
+    out.blank();
+    out.block(heading(&head, &supers), |out| {
+        for command in &group.commands {
+            let Exchange::Command { effect, .. } = &command.operation.exchange else {
+                continue;
+            };
+            let response = &command.response.ty.name;
+            out.blank();
+            let head = signature("override suspend fun", command);
+            out.enclose(&[&head, " ="].concat(), "", |out| {
+                out.line(if matches!(effect, Effect::Motion | Effect::Unknown) {
+                    format!("pretended(context, {response})")
+                } else {
+                    format!("{response}.example()")
+                });
+            });
+        }
+    });
 }
 
 fn signature(head: &str, command: &Call<'_>) -> String {
@@ -161,13 +241,23 @@ fn signature(head: &str, command: &Call<'_>) -> String {
     )
 }
 
-fn reporter(out: &mut Source, context: &Context<'_>) {
+fn reporter(out: &mut Source, groups: &[Group<'_>]) {
+    let parts = parts(groups, "Reporter", |it| !it.reports.is_empty());
     out.docs(&both(
         "带类型的主动上报：每个上报一个方法，等到每个 app 应答，或者不会再应答。",
         "Typed reports: one method each, which waits until each app has acknowledged it or will not.",
     ));
-    out.block("public class Reporter(private val server: Server)", |out| {
-        for report in context.reports() {
+    wrapper(out, "Reporter", SERVER, SERVER_DOCS, &parts);
+    out.line(heading(")", &parts));
+}
+
+fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    out.blank();
+    out.docs(&group.docs("Reporter"));
+    out.block(format!("public interface {}", group.part("Reporter")), |out| {
+        out.line(SERVER_DOCS);
+        out.line(format!("public val {SERVER}"));
+        for report in &group.reports {
             let mut docs = facts::operation_docs(report.operation);
             facts::operation_end(&STYLE, &mut docs, report.operation);
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
@@ -184,31 +274,6 @@ fn reporter(out: &mut Source, context: &Context<'_>) {
             out.docs(&docs);
             out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
             out.line(format!("    server.pushAsync(audience, Operations.{method}, report)"));
-        }
-    });
-}
-
-fn streamer(out: &mut Source, context: &Context<'_>) {
-    out.docs(&both(
-        "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
-        "Sends the robot's streams: one method each, which gives how many data connections took it.",
-    ));
-    out.block("public class Streamer(private val server: Server)", |out| {
-        for stream in &context.package.streams {
-            if stream.sender != Side::Robot {
-                continue;
-            }
-            let ty = content(context, stream).unwrap_or("ByteArray");
-            let (name, code) = (super::method_of(stream), &stream.code.spelling);
-            out.blank();
-            out.docs(&stream_docs(context, stream));
-            out.line("@JvmSynthetic");
-            out.line(format!(
-                "public suspend fun send{name}(audience: Audience, id: Long, content: {ty}): Int ="
-            ));
-            out.line(format!(
-                "    server.sendStream(audience, {code}, id, content)"
-            ));
         }
     });
 }

@@ -1,9 +1,10 @@
 //! How each operation is called and answered, as the pages of the documentation show it. The same text stands in
 //! `Samples.kt` among the tests of the package, so no sample can rot.
 
-use super::client::{content, is_bare};
+use super::client::is_bare;
 use super::expr::{Form, laid_out};
 use super::method_of;
+use super::streams::content;
 use super::text::{STYLE, literal};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;

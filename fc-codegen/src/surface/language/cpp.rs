@@ -29,6 +29,7 @@ pub static CPP: Language = Language {
         "close connect connect_lazy connection data follow reports state states unknown",
     ),
     escape: |_, word| Some(format!("{word}_")),
+    group_types: &[],
     has_file_per_type: false,
     has_id_types: false,
 };

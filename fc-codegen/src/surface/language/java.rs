@@ -28,6 +28,7 @@ pub static JAVA: Language = Language {
     fields: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     methods: Words::new("clone equals finalize getClass hashCode notify notifyAll toString wait"),
     escape: |_, word| Some(format!("{word}_")),
+    group_types: &[],
     has_file_per_type: true,
     has_id_types: false,
 };

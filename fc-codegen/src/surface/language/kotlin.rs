@@ -22,7 +22,7 @@ pub static KOTLIN: Language = Language {
         Builder Byte ByteArray Bytes CallError Char CharArray CharSequence ChoiceType Client ClientConfig Codec \
         Collection Command Comparable Comparator CompletableFuture Connection ConnectionState Content Context \
         DataConnection DeclaredError Defaults Deprecated DigestAlgorithm Double DoubleArray Effect Empty Enum \
-        EnumType EnvelopeRole Error ExampleRobot Exception Extra Field Float FloatArray Flow Following Function \
+        EnumType EnvelopeRole Error ExampleAnswers ExampleRobot Exception Extra Field Float FloatArray Flow Following Function \
         HeaderField HeaderLayout HeaderRole Int IntArray IntEnumType IntValue Iterable Iterator Json JvmField \
         JvmOverloads JvmStatic JvmSynthetic Lazy Limits List Long LongArray Loss Map Message MessageBuilder \
         MessageType MutableList MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair \
@@ -39,6 +39,16 @@ pub static KOTLIN: Language = Language {
         toString unknown wait",
     ),
     escape: |_, word| Some(format!("{word}_")),
+    group_types: &[
+        "operations",
+        "client",
+        "handlers",
+        "partial",
+        "example",
+        "reporter",
+        "streams",
+        "streamer",
+    ],
     has_file_per_type: false,
     has_id_types: false,
 };

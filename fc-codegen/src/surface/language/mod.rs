@@ -124,6 +124,8 @@ pub struct Language {
     methods: Words,
     /// A keyword as a name of a role; `None` where there is no way.
     escape: fn(Role, &str) -> Option<String>,
+    /// The types that each group has for itself, by the words that follow the group's.
+    pub group_types: &'static [&'static str],
     /// Whether each type has a file of its name.
     pub has_file_per_type: bool,
     /// Whether the ids of each entity have a type of their own.

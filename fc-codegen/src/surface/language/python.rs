@@ -38,6 +38,7 @@ const fn python(has_id_types: bool) -> Language {
         operations protocol raw_handler reports self server state states unknown wait",
         ),
         escape: |_, word| Some(format!("{word}_")),
+        group_types: &[],
         has_file_per_type: false,
         has_id_types,
     }

@@ -43,6 +43,7 @@ const fn rust(has_id_types: bool) -> Language {
             (_, "crate" | "self" | "super" | "Self") => Some(format!("{word}_")),
             _ => Some(format!("r#{word}")),
         },
+        group_types: &[],
         has_file_per_type: false,
         has_id_types,
     }

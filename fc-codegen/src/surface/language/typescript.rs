@@ -43,6 +43,7 @@ pub static TYPESCRIPT: Language = Language {
         (Role::Field | Role::Value | Role::Module, word) => Some(word.to_owned()),
         (_, word) => Some(format!("{word}_")),
     },
+    group_types: &[],
     has_file_per_type: false,
     has_id_types: false,
 };

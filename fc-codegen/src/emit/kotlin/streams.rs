@@ -1,0 +1,132 @@
+//! The streams of the data port, as the app takes and sends them and as the robot sends them.
+
+use super::group::{Group, heading, parts, wrapper};
+use super::messages::both;
+use super::text::STYLE;
+use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::facts;
+use crate::emit::stub::source::Source;
+use crate::surface::package::Spelled;
+use fc_spec::model::{Direction, Operation, Side};
+
+/// The app's side, if there are streams.
+pub fn for_app(out: &mut Source, groups: &[Group<'_>]) {
+    let parts = parts(groups, "Streams", |it| !it.streams.is_empty());
+    if parts.is_empty() {
+        return;
+    }
+    out.blank();
+    out.docs(&both(
+        "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
+        "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
+    ));
+    wrapper(out, "Streams", DATA, DATA_DOCS, &parts);
+    out.line(heading(")", &parts));
+}
+
+/// The robot's side, if it sends any.
+pub fn for_robot(out: &mut Source, groups: &[Group<'_>]) {
+    let parts = parts(groups, "Streamer", |it| it.has_robot_streams());
+    if parts.is_empty() {
+        return;
+    }
+    out.blank();
+    out.docs(&both(
+        "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
+        "Sends the robot's streams: one method each, which gives how many data connections took it.",
+    ));
+    wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
+    out.line(heading(")", &parts));
+}
+
+const DATA: &str = "data: DataConnection";
+
+const DATA_DOCS: &str =
+    "/** 数据连接。The data connection: its state, and frames that nobody has subscribed to. */";
+
+/// What the robot's reports and streams go through.
+pub const SERVER: &str = "server: Server";
+
+/// What is said of it.
+pub const SERVER_DOCS: &str = "/** 由它发送。What sends them. */";
+
+/// The streams of a group.
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    if group.streams.is_empty() {
+        return;
+    }
+    out.blank();
+    out.docs(&group.docs("Streams"));
+    out.block(
+        format!("public interface {}", group.part("Streams")),
+        |out| {
+            out.line(DATA_DOCS);
+            out.line(format!("public val {DATA}"));
+            for stream in &group.streams {
+                app(out, context, stream);
+            }
+        },
+    );
+    if !group.has_robot_streams() {
+        return;
+    }
+    out.blank();
+    out.docs(&group.docs("Streamer"));
+    out.block(
+        format!("public interface {}", group.part("Streamer")),
+        |out| {
+            out.line(SERVER_DOCS);
+            out.line(format!("public val {SERVER}"));
+            let sent = group.streams.iter();
+            for stream in sent.filter(|it| it.sender == Side::Robot) {
+                robot(out, context, stream);
+            }
+        },
+    );
+}
+
+/// What a stream carries, as a type; `None` for raw bytes.
+pub fn content<'c>(context: &'c Context<'_>, stream: &Operation) -> Option<&'c str> {
+    Some(context.name_of(&stream.body(Direction::Request)?.ty))
+}
+
+/// The comment on a stream.
+fn stream_docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
+    let mut docs = facts::operation_docs(stream);
+    facts::operation_end(&STYLE, &mut docs, stream);
+    docs.paragraph(context.links(&stream.location, &page_of(stream)));
+    docs
+}
+
+fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
+    let (name, code) = (super::method_of(stream), &stream.code.spelling);
+    let carried = content(context, stream);
+    out.blank();
+    out.docs(&stream_docs(context, stream));
+    if stream.sender == Side::Robot {
+        let (ty, more) = carried.map_or(("ByteArray", String::new()), |ty| (ty, format!(", {ty}")));
+        let head = format!("public fun subscribe{name}(): Subscription<{ty}> =");
+        out.line(format!("{head} data.subscribe({code}{more})"));
+    } else {
+        let ty = carried.unwrap_or("ByteArray");
+        out.line("@JvmSynthetic");
+        out.line(format!(
+            "public suspend fun send{name}(id: Long, content: {ty}): Unit = data.send({code}, id, content)"
+        ));
+    }
+}
+
+fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
+    let (name, code) = (super::method_of(stream), &stream.code.spelling);
+    let ty = content(context, stream).unwrap_or("ByteArray");
+    out.blank();
+    out.docs(&stream_docs(context, stream));
+    out.line("@JvmSynthetic");
+    out.line(format!(
+        "public suspend fun send{name}(audience: Audience, id: Long, content: {ty}): Int ="
+    ));
+    out.line(format!(
+        "    server.sendStream(audience, {code}, id, content)"
+    ));
+}
