@@ -39,7 +39,7 @@ const LANGUAGES = {
     run('python3', ['-m', 'venv', venv])
     run(path.join(venv, 'bin/pip'), ['install', '--quiet', '--disable-pip-version-check', '--requirement', requirements])
     const packages = ['fc', 'fc_runtime']
-    run(path.join(venv, 'bin/pdoc'), ['--no-show-source', '--output-directory', folder, ...packages], {
+    run(path.join(venv, 'bin/python'), [path.join(here, 'packages.py'), '--no-show-source', '--output-directory', folder, ...packages], {
       PYTHONPATH: path.join(root, 'stubs/python/src'),
       PYTHONDONTWRITEBYTECODE: '1',
     })

@@ -76,7 +76,7 @@ class Package(unittest.TestCase):
             name = command.method_name
             if command.code is None:
                 continue
-            for method in (name, *(it for it in vars(fc.sync.Client) if it.startswith(f"follow_{name}"))):
+            for method in (name, *(it for it in dir(fc.sync.Client) if it.startswith(f"follow_{name}"))):
                 with self.subTest(method):
                     said = inspect.getdoc(getattr(fc.sync.Client, method)) or ""
                     title, *_ = (inspect.getdoc(getattr(fc.Client, name)) or "").splitlines()

@@ -95,8 +95,6 @@ pub fn boolean(value: bool) -> &'static str {
 /// Constants of the spec, and the types that they name.
 #[derive(Debug, Default)]
 pub struct Constants {
-    /// What stands before the name of a type.
-    pub prefix: &'static str,
     /// The types that have been named.
     pub types: BTreeSet<String>,
     /// Whether anything of the runtime has been named.
@@ -118,8 +116,7 @@ impl Constants {
             Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
             Expr::Id(ty, value) => {
                 self.types.insert((*ty).to_owned());
-                let name = [self.prefix, ty].concat();
-                return Code::call(&name, vec![self.value(value)]);
+                return Code::call(ty, vec![self.value(value)]);
             }
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item));
@@ -141,9 +138,9 @@ impl Constants {
     }
 
     fn named(&mut self, item: &Item<'_>) -> String {
-        let name = &item.ty.name;
-        self.types.insert(name.to_string());
-        [self.prefix, name].concat()
+        let name = item.ty.name.to_string();
+        self.types.insert(name.clone());
+        name
     }
 }
 

@@ -1,9 +1,9 @@
-//! The message types of one group: dataclasses, enums and choices.
+//! Message types: dataclasses, enums and choices.
 
 use super::enums::{enumeration, is_state};
-use super::homes::{Homes, Used};
+use super::homes::Used;
 use super::literal::{constant, literal, number, regex};
-use super::source::{Code, PYTHON, Python, assign_text};
+use super::source::{Code, Python, assign_text};
 use crate::emit::stub::about;
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::context::Context;
@@ -14,64 +14,60 @@ use crate::sample::{Profile, Samples};
 use crate::surface::expr::Expressions;
 use crate::surface::language::Case;
 use crate::surface::name::free;
-use crate::surface::package::{Item, Module, Shape, Spelled};
+use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Condition, Constraint, Direction, EnumRepr, Field, Operation, Type, TypeShape, Value, Variant,
     WireForm,
 };
 
-/// A module of message types.
-pub fn module(
-    context: &Context<'_>,
+/// Message types.
+pub fn types<'m>(
+    out: &mut Source,
+    used: &mut Used<'m>,
+    context: &'m Context<'_>,
     samples: &Samples<'_>,
-    homes: &Homes<'_>,
-    module: &Module<'_>,
-) -> String {
-    let mut used = Used::default();
-    let mut body = Source::new(&PYTHON);
-    let items = homes.items(module);
+    items: &[&'m Item<'_>],
+) {
     // Annotations of fields are read late, but not the constants of classes, which may be values of enums.
-    for item in &items {
+    for item in items {
         if let Shape::Enum(shape, values) = &item.shape {
             if !is_state(context, shape, item.ty.of) {
                 used.library("enum", "Enum");
             }
-            body.gap();
-            enumeration(&mut body, context, item, shape, values);
+            out.gap();
+            enumeration(out, context, item, shape, values);
         }
     }
-    for item in &items {
+    for item in items {
         if let Shape::Record(_, fields) = &item.shape {
-            body.gap();
-            structure(&mut body, &mut used, context, samples, item, fields);
-            if let Some((command, Direction::Request)) = item.body_of() {
-                errors(&mut body, context, command);
+            out.gap();
+            structure(out, used, context, samples, item, fields);
+            if let Some(command) = asks(item) {
+                errors(out, context, command);
             }
         }
     }
     // These are made of structs, where they stand.
-    for item in &items {
+    for item in items {
         if let Shape::Choice(_, variants) = &item.shape {
-            body.gap();
-            choice(&mut body, &mut used, context, item, variants);
+            out.gap();
+            choice(out, used, context, item, variants);
         }
     }
-
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&about(homes.members(module)));
-    used.imports(&mut out, context, homes, module);
-    out.blank();
-    out.append(&body);
-    out.finish()
 }
 
-/// What the groups of a file are.
-fn about<'m>(modules: &[&Module<'m>]) -> Docs<'m> {
-    let mut docs = Docs::default();
-    for module in modules {
-        about::group(&mut docs, module.group);
-    }
-    docs
+/// What message types are called, and the errors beside them.
+pub fn names<'n>(context: &'n Context<'_>, items: &[&'n Item<'_>]) -> Vec<&'n str> {
+    let errors = |item: &Item<'n>| context.package.error_type(asks(item)?);
+    let names = items.iter();
+    let names = names.flat_map(|item| std::iter::once(&*item.ty.name).chain(errors(item)));
+    names.collect()
+}
+
+/// The operation whose request an item is.
+fn asks<'m>(item: &Item<'m>) -> Option<&'m Operation> {
+    let (operation, side) = item.body_of()?;
+    (side == Direction::Request).then_some(operation)
 }
 
 fn structure<'m>(

@@ -1,7 +1,9 @@
-//! `operations.py`: commands, reports and streams as values, with all that the spec says of them.
+//! Commands, reports and streams as values, with all that the spec says of them.
 
-use super::literal::{Constants, boolean, literal};
-use super::source::{Code, PYTHON, Python};
+use super::homes::{Group, Piece};
+use super::literal::{boolean, constant as constant_of, literal};
+use super::protocol;
+use super::source::{Code, Python, tuple};
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::process::{set_off, state};
@@ -9,57 +11,58 @@ use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::Expressions;
 use crate::surface::language::Case;
+use crate::surface::name::free;
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
     StructRef, Type, TypeRef, Value,
 };
-use std::borrow::Cow;
 
-/// The file. Reports come first, for commands name them.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let operations = &context.model().operations;
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&Docs::said(&[
-        "每个操作及规范对它的说明。",
-        "Every operation, with all that the spec says of it.",
-    ]));
-    out.blank();
-    out.line("from __future__ import annotations");
-    out.blank();
-    if !operations.is_empty() {
-        out.line("from typing import Final");
-        out.blank();
-        out.line("import fc_runtime as rt");
-        out.blank();
-    }
-    if operations.iter().any(|it| it.bodies().next().is_some()) {
-        out.line("from . import messages");
-        out.blank();
-    }
-    for kind in [Kind::Report, Kind::Command, Kind::Stream] {
-        for operation in operations.iter().filter(|it| it.kind() == kind) {
-            let before = format!("{}: Final = ", constant(operation));
+/// The operations of these groups, as values. Reports come first, for commands name them.
+pub fn values(
+    out: &mut Source,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    groups: &[&Group<'_>],
+) {
+    out.gap();
+    for kind in KINDS {
+        let operations = groups.iter().flat_map(|group| &group.operations);
+        for operation in operations.filter(|it| it.kind() == kind) {
+            let before = format!("{}: Final = ", constant(context, operation));
             out.blank();
-            value(context, samples, operation).write(&mut out, &before, "");
+            value(context, samples, operation).write(out, &before, "");
             out.docstring(&Docs::of(&operation.title));
         }
     }
-    out.finish()
+    for group in groups {
+        for kind in KINDS {
+            let Some(name) = group.name(Piece::All(kind)) else {
+                continue;
+            };
+            let operations = group.operations.iter().filter(|it| it.kind() == kind);
+            let operations: Vec<String> = operations.map(|it| constant(context, it)).collect();
+            out.blank();
+            tuple(out, &format!("{name}: Final = "), &operations, "");
+        }
+    }
 }
 
-/// What the value of an operation is called.
-pub fn constant(operation: &Operation) -> Cow<'_, str> {
-    Case::Screaming.apply(&operation.name)
-}
+/// The kinds of operations, as they follow each other.
+const KINDS: [Kind; 3] = [Kind::Report, Kind::Command, Kind::Stream];
 
-/// The same from another file.
-pub fn qualified(operation: &Operation) -> String {
-    format!("operations.{}", constant(operation))
-}
-
-/// A message type from another file.
-pub fn message(context: &Context<'_>, ty: &TypeRef) -> String {
-    format!("messages.{}", context.name_of(ty))
+/// What the value of an operation is called: like it, unless a type beside it is called that, or what the file imports.
+pub fn constant(context: &Context<'_>, operation: &Operation) -> String {
+    let screaming = |operation: &Operation| Case::Screaming.apply(&operation.name).into_owned();
+    let name = screaming(operation);
+    let longer = format!("{name}_{}", Case::Screaming.apply(operation.kind().name()));
+    let protocol = protocol::name(context);
+    free(&[&name, &longer], |wish| {
+        let mut others = context.model().operations.iter();
+        context.package.has_type(wish)
+            || wish == protocol
+            || wish == "ABC"
+            || (wish != name && others.any(|it| screaming(it) == wish))
+    })
 }
 
 /// Seconds.
@@ -86,8 +89,8 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
     set("zh", literal(&operation.title.zh).into());
     set("en", literal(&operation.title.en).into());
     if let Some(messages) = operation.messages() {
-        set("request", message(context, &messages.request.ty).into());
-        set("response", message(context, &messages.response.ty).into());
+        set("request", context.name_of(&messages.request.ty).into());
+        set("response", context.name_of(&messages.response.ty).into());
     }
     let word = match &operation.exchange {
         Exchange::Command {
@@ -99,7 +102,7 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
                 set("preconditions", preconditions(context, samples, accepted));
             }
             if let Some(error) = context.package.error_type(operation) {
-                set("errors", format!("messages.{error}").into());
+                set("errors", error.into());
             }
             let reports = sets_off(context, operation);
             if !reports.is_empty() {
@@ -132,8 +135,8 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
         }
         Exchange::Stream(stream) => {
             let body = operation.body(Direction::Request);
-            let body = body.map(|body| message(context, &body.ty));
-            set("body", body.unwrap_or_else(|| "bytes".to_owned()).into());
+            let body = body.map_or("bytes", |body| context.name_of(&body.ty));
+            set("body", body.into());
             set(
                 "from_robot",
                 boolean(operation.sender == Side::Robot).into(),
@@ -185,18 +188,14 @@ fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accept
 
 fn states(context: &Context<'_>, samples: &Samples<'_>, set: &StateSet) -> Code {
     let expressions = Expressions::new(&context.package, samples);
-    let mut constants = Constants {
-        prefix: "messages.",
-        ..Constants::default()
-    };
     let ty = Type::Named(set.ty.clone());
     let values = set.values.iter().map(|wire| {
         let value = expressions.value(&ty, &Value::from(wire));
-        constants.value(&value)
+        constant_of(&value)
     });
     let values = Code::List("{", values.collect(), "}");
     let values = Code::call("frozenset", vec![values]);
-    let of = message(context, &set.ty).into();
+    let of = context.name_of(&set.ty).into();
     Code::call("rt.States", vec![of, values])
 }
 
@@ -216,7 +215,7 @@ fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
             Code::call("rt.Tie", items)
         });
         let ties: Vec<Code> = ties.collect();
-        let mut items = vec![Code::named("report", &*constant(report))];
+        let mut items = vec![Code::named("report", constant(context, report))];
         if !ties.is_empty() {
             items.push(Code::named("ties", Code::tuple(ties)));
         }

@@ -1,13 +1,15 @@
 //! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
 
+use super::homes::{Homes, Piece};
 use super::literal::{bytes, literal};
 use super::messages::annotation;
-use super::operations::{ack, qualified, seconds};
-use super::source::{Code, PYTHON, Python};
+use super::operations::{ack, seconds};
+use super::source::{Code, PYTHON, Python, tuple};
 use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::digits::grouped;
 use crate::emit::stub::docs::Docs;
+use crate::emit::stub::ranges::pass_through;
 use crate::emit::stub::source::Source;
 use crate::emit::stub::style::Comment;
 use crate::surface::language::Case;
@@ -27,6 +29,13 @@ const COMMENT: Comment = Comment {
     ..PYTHON.comment
 };
 
+/// Its operations, by kind.
+const KINDS: [(&str, Kind); 3] = [
+    ("commands", Kind::Command),
+    ("reports", Kind::Report),
+    ("streams", Kind::Stream),
+];
+
 /// What the protocol's value is called.
 pub fn name(context: &Context<'_>) -> String {
     let wish = Case::Screaming.apply(&context.model().protocol.id);
@@ -34,7 +43,7 @@ pub fn name(context: &Context<'_>) -> String {
 }
 
 /// The file.
-pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
+pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&about::WIRE));
@@ -51,10 +60,8 @@ pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
     );
     out.blank();
     out.line("import fc_runtime as rt");
-    if !context.model().operations.is_empty() {
-        out.blank();
-        out.line("from . import operations");
-    }
+    out.blank();
+    homes.import(&mut out, &KINDS.map(|(_, kind)| Piece::All(kind)));
     out.gap();
     results(&mut out, context);
     out.gap();
@@ -74,7 +81,7 @@ pub fn file(context: &Context<'_>, ranges: &[Code]) -> String {
         &package.response_envelope,
     );
     out.gap();
-    protocol(&mut out, context, ranges);
+    protocol(&mut out, context, homes);
     out.finish()
 }
 
@@ -131,7 +138,7 @@ fn roles(fields: &[Spelled<'_, EnvelopeField>]) -> Code {
     Code::List("{", roles.collect(), "}")
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
+fn protocol(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
     let model = context.model();
     let frame = &model.frame;
     let kinds = &frame.kinds;
@@ -193,24 +200,12 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
             });
             set(out, "results", Code::call("rt.Results", results.collect()));
             set(out, "defaults", defaults(context));
-            for (name, kind) in [
-                ("commands", Kind::Command),
-                ("reports", Kind::Report),
-                ("streams", Kind::Stream),
-            ] {
-                let these = model.operations.iter().filter(|it| it.kind() == kind);
-                let these: Vec<String> = these.map(qualified).collect();
-                if these.is_empty() {
-                    out.line(format!("{name}=(),"));
-                } else {
-                    out.lines(&format!("{name}=("), &these, "),");
-                }
+            for (name, kind) in KINDS {
+                let groups = homes.pieces(Piece::All(kind)).into_iter();
+                let groups: Vec<String> = groups.map(|it| format!("*{it}")).collect();
+                tuple(out, &format!("{name}="), &groups, ",");
             }
-            set(
-                out,
-                RangeUse::PassThrough.name(),
-                Code::tuple(ranges.to_vec()),
-            );
+            set(out, RangeUse::PassThrough.name(), ranges(context));
         },
     );
     let mut docs = Docs::of(&model.protocol.title);
@@ -220,6 +215,19 @@ fn protocol(out: &mut Source, context: &Context<'_>, ranges: &[Code]) {
         docs.paragraph(page);
     }
     out.docstring(&docs);
+}
+
+/// The codes that are passed through.
+fn ranges(context: &Context<'_>) -> Code {
+    let ranges = pass_through(context).into_iter().map(|(name, range)| {
+        let items = vec![
+            Code::named("first", range.first_spelling.as_str()),
+            Code::named("last", range.last_spelling.as_str()),
+            Code::named("method", format!("\"{name}\"")),
+        ];
+        Code::call("rt.PassThrough", items)
+    });
+    Code::tuple(ranges.collect())
 }
 
 fn header_field(field: &Spelled<'_, HeaderField>) -> Code {

@@ -1,10 +1,10 @@
-//! `__init__.py`, `call.py` and `tables.py`: what the package shows at its root, its tool, its constants.
+//! What the package shows at its root and of all groups, its tool, its constants, the types of ids.
 
-use super::homes::Homes;
+use super::homes::{Homes, Part};
 use super::literal::Constants;
 use super::messages::annotation;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, exported, method};
+use super::source::{Code, PYTHON, Python, exported, method, sorted};
 use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
@@ -13,22 +13,31 @@ use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
 use fc_spec::model::Type;
-use std::collections::BTreeMap;
+
+/// `__all__` where it is made of others, for those who run the package.
+fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
+    let comment = "# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.";
+    out.line(comment);
+    out.suite("if not TYPE_CHECKING", all);
+}
+
+/// The head of a file that shows what others have.
+fn head(docs: &Docs<'_>) -> Source {
+    let mut out = Source::new(&PYTHON);
+    out.docstring(docs);
+    out.line("\nfrom __future__ import annotations\n\nfrom typing import TYPE_CHECKING");
+    out.blank();
+    out
+}
 
 /// `__init__.py`.
-pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
     let model = context.model();
-    let mut out = Source::new(&PYTHON);
     let mut docs = Docs::of(&model.protocol.title);
     docs.text(&model.protocol.about);
-    out.docstring(&docs);
-    out.blank();
-    out.line("from __future__ import annotations");
-    out.blank();
+    let mut out = head(&docs);
     let name = protocol::name(context);
-    let types = homes.modules().flat_map(|it| homes.names(context, it));
-    let types = types.chain(package.ids.iter().map(|id| &*id.name));
     let streams = |name| (!package.streams.is_empty()).then_some(name);
     let client = ["AnyReport", "Client"]
         .into_iter()
@@ -37,56 +46,91 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let robot = robot.into_iter().chain(streams("Streamer"));
     let tables = (!package.tables.is_empty()).then_some("tables");
     let modules = ["messages", "operations", "sync"].into_iter().chain(tables);
+    let protocol = vec![&*name, "RequestEnvelope", "ResponseEnvelope", "ResultCode"];
     let imports = [
         (".", modules.collect()),
         (".client", client.collect()),
-        (".messages", types.collect()),
-        (
-            ".protocol",
-            vec![&name, "RequestEnvelope", "ResponseEnvelope", "ResultCode"],
-        ),
-        (".robot", robot.collect()),
+        (".groups", vec!["*"]),
+        (".protocol", protocol),
+        (".robot", robot.collect::<Vec<_>>()),
     ];
     for (module, names) in &imports {
-        if *module == ".messages" && !names.is_empty() {
-            out.import_each(module, names);
-        } else {
-            out.import_from(module, names);
+        for name in names {
+            // To type checkers a module shows what it imports under its own name.
+            let its_own = if *name == "*" {
+                ""
+            } else {
+                &format!(" as {name}")
+            };
+            out.line(format!("from {module} import {name}{its_own}"));
         }
     }
     out.blank();
-    let names: Vec<&str> = imports
-        .iter()
-        .flat_map(|(_, names)| names)
-        .copied()
-        .collect();
-    exported(&mut out, &names);
+    let names = imports.iter().flat_map(|(_, names)| names).copied();
+    let names: Vec<&str> = names.filter(|name| *name != "*").collect();
+    let names = sorted(&names, str::to_owned).into_iter();
+    let names = names.map(|name| format!("\"{name}\""));
+    let names = names.chain(["*messages.__all__".to_owned()]);
+    hidden(&mut out, |out| {
+        out.lines("__all__ = [", &names.collect::<Vec<_>>(), "]");
+    });
     out.finish()
 }
 
-/// `messages/__init__.py`.
-pub fn messages(context: &Context<'_>, homes: &Homes<'_>) -> String {
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&Docs::said(&[
-        "全部报文类型，按指令组分模块。",
-        "All message types; each group has a module of its own.",
+/// `groups/__init__.py`.
+pub fn groups(homes: &Homes<'_>, ids: bool) -> String {
+    let mut out = head(&Docs::said(&[
+        "各指令组，一组一个模块：报文类型、操作，以及它在两端的类中的部分。",
+        "The groups, each with a module of its own: its message types, its operations, and its part of the classes of both sides.",
     ]));
-    out.blank();
-    out.line("from __future__ import annotations");
-    out.blank();
-    let modules = homes.modules();
-    let modules = modules.map(|it| (it.name.to_string(), homes.names(context, it)));
-    let mut modules: BTreeMap<String, Vec<&str>> = modules.collect();
-    let ids = &context.package.ids;
-    if !ids.is_empty() {
-        modules.insert(homes.ids(), ids.iter().map(|id| &*id.name).collect());
+    let mut modules: Vec<&str> = homes.files().map(Part::module).collect();
+    if ids {
+        modules.push(homes.ids());
     }
-    for (module, names) in &modules {
-        out.import_each(&format!(".{module}"), names);
+    modules.sort_unstable();
+    out.import_from(".", &modules);
+    for module in &modules {
+        out.line(format!("from .{module} import *"));
     }
-    let all: Vec<&str> = modules.into_values().flatten().collect();
     out.blank();
-    exported(&mut out, &all);
+    hidden(&mut out, |out| {
+        let all = modules.iter().map(|it| format!("*{it}.__all__"));
+        out.lines("__all__ = [", &all.collect::<Vec<_>>(), "]");
+    });
+    out.finish()
+}
+
+/// `messages.py`.
+pub fn messages() -> String {
+    let mut out = head(&Docs::said(&[
+        "全部报文类型，不分组。",
+        "All message types, whatever their group.",
+    ]));
+    out.line("from . import groups, operations\nfrom .groups import *");
+    out.blank();
+    let is_message = "if name not in operations.__all__";
+    hidden(&mut out, |out| {
+        out.line(format!(
+            "__all__ = [name for name in groups.__all__ {is_message}]"
+        ));
+    });
+    out.finish()
+}
+
+/// `operations.py`.
+pub fn operations() -> String {
+    let mut out = head(&Docs::said(&[
+        "每个操作及规范对它的说明，不分组。",
+        "Every operation, with all that the spec says of it, whatever its group.",
+    ]));
+    out.line("import fc_runtime as rt\n\nfrom . import groups\nfrom .groups import *");
+    out.blank();
+    let is_operation = "if isinstance(getattr(groups, name), rt.Command | rt.Report | rt.Stream)";
+    hidden(&mut out, |out| {
+        out.line(format!(
+            "__all__ = [name for name in groups.__all__ {is_operation}]"
+        ));
+    });
     out.finish()
 }
 
@@ -107,6 +151,9 @@ pub fn ids(context: &Context<'_>) -> String {
         out.blank();
         out.line("import fc_runtime as rt");
     }
+    out.blank();
+    let names = context.package.ids.iter().map(|id| &*id.name);
+    exported(&mut out, &names.collect::<Vec<_>>());
     for (id, held) in ids {
         let title = &id.title;
         let mut docs = Docs::default();
@@ -180,7 +227,7 @@ pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
         out.line("import fc_runtime as rt");
     }
     out.blank();
-    out.import_from(".messages", &types);
+    out.import_from(".groups", &types);
     out.blank();
     out.append(&body);
     out.finish()

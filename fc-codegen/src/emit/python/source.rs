@@ -258,6 +258,16 @@ pub fn method(
     out.enclose("", "", body);
 }
 
+/// `before(a, b)behind`, each item on a line of its own: one more changes none of them. The formatter never opens the
+/// brackets of one alone.
+pub fn tuple(out: &mut Source, before: &str, items: &[String], behind: &str) {
+    match items {
+        [] => out.line([before, "()", behind].concat()),
+        [only] => out.line([before, "(", only, ",)", behind].concat()),
+        items => out.lines(&[before, "("].concat(), items, &[")", behind].concat()),
+    }
+}
+
 /// `__all__`, in the linter's order.
 pub fn exported(out: &mut Source, names: &[&str]) {
     let names = sorted(names, str::to_owned);
@@ -266,7 +276,7 @@ pub fn exported(out: &mut Source, names: &[&str]) {
 }
 
 /// Names as the linter sorts them: constants, then classes, then the others, numbers in them by their value.
-fn sorted<'n>(names: &[&'n str], folded: fn(&str) -> String) -> Vec<&'n str> {
+pub fn sorted<'n>(names: &[&'n str], folded: fn(&str) -> String) -> Vec<&'n str> {
     let keyed = names.iter().map(|name| ((kind(name), folded(name)), *name));
     let keyed: BTreeMap<(u8, String), &str> = keyed.collect();
     let mut keyed: Vec<_> = keyed.into_iter().collect();

@@ -10,7 +10,20 @@ from typing import Annotated, Final
 
 import fc_runtime as rt
 
-from . import operations
+from .groups.building import BUILDING_COMMANDS
+from .groups.cell import CELL_COMMANDS
+from .groups.dispatch import DISPATCH_COMMANDS
+from .groups.identity import IDENTITY_COMMANDS
+from .groups.laser import LASER_COMMANDS
+from .groups.map import MAP_COMMANDS, MAP_REPORTS
+from .groups.recharge import RECHARGE_COMMANDS, RECHARGE_REPORTS
+from .groups.settings import SETTINGS_COMMANDS
+from .groups.standby import STANDBY_COMMANDS
+from .groups.station import STATION_COMMANDS, STATION_REPORTS
+from .groups.status import STATUS_COMMANDS, STATUS_REPORTS
+from .groups.task import TASK_COMMANDS, TASK_REPORTS
+from .groups.unnamed import UNNAMED_COMMANDS
+from .groups.upper_body import UPPER_BODY_COMMANDS
 
 
 class ResultCode(rt.Result):
@@ -182,58 +195,27 @@ FC: Final = rt.Protocol(
         ),
     ),
     commands=(
-        operations.LIST_IOT_DEVICES,
-        operations.GET_FLOORS,
-        operations.GET_CELL_CONFIG,
-        operations.SET_CELL_CONFIG,
-        operations.UPLOAD_CONTENDED_RESOURCES,
-        operations.CHECK_CONDITION_0333,
-        operations.GET_ROBOT_SN,
-        operations.GET_FIRMWARE_VERSIONS,
-        operations.GET_LASER_SCAN,
-        operations.SET_TARGET_MAP,
-        operations.GET_MAP_IMAGE,
-        operations.LIST_MAPS,
-        operations.GET_MAP_INFO,
-        operations.SAVE_MAP,
-        operations.DOWNLOAD_MAPS,
-        operations.UPLOAD_MAPS,
-        operations.GET_MAP_SYNC_PROGRESS,
-        operations.START_RECHARGE,
-        operations.CANCEL_RECHARGE,
-        operations.GET_RECHARGE_STATUS,
-        operations.SWITCH_0A08,
-        operations.SET_VOICE_REMINDER,
-        operations.SWITCH_ENVIRONMENT,
-        operations.SET_STANDBY_POSITION,
-        operations.GET_STANDBY_POSITION,
-        operations.SET_POSITIONS_0313,
-        operations.GET_POSITIONS_0314,
-        operations.GET_STATION,
-        operations.UPLOAD_MAP_STATIONS,
-        operations.ADD_STATION,
-        operations.DELETE_STATION,
-        operations.RENAME_STATION,
-        operations.LIST_STATIONS,
-        operations.GET_CURRENT_STATION,
-        operations.LIST_FAULTS,
-        operations.GET_SELF_CHECK,
-        operations.CREATE_TASK,
-        operations.EXECUTE_TASK,
-        operations.GET_TASK_STATUS,
-        operations.GET_TASK_HISTORY,
-        operations.UNNAMED_0309,
-        operations.UNNAMED_0460,
-        operations.GET_UPPER_BODY_STATUS,
+        *BUILDING_COMMANDS,
+        *CELL_COMMANDS,
+        *DISPATCH_COMMANDS,
+        *IDENTITY_COMMANDS,
+        *LASER_COMMANDS,
+        *MAP_COMMANDS,
+        *RECHARGE_COMMANDS,
+        *SETTINGS_COMMANDS,
+        *STANDBY_COMMANDS,
+        *STATION_COMMANDS,
+        *STATUS_COMMANDS,
+        *TASK_COMMANDS,
+        *UNNAMED_COMMANDS,
+        *UPPER_BODY_COMMANDS,
     ),
     reports=(
-        operations.MAP_SYNC_PROGRESS,
-        operations.RECHARGE_PROGRESS,
-        operations.STATION_REACHED,
-        operations.ROBOT_STATUS,
-        operations.OBSTACLE_ANNOUNCEMENT,
-        operations.TARGET_REACHED,
-        operations.TASK_PROGRESS,
+        *MAP_REPORTS,
+        *RECHARGE_REPORTS,
+        *STATION_REPORTS,
+        *STATUS_REPORTS,
+        *TASK_REPORTS,
     ),
     streams=(),
     pass_through=(rt.PassThrough(first=0x0200, last=0x0300, method="pass_through"),),

@@ -5,7 +5,7 @@ Tables of constants that the spec publishes.
 
 from __future__ import annotations
 
-from .messages import CellLayout, CellLocation, CellType, LayoutCell
+from .groups import CellLayout, CellLocation, CellType, LayoutCell
 
 
 def cell_layouts() -> list[CellLayout]:

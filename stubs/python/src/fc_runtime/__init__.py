@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from .blocking import SyncClient, SyncFollowing, SyncReports
+from .blocking import SyncCalls, SyncClient, SyncFollowing, SyncReports
 from .calls import (
     BusyError,
     CallError,
@@ -21,7 +21,7 @@ from .calls import (
     Refusal,
     RefusedError,
 )
-from .client import Client, Reports
+from .client import Calls, Client, Reports
 from .conditions import ConditionError, ConditionErrorKind
 from .config import Backoff, ClientConfig, ServerConfig
 from .connection import Connection, RawResponse
@@ -132,6 +132,7 @@ __all__ = [
     "Cadence",
     "CallError",
     "CallTimeoutError",
+    "Calls",
     "Client",
     "ClientConfig",
     "ClientCounters",
@@ -231,6 +232,7 @@ __all__ = [
     "Streamer",
     "Streams",
     "Subscription",
+    "SyncCalls",
     "SyncClient",
     "SyncFollowing",
     "SyncReports",

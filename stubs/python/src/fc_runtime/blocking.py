@@ -73,8 +73,8 @@ class _Thread:
         self._thread.join()
 
 
-class SyncClient(Generic[A]):
-    """A robot as seen from the app. Its subclasses have one method per command; `A` is any of their reports."""
+class SyncCalls:
+    """What calls go through: a client without its reports. Its subclasses have one method per command."""
 
     protocol: ClassVar[Protocol]
     """The protocol that it speaks."""
@@ -88,11 +88,6 @@ class SyncClient(Generic[A]):
             self._thread.end()
             raise
 
-    @classmethod
-    def connect(cls: type[C], config: ClientConfig | None = None) -> C:
-        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
-        return cls(config)
-
     async def _connect(self, config: ClientConfig | None) -> Connection:
         connection = Connection(self.protocol, config)
         await connection.connect()
@@ -101,6 +96,32 @@ class SyncClient(Generic[A]):
     def wait(self, work: Coroutine[Any, Any, T]) -> T:
         """Wait for something that has `async` methods alone, such as `connection.closed()` and the data port."""
         return self._thread.wait(work)
+
+    def _call(self, command: Command[Q, R], request: Message | None, timeout: float | None, repeat: bool | None) -> R:
+        return self._thread.wait(self.connection.call(command, request, timeout=timeout, repeat=repeat))
+
+    def _follow(
+        self,
+        command: Command[Message, R],
+        report: Report[P],
+        request: Message | None,
+        timeout: float | None,
+        repeat: bool | None,
+    ) -> SyncFollowing[R, P]:
+        async def follow() -> Following[R, P]:
+            followable: Followable[R, P] = Followable(self.connection, command, request, timeout, repeat)
+            return await followable.follow(report)
+
+        return SyncFollowing(self, self._thread.wait(follow()))
+
+
+class SyncClient(SyncCalls, Generic[A]):
+    """A robot as seen from the app. Its subclasses have one method per command; `A` is any of their reports."""
+
+    @classmethod
+    def connect(cls: type[C], config: ClientConfig | None = None) -> C:
+        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
+        return cls(config)
 
     @property
     def state(self) -> ConnectionState:
@@ -127,23 +148,6 @@ class SyncClient(Generic[A]):
         # Those who wait are told before the thread ends.
         await self.connection.gone()
 
-    def _call(self, command: Command[Q, R], request: Message | None, timeout: float | None, repeat: bool | None) -> R:
-        return self._thread.wait(self.connection.call(command, request, timeout=timeout, repeat=repeat))
-
-    def _follow(
-        self,
-        command: Command[Message, R],
-        report: Report[P],
-        request: Message | None,
-        timeout: float | None,
-        repeat: bool | None,
-    ) -> SyncFollowing[R, P]:
-        async def follow() -> Following[R, P]:
-            followable: Followable[R, P] = Followable(self.connection, command, request, timeout, repeat)
-            return await followable.follow(report)
-
-        return SyncFollowing(self, self._thread.wait(follow()))
-
     def __enter__(self: C) -> C:
         """Itself."""
         return self
@@ -158,7 +162,7 @@ class SyncClient(Generic[A]):
 class SyncReports(Generic[A]):
     """Reports in the order in which they came; go through them with `for`."""
 
-    def __init__(self, client: SyncClient[Any]) -> None:
+    def __init__(self, client: SyncCalls) -> None:
         """Of a client, from now on."""
         self._client: Final = client
         self._reports: Final[client_module.Reports[A]] = client.wait(self._open())
@@ -201,7 +205,7 @@ class SyncReports(Generic[A]):
 class SyncFollowing(Generic[R, P]):
     """A command that has been answered, and the reports that it sets off; go through it with `for`."""
 
-    def __init__(self, client: SyncClient[Any], following: Following[R, P]) -> None:
+    def __init__(self, client: SyncCalls, following: Following[R, P]) -> None:
         """Made by a client's method."""
         self._client: Final = client
         self._following: Final = following

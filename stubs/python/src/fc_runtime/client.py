@@ -27,16 +27,32 @@ R = TypeVar("R", bound="Message")
 P = TypeVar("P", bound="Message")
 
 
-class Client(Generic[A]):
+class Calls:
+    """What calls go through: a client without its reports. Its subclasses have one method per command."""
+
+    def __init__(self, connection: Connection) -> None:
+        """Over a connection that there is; see `Client.connect` and `Client.connect_lazy`."""
+        self.connection: Final = connection
+        """The underlying connection: raw commands."""
+
+    def _followable(
+        self,
+        command: Command[Message, R],
+        *reports: Report[P],
+        request: Message | None,
+        timeout: float | None,
+        repeat: bool | None,
+    ) -> Followable[R, P]:
+        """A call of a command that sets these reports off."""
+        assert {one.name for one in reports} == {one.report.name for one in command.sets_off}
+        return Followable(self.connection, command, request, timeout, repeat)
+
+
+class Client(Calls, Generic[A]):
     """A robot as seen from the app. Its subclasses have one method per command; `A` is any of their reports."""
 
     protocol: ClassVar[Protocol]
     """The protocol that it speaks."""
-
-    def __init__(self, connection: Connection) -> None:
-        """Over a connection that there is; see `connect` and `connect_lazy`."""
-        self.connection: Final = connection
-        """The underlying connection: raw commands."""
 
     @classmethod
     def connect(cls: type[C], config: ClientConfig | None = None) -> Connect[C]:
@@ -85,18 +101,6 @@ class Client(Generic[A]):
     def data(self) -> DataConnection:
         """A connection to the data port: made in the background, made again after a loss, as long as this one."""
         return DataConnection(self.connection)
-
-    def _followable(
-        self,
-        command: Command[Message, R],
-        *reports: Report[P],
-        request: Message | None,
-        timeout: float | None,
-        repeat: bool | None,
-    ) -> Followable[R, P]:
-        """A call of a command that sets these reports off."""
-        assert {one.name for one in reports} == {one.report.name for one in command.sets_off}
-        return Followable(self.connection, command, request, timeout, repeat)
 
     async def __aenter__(self: C) -> C:
         """Itself."""

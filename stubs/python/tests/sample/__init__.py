@@ -2,48 +2,42 @@
 
 from __future__ import annotations
 
-from . import operations, sync
-from .client import AnyReport, Client, Streams
-from .messages import (
-    DockError,
-    DockId,
-    Docking,
-    DockingAck,
-    DockRequest,
-    DockResponse,
-    GetBatteryRequest,
-    GetBatteryResponse,
-    Phase,
-    Scan,
-    Unit,
-)
-from .protocol import SAMPLE, RequestEnvelope, ResponseEnvelope, ResultCode
-from .robot import ExampleRobot, PartialRobot, Reporter, Robot, Streamer
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "SAMPLE",
-    "AnyReport",
-    "Client",
-    "DockError",
-    "DockId",
-    "DockRequest",
-    "DockResponse",
-    "Docking",
-    "DockingAck",
-    "ExampleRobot",
-    "GetBatteryRequest",
-    "GetBatteryResponse",
-    "PartialRobot",
-    "Phase",
-    "Reporter",
-    "RequestEnvelope",
-    "ResponseEnvelope",
-    "ResultCode",
-    "Robot",
-    "Scan",
-    "Streamer",
-    "Streams",
-    "Unit",
-    "operations",
-    "sync",
-]
+from . import messages as messages
+from . import operations as operations
+from . import sync as sync
+from .client import AnyReport as AnyReport
+from .client import Client as Client
+from .client import Streams as Streams
+from .groups import *
+from .protocol import SAMPLE as SAMPLE
+from .protocol import RequestEnvelope as RequestEnvelope
+from .protocol import ResponseEnvelope as ResponseEnvelope
+from .protocol import ResultCode as ResultCode
+from .robot import ExampleRobot as ExampleRobot
+from .robot import PartialRobot as PartialRobot
+from .robot import Reporter as Reporter
+from .robot import Robot as Robot
+from .robot import Streamer as Streamer
+
+# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.
+if not TYPE_CHECKING:
+    __all__ = [
+        "SAMPLE",
+        "AnyReport",
+        "Client",
+        "ExampleRobot",
+        "PartialRobot",
+        "Reporter",
+        "RequestEnvelope",
+        "ResponseEnvelope",
+        "ResultCode",
+        "Robot",
+        "Streamer",
+        "Streams",
+        "messages",
+        "operations",
+        "sync",
+        *messages.__all__,
+    ]

@@ -7,7 +7,7 @@ from typing import Annotated, Final
 
 import fc_runtime as rt
 
-from . import operations
+from .groups.battery import BATTERY_COMMANDS, BATTERY_REPORTS, BATTERY_STREAMS
 
 
 class ResultCode(rt.Result):
@@ -91,9 +91,9 @@ SAMPLE: Final = rt.Protocol(
             connections=64,
         ),
     ),
-    commands=(operations.GET_BATTERY, operations.DOCK),
-    reports=(operations.DOCKING,),
-    streams=(operations.SCAN, operations.FIRMWARE),
+    commands=(*BATTERY_COMMANDS,),
+    reports=(*BATTERY_REPORTS,),
+    streams=(*BATTERY_STREAMS,),
     pass_through=(rt.PassThrough(first=0x0500, last=0x05FF, method="pass_through"),),
 )
 """协议。The protocol."""

@@ -10,11 +10,39 @@ command to cancel or pause a task.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Final, TypeAlias
 
 import fc_runtime as rt
+
+__all__ = [
+    "CREATE_TASK",
+    "EXECUTE_TASK",
+    "GET_TASK_HISTORY",
+    "GET_TASK_STATUS",
+    "OBSTACLE_ANNOUNCEMENT",
+    "TARGET_REACHED",
+    "TASK_PROGRESS",
+    "CreateTaskRequest",
+    "CreateTaskResponse",
+    "ExecuteTaskRequest",
+    "ExecuteTaskResponse",
+    "GetTaskHistoryRequest",
+    "GetTaskHistoryResponse",
+    "GetTaskStatusRequest",
+    "GetTaskStatusResponse",
+    "ObstacleAnnouncement",
+    "ObstacleAnnouncementAck",
+    "TargetReached",
+    "TargetReachedAck",
+    "TaskProcess",
+    "TaskProgress",
+    "TaskProgressAck",
+    "TaskStation",
+    "TaskStatus",
+]
 
 
 @rt.wire_enum("u8")
@@ -518,3 +546,316 @@ class TaskStation(rt.Message):
 
     extra: rt.Extra = field(default_factory=rt.Extra)
     """其他键，原样保留。Other keys, kept unchanged."""
+
+
+OBSTACLE_ANNOUNCEMENT: Final = rt.Report(
+    name="obstacle_announcement",
+    code=0x0341,
+    zh="遇障语音播报",
+    en="Voice announcement of an obstacle",
+    request=ObstacleAnnouncement,
+    response=ObstacleAnnouncementAck,
+    since="2023-05",
+    docs="reference/reports/obstacle_announcement.md",
+    spec="spec/commands/task.yaml",
+)
+"""遇障语音播报
+Voice announcement of an obstacle
+"""
+
+TARGET_REACHED: Final = rt.Report(
+    name="target_reached",
+    code=0x0340,
+    zh="到达目标点通知上报",
+    en="Target reached",
+    request=TargetReached,
+    response=TargetReachedAck,
+    since="2023-05",
+    docs="reference/reports/target_reached.md",
+    spec="spec/commands/task.yaml",
+)
+"""到达目标点通知上报
+Target reached
+"""
+
+TASK_PROGRESS: Final = rt.Report(
+    name="task_progress",
+    code=0x0345,
+    zh="上报机器人任务进度",
+    en="Task progress",
+    request=TaskProgress,
+    response=TaskProgressAck,
+    since="2024-01-29",
+    docs="reference/reports/task_progress.md",
+    spec="spec/commands/task.yaml",
+)
+"""上报机器人任务进度
+Task progress
+"""
+
+CREATE_TASK: Final = rt.Command(
+    name="create_task",
+    code=0x0350,
+    zh="创建巡游/送物任务",
+    en="Create a patrol or delivery task",
+    request=CreateTaskRequest,
+    response=CreateTaskResponse,
+    effect=rt.Effect.UNKNOWN,
+    since="2023-10",
+    docs="reference/commands/create_task.md",
+    spec="spec/commands/task.yaml",
+)
+"""创建巡游/送物任务
+Create a patrol or delivery task
+"""
+
+EXECUTE_TASK: Final = rt.Command(
+    name="execute_task",
+    code=None,
+    zh="执行任务",
+    en="Execute a task",
+    request=ExecuteTaskRequest,
+    response=ExecuteTaskResponse,
+    effect=rt.Effect.MOTION,
+    since="2023-10",
+    docs="reference/commands/execute_task.md",
+    spec="spec/commands/task.yaml",
+)
+"""执行任务
+Execute a task
+"""
+
+GET_TASK_STATUS: Final = rt.Command(
+    name="get_task_status",
+    code=0x0353,
+    zh="获取任务状态",
+    en="Get a task's status",
+    request=GetTaskStatusRequest,
+    response=GetTaskStatusResponse,
+    effect=rt.Effect.READ,
+    since="2023-05",
+    docs="reference/commands/get_task_status.md",
+    spec="spec/commands/task.yaml",
+)
+"""获取任务状态
+Get a task's status
+"""
+
+GET_TASK_HISTORY: Final = rt.Command(
+    name="get_task_history",
+    code=None,
+    zh="获取任务执行历史记录",
+    en="Get a task's execution history",
+    request=GetTaskHistoryRequest,
+    response=GetTaskHistoryResponse,
+    effect=rt.Effect.READ,
+    since="2023-05",
+    docs="reference/commands/get_task_history.md",
+    spec="spec/commands/task.yaml",
+)
+"""获取任务执行历史记录
+Get a task's execution history
+"""
+
+TASK_REPORTS: Final = (
+    OBSTACLE_ANNOUNCEMENT,
+    TARGET_REACHED,
+    TASK_PROGRESS,
+)
+
+TASK_COMMANDS: Final = (
+    CREATE_TASK,
+    EXECUTE_TASK,
+    GET_TASK_STATUS,
+    GET_TASK_HISTORY,
+)
+
+AnyTaskReport: TypeAlias = ObstacleAnnouncement | TargetReached | TaskProgress
+
+
+class TaskCalls(rt.Calls):
+    """`Client` 的一部分：`task` 组的指令。
+    The part of `Client` with the commands of the group `task`.
+    """
+
+    async def create_task(
+        self, request: CreateTaskRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> CreateTaskResponse:
+        """创建巡游/送物任务
+        Create a patrol or delivery task
+
+        任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令 `execute_task`，查询用
+        `get_task_status`、`get_task_history`。
+
+        There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and ID. Executing
+        it is a command of its own, `execute_task`; query it with `get_task_status` and `get_task_history`.
+
+        Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
+
+        - Spec: `commands.create_task` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/create_task.md`
+        """
+        return await self.connection.call(CREATE_TASK, request, timeout=timeout, repeat=repeat)
+
+    async def get_task_status(
+        self, request: GetTaskStatusRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetTaskStatusResponse:
+        """获取任务状态
+        Get a task's status
+
+        Code 0x0353. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/get_task_status.md`
+        """
+        return await self.connection.call(GET_TASK_STATUS, request, timeout=timeout, repeat=repeat)
+
+
+class TaskSyncCalls(rt.SyncCalls):
+    """`sync.Client` 的一部分：`task` 组的指令。
+    The part of `sync.Client` with the commands of the group `task`.
+    """
+
+    def create_task(
+        self, request: CreateTaskRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> CreateTaskResponse:
+        """创建巡游/送物任务
+        Create a patrol or delivery task
+
+        任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令 `execute_task`，查询用
+        `get_task_status`、`get_task_history`。
+
+        There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and ID. Executing
+        it is a command of its own, `execute_task`; query it with `get_task_status` and `get_task_history`.
+
+        Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
+
+        - Spec: `commands.create_task` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/create_task.md`
+        """
+        return self._call(CREATE_TASK, request, timeout, repeat)
+
+    def get_task_status(
+        self, request: GetTaskStatusRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetTaskStatusResponse:
+        """获取任务状态
+        Get a task's status
+
+        Code 0x0353. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/get_task_status.md`
+        """
+        return self._call(GET_TASK_STATUS, request, timeout, repeat)
+
+
+class TaskHandlers(ABC):
+    """`Robot` 的一部分：`task` 组的指令。
+    The part of `Robot` with the commands of the group `task`.
+    """
+
+    @abstractmethod
+    async def create_task(self, context: rt.Context, request: CreateTaskRequest) -> CreateTaskResponse:
+        """创建巡游/送物任务
+        Create a patrol or delivery task
+
+        任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令 `execute_task`，查询用
+        `get_task_status`、`get_task_history`。
+
+        There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and ID. Executing
+        it is a command of its own, `execute_task`; query it with `get_task_status` and `get_task_history`.
+
+        Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
+
+        - Spec: `commands.create_task` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/create_task.md`
+        """
+
+    @abstractmethod
+    async def get_task_status(self, context: rt.Context, request: GetTaskStatusRequest) -> GetTaskStatusResponse:
+        """获取任务状态
+        Get a task's status
+
+        Code 0x0353. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/commands/get_task_status.md`
+        """
+
+
+class TaskPartialHandlers(TaskHandlers):
+    """`PartialRobot` 的一部分：`task` 组的指令。
+    The part of `PartialRobot` with the commands of the group `task`.
+    """
+
+    @rt.left_out
+    async def create_task(self, context: rt.Context, request: CreateTaskRequest) -> CreateTaskResponse:
+        """See `Robot.create_task`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def get_task_status(self, context: rt.Context, request: GetTaskStatusRequest) -> GetTaskStatusResponse:
+        """See `Robot.get_task_status`."""
+        raise NotImplementedError
+
+
+class TaskReporter(rt.Reporter):
+    """`Reporter` 的一部分：`task` 组的上报。
+    The part of `Reporter` with the reports of the group `task`.
+    """
+
+    async def obstacle_announcement(
+        self, report: ObstacleAnnouncement, to: int | None = None
+    ) -> list[rt.Acknowledgement]:
+        """遇障语音播报
+        Voice announcement of an obstacle
+
+        标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
+        还是机器人播报、播报什么，源文档没有说明。
+
+        Judging by the title, the robot presumably sends this when it meets an obstacle, so that a voice
+        announcement is made. The source does not say whether the app or the robot makes it, nor what it says.
+
+        Code 0x0341. Since 2023-05.
+
+        Returns what became of it at each connection.
+
+        - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+        """
+        return await self.server.push(OBSTACLE_ANNOUNCEMENT, report, to)
+
+    async def target_reached(self, report: TargetReached, to: int | None = None) -> list[rt.Acknowledgement]:
+        """到达目标点通知上报
+        Target reached
+
+        机器人到达目标点时上报。
+
+        Sent when the robot has reached its target.
+
+        Code 0x0340, inferred. Since 2023-05.
+
+        Returns what became of it at each connection.
+
+        - Spec: `reports.target_reached` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/reports/target_reached.md`
+        """
+        return await self.server.push(TARGET_REACHED, report, to)
+
+    async def task_progress(self, report: TaskProgress, to: int | None = None) -> list[rt.Acknowledgement]:
+        """上报机器人任务进度
+        Task progress
+
+        上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
+
+        Reports the progress of the robot's task: general progress, and the stages of passing gates and doors and of
+        taking an elevator.
+
+        Code 0x0345. Since 2024-01-29.
+
+        Returns what became of it at each connection.
+
+        - Spec: `reports.task_progress` in `spec/commands/task.yaml`
+        - Docs: `docs-site/reference/reports/task_progress.md`
+        """
+        return await self.server.push(TASK_PROGRESS, report, to)

@@ -9,11 +9,31 @@ How the cabinet is divided into compartments: the number, size and location of e
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, ClassVar, TypeAlias
+from typing import Annotated, ClassVar, Final, TypeAlias
 
 import fc_runtime as rt
+
+__all__ = [
+    "GET_CELL_CONFIG",
+    "SET_CELL_CONFIG",
+    "Cell",
+    "CellLayout",
+    "CellLocation",
+    "CellType",
+    "GetCellConfigRequest",
+    "GetCellConfigResponse",
+    "GetCellConfigResponseData",
+    "LayoutCell",
+    "OldCell",
+    "SetCellConfigRequest",
+    "SetCellConfigRequestData",
+    "SetCellConfigRequestDataActiveIndex",
+    "SetCellConfigRequestDataOldLayout",
+    "SetCellConfigResponse",
+]
 
 
 @rt.wire_enum("u8")
@@ -471,3 +491,204 @@ The layout to activate, by index or, in the old form, in full
 
 Deprecated: since 2023-11: The source labels it as the old version. Use the new form.
 """
+
+
+GET_CELL_CONFIG: Final = rt.Command(
+    name="get_cell_config",
+    code=0x0A02,
+    zh="获取机器人格口门配置",
+    en="Get the compartment configuration",
+    request=GetCellConfigRequest,
+    response=GetCellConfigResponse,
+    effect=rt.Effect.READ,
+    docs="reference/commands/get_cell_config.md",
+    spec="spec/commands/cell.yaml",
+)
+"""获取机器人格口门配置
+Get the compartment configuration
+"""
+
+SET_CELL_CONFIG: Final = rt.Command(
+    name="set_cell_config",
+    code=0x0A0B,
+    zh="设置机器人格口配置",
+    en="Set the compartment configuration",
+    request=SetCellConfigRequest,
+    response=SetCellConfigResponse,
+    effect=rt.Effect.CONFIG,
+    docs="reference/commands/set_cell_config.md",
+    spec="spec/commands/cell.yaml",
+)
+"""设置机器人格口配置
+Set the compartment configuration
+"""
+
+CELL_COMMANDS: Final = (
+    GET_CELL_CONFIG,
+    SET_CELL_CONFIG,
+)
+
+
+class CellCalls(rt.Calls):
+    """`Client` 的一部分：`cell` 组的指令。
+    The part of `Client` with the commands of the group `cell`.
+    """
+
+    async def get_cell_config(
+        self, request: GetCellConfigRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetCellConfigResponse:
+        """获取机器人格口门配置
+        Get the compartment configuration
+
+        返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
+
+        Returns the number of compartments and, for each, its number, size and doors; location and lock may be
+        missing. This is presumably the active configuration; the source does not say so.
+
+        Code 0x0A02. Only reads.
+
+        - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        """
+        return await self.connection.call(GET_CELL_CONFIG, request, timeout=timeout, repeat=repeat)
+
+    async def set_cell_config(
+        self, request: SetCellConfigRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> SetCellConfigResponse:
+        """设置机器人格口配置
+        Set the compartment configuration
+
+        有两种请求，靠 `data` 中的字段区分：
+
+        - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app 只设置当前生效的是哪一种。
+        - 旧版：app
+          下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
+
+        There are two requests, told apart by the keys of `data`:
+
+        - New form (updated November 2023): the layouts are stored in a configuration file on the chassis (see the
+          table of layouts), and the app selects the active one.
+        - Old form: the app sends a whole layout, which **overwrites** the configuration file on the robot. Its
+          values are the four layouts of the old table, which should be those of the table of layouts without
+          location and index.
+
+        Code 0x0A0B. Changes the configuration.
+
+        - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        """
+        return await self.connection.call(SET_CELL_CONFIG, request, timeout=timeout, repeat=repeat)
+
+
+class CellSyncCalls(rt.SyncCalls):
+    """`sync.Client` 的一部分：`cell` 组的指令。
+    The part of `sync.Client` with the commands of the group `cell`.
+    """
+
+    def get_cell_config(
+        self, request: GetCellConfigRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetCellConfigResponse:
+        """获取机器人格口门配置
+        Get the compartment configuration
+
+        返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
+
+        Returns the number of compartments and, for each, its number, size and doors; location and lock may be
+        missing. This is presumably the active configuration; the source does not say so.
+
+        Code 0x0A02. Only reads.
+
+        - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        """
+        return self._call(GET_CELL_CONFIG, request, timeout, repeat)
+
+    def set_cell_config(
+        self, request: SetCellConfigRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> SetCellConfigResponse:
+        """设置机器人格口配置
+        Set the compartment configuration
+
+        有两种请求，靠 `data` 中的字段区分：
+
+        - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app 只设置当前生效的是哪一种。
+        - 旧版：app
+          下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
+
+        There are two requests, told apart by the keys of `data`:
+
+        - New form (updated November 2023): the layouts are stored in a configuration file on the chassis (see the
+          table of layouts), and the app selects the active one.
+        - Old form: the app sends a whole layout, which **overwrites** the configuration file on the robot. Its
+          values are the four layouts of the old table, which should be those of the table of layouts without
+          location and index.
+
+        Code 0x0A0B. Changes the configuration.
+
+        - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        """
+        return self._call(SET_CELL_CONFIG, request, timeout, repeat)
+
+
+class CellHandlers(ABC):
+    """`Robot` 的一部分：`cell` 组的指令。
+    The part of `Robot` with the commands of the group `cell`.
+    """
+
+    @abstractmethod
+    async def get_cell_config(self, context: rt.Context, request: GetCellConfigRequest) -> GetCellConfigResponse:
+        """获取机器人格口门配置
+        Get the compartment configuration
+
+        返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
+
+        Returns the number of compartments and, for each, its number, size and doors; location and lock may be
+        missing. This is presumably the active configuration; the source does not say so.
+
+        Code 0x0A02. Only reads.
+
+        - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        """
+
+    @abstractmethod
+    async def set_cell_config(self, context: rt.Context, request: SetCellConfigRequest) -> SetCellConfigResponse:
+        """设置机器人格口配置
+        Set the compartment configuration
+
+        有两种请求，靠 `data` 中的字段区分：
+
+        - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app 只设置当前生效的是哪一种。
+        - 旧版：app
+          下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
+
+        There are two requests, told apart by the keys of `data`:
+
+        - New form (updated November 2023): the layouts are stored in a configuration file on the chassis (see the
+          table of layouts), and the app selects the active one.
+        - Old form: the app sends a whole layout, which **overwrites** the configuration file on the robot. Its
+          values are the four layouts of the old table, which should be those of the table of layouts without
+          location and index.
+
+        Code 0x0A0B. Changes the configuration.
+
+        - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
+        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        """
+
+
+class CellPartialHandlers(CellHandlers):
+    """`PartialRobot` 的一部分：`cell` 组的指令。
+    The part of `PartialRobot` with the commands of the group `cell`.
+    """
+
+    @rt.left_out
+    async def get_cell_config(self, context: rt.Context, request: GetCellConfigRequest) -> GetCellConfigResponse:
+        """See `Robot.get_cell_config`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def set_cell_config(self, context: rt.Context, request: SetCellConfigRequest) -> SetCellConfigResponse:
+        """See `Robot.set_cell_config`."""
+        raise NotImplementedError

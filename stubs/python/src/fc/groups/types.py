@@ -9,6 +9,10 @@ from enum import Enum
 
 import fc_runtime as rt
 
+__all__ = [
+    "StationType",
+]
+
 
 @rt.wire_enum("u8")
 class StationType(Enum):

@@ -9,13 +9,46 @@ Looking up, adding, renaming and deleting the stations of a map, and the station
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Final
 
 import fc_runtime as rt
 
 from .types import StationType
+
+__all__ = [
+    "ADD_STATION",
+    "DELETE_STATION",
+    "GET_CURRENT_STATION",
+    "GET_STATION",
+    "LIST_STATIONS",
+    "RENAME_STATION",
+    "STATION_REACHED",
+    "UPLOAD_MAP_STATIONS",
+    "AddStationRequest",
+    "AddStationResponse",
+    "DeleteStationRequest",
+    "DeleteStationResponse",
+    "GetCurrentStationRequest",
+    "GetCurrentStationResponse",
+    "GetCurrentStationResponseData",
+    "GetStationRequest",
+    "GetStationRequestData",
+    "GetStationResponse",
+    "GetStationResponseData",
+    "ListStationsRequest",
+    "ListStationsResponse",
+    "ListedStation",
+    "RenameStationRequest",
+    "RenameStationResponse",
+    "StationPos",
+    "StationReached",
+    "StationReachedAck",
+    "UploadMapStationsRequest",
+    "UploadMapStationsResponse",
+]
 
 
 @rt.wire_enum("string")
@@ -693,3 +726,419 @@ class ListedStation(rt.Message):
 
     extra: rt.Extra = field(default_factory=rt.Extra)
     """其他键，原样保留。Other keys, kept unchanged."""
+
+
+STATION_REACHED: Final = rt.Report(
+    name="station_reached",
+    code=None,
+    zh="主动上报机器人抵达站点",
+    en="Station reached",
+    request=StationReached,
+    response=StationReachedAck,
+    since="2024-01-29",
+    docs="reference/reports/station_reached.md",
+    spec="spec/commands/station.yaml",
+)
+"""主动上报机器人抵达站点
+Station reached
+"""
+
+GET_STATION: Final = rt.Command(
+    name="get_station",
+    code=0x0A03,
+    zh="根据站点 ID 获取站点信息",
+    en="Get a station by its ID",
+    request=GetStationRequest,
+    response=GetStationResponse,
+    effect=rt.Effect.READ,
+    since="2023-05",
+    docs="reference/commands/get_station.md",
+    spec="spec/commands/station.yaml",
+)
+"""根据站点 ID 获取站点信息
+Get a station by its ID
+"""
+
+UPLOAD_MAP_STATIONS: Final = rt.Command(
+    name="upload_map_stations",
+    code=0x0308,
+    zh="一键上报地图点位信息",
+    en="Report the stations of the map",
+    request=UploadMapStationsRequest,
+    response=UploadMapStationsResponse,
+    effect=rt.Effect.UNKNOWN,
+    since="2023-05",
+    docs="reference/commands/upload_map_stations.md",
+    spec="spec/commands/station.yaml",
+)
+"""一键上报地图点位信息
+Report the stations of the map
+"""
+
+ADD_STATION: Final = rt.Command(
+    name="add_station",
+    code=0x0302,
+    zh="添加站点信息",
+    en="Add a station",
+    request=AddStationRequest,
+    response=AddStationResponse,
+    effect=rt.Effect.CONFIG,
+    since="2023-07-17",
+    docs="reference/commands/add_station.md",
+    spec="spec/commands/station.yaml",
+)
+"""添加站点信息
+Add a station
+"""
+
+DELETE_STATION: Final = rt.Command(
+    name="delete_station",
+    code=0x0304,
+    zh="删除站点信息",
+    en="Delete a station",
+    request=DeleteStationRequest,
+    response=DeleteStationResponse,
+    effect=rt.Effect.CONFIG,
+    since="2023-10-13",
+    docs="reference/commands/delete_station.md",
+    spec="spec/commands/station.yaml",
+)
+"""删除站点信息
+Delete a station
+"""
+
+RENAME_STATION: Final = rt.Command(
+    name="rename_station",
+    code=0x0305,
+    zh="重命名站点",
+    en="Rename a station",
+    request=RenameStationRequest,
+    response=RenameStationResponse,
+    effect=rt.Effect.CONFIG,
+    since="2023-10-13",
+    docs="reference/commands/rename_station.md",
+    spec="spec/commands/station.yaml",
+)
+"""重命名站点
+Rename a station
+"""
+
+LIST_STATIONS: Final = rt.Command(
+    name="list_stations",
+    code=None,
+    zh="获取站点列表",
+    en="List the stations of a map",
+    request=ListStationsRequest,
+    response=ListStationsResponse,
+    effect=rt.Effect.READ,
+    since="2023-10-13",
+    docs="reference/commands/list_stations.md",
+    spec="spec/commands/station.yaml",
+)
+"""获取站点列表
+List the stations of a map
+"""
+
+GET_CURRENT_STATION: Final = rt.Command(
+    name="get_current_station",
+    code=None,
+    zh="获取机器人所在站点",
+    en="Get the station the robot is at",
+    request=GetCurrentStationRequest,
+    response=GetCurrentStationResponse,
+    effect=rt.Effect.READ,
+    since="2024-01-29",
+    docs="reference/commands/get_current_station.md",
+    spec="spec/commands/station.yaml",
+)
+"""获取机器人所在站点
+Get the station the robot is at
+"""
+
+STATION_REPORTS: Final = (STATION_REACHED,)
+
+STATION_COMMANDS: Final = (
+    GET_STATION,
+    UPLOAD_MAP_STATIONS,
+    ADD_STATION,
+    DELETE_STATION,
+    RENAME_STATION,
+    LIST_STATIONS,
+    GET_CURRENT_STATION,
+)
+
+
+class StationCalls(rt.Calls):
+    """`Client` 的一部分：`station` 组的指令。
+    The part of `Client` with the commands of the group `station`.
+    """
+
+    async def get_station(
+        self, request: GetStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetStationResponse:
+        """根据站点 ID 获取站点信息
+        Get a station by its ID
+
+        Code 0x0A03. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/get_station.md`
+        """
+        return await self.connection.call(GET_STATION, request, timeout=timeout, repeat=repeat)
+
+    async def upload_map_stations(
+        self,
+        request: UploadMapStationsRequest | None = None,
+        *,
+        timeout: float | None = None,
+        repeat: bool | None = None,
+    ) -> UploadMapStationsResponse:
+        """一键上报地图点位信息
+        Report the stations of the map
+
+        按 type（0x01），这是 app
+        发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+
+        Its type (0x01) makes it a command from the app to the robot. Who reports the stations to whom, of which
+        map, and how the result is told has not survived in the source.
+
+        Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
+
+        - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        """
+        return await self.connection.call(UPLOAD_MAP_STATIONS, request, timeout=timeout, repeat=repeat)
+
+    async def add_station(
+        self, request: AddStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> AddStationResponse:
+        """添加站点信息
+        Add a station
+
+        请求中没有坐标，印出的响应中没有站点 ID。
+
+        The request carries no coordinates and the printed response no station ID.
+
+        Code 0x0302. Changes the configuration. Since 2023-07-17.
+
+        - Spec: `commands.add_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/add_station.md`
+        """
+        return await self.connection.call(ADD_STATION, request, timeout=timeout, repeat=repeat)
+
+    async def delete_station(
+        self, request: DeleteStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> DeleteStationResponse:
+        """删除站点信息
+        Delete a station
+
+        Code 0x0304. Changes the configuration. Since 2023-10-13.
+
+        - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/delete_station.md`
+        """
+        return await self.connection.call(DELETE_STATION, request, timeout=timeout, repeat=repeat)
+
+    async def rename_station(
+        self, request: RenameStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> RenameStationResponse:
+        """重命名站点
+        Rename a station
+
+        Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+
+        - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/rename_station.md`
+        """
+        return await self.connection.call(RENAME_STATION, request, timeout=timeout, repeat=repeat)
+
+
+class StationSyncCalls(rt.SyncCalls):
+    """`sync.Client` 的一部分：`station` 组的指令。
+    The part of `sync.Client` with the commands of the group `station`.
+    """
+
+    def get_station(
+        self, request: GetStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetStationResponse:
+        """根据站点 ID 获取站点信息
+        Get a station by its ID
+
+        Code 0x0A03. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/get_station.md`
+        """
+        return self._call(GET_STATION, request, timeout, repeat)
+
+    def upload_map_stations(
+        self,
+        request: UploadMapStationsRequest | None = None,
+        *,
+        timeout: float | None = None,
+        repeat: bool | None = None,
+    ) -> UploadMapStationsResponse:
+        """一键上报地图点位信息
+        Report the stations of the map
+
+        按 type（0x01），这是 app
+        发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+
+        Its type (0x01) makes it a command from the app to the robot. Who reports the stations to whom, of which
+        map, and how the result is told has not survived in the source.
+
+        Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
+
+        - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        """
+        return self._call(UPLOAD_MAP_STATIONS, request, timeout, repeat)
+
+    def add_station(
+        self, request: AddStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> AddStationResponse:
+        """添加站点信息
+        Add a station
+
+        请求中没有坐标，印出的响应中没有站点 ID。
+
+        The request carries no coordinates and the printed response no station ID.
+
+        Code 0x0302. Changes the configuration. Since 2023-07-17.
+
+        - Spec: `commands.add_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/add_station.md`
+        """
+        return self._call(ADD_STATION, request, timeout, repeat)
+
+    def delete_station(
+        self, request: DeleteStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> DeleteStationResponse:
+        """删除站点信息
+        Delete a station
+
+        Code 0x0304. Changes the configuration. Since 2023-10-13.
+
+        - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/delete_station.md`
+        """
+        return self._call(DELETE_STATION, request, timeout, repeat)
+
+    def rename_station(
+        self, request: RenameStationRequest, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> RenameStationResponse:
+        """重命名站点
+        Rename a station
+
+        Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+
+        - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/rename_station.md`
+        """
+        return self._call(RENAME_STATION, request, timeout, repeat)
+
+
+class StationHandlers(ABC):
+    """`Robot` 的一部分：`station` 组的指令。
+    The part of `Robot` with the commands of the group `station`.
+    """
+
+    @abstractmethod
+    async def get_station(self, context: rt.Context, request: GetStationRequest) -> GetStationResponse:
+        """根据站点 ID 获取站点信息
+        Get a station by its ID
+
+        Code 0x0A03. Only reads. Since 2023-05.
+
+        - Spec: `commands.get_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/get_station.md`
+        """
+
+    @abstractmethod
+    async def upload_map_stations(
+        self, context: rt.Context, request: UploadMapStationsRequest
+    ) -> UploadMapStationsResponse:
+        """一键上报地图点位信息
+        Report the stations of the map
+
+        按 type（0x01），这是 app
+        发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
+
+        Its type (0x01) makes it a command from the app to the robot. Who reports the stations to whom, of which
+        map, and how the result is told has not survived in the source.
+
+        Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
+
+        - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        """
+
+    @abstractmethod
+    async def add_station(self, context: rt.Context, request: AddStationRequest) -> AddStationResponse:
+        """添加站点信息
+        Add a station
+
+        请求中没有坐标，印出的响应中没有站点 ID。
+
+        The request carries no coordinates and the printed response no station ID.
+
+        Code 0x0302. Changes the configuration. Since 2023-07-17.
+
+        - Spec: `commands.add_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/add_station.md`
+        """
+
+    @abstractmethod
+    async def delete_station(self, context: rt.Context, request: DeleteStationRequest) -> DeleteStationResponse:
+        """删除站点信息
+        Delete a station
+
+        Code 0x0304. Changes the configuration. Since 2023-10-13.
+
+        - Spec: `commands.delete_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/delete_station.md`
+        """
+
+    @abstractmethod
+    async def rename_station(self, context: rt.Context, request: RenameStationRequest) -> RenameStationResponse:
+        """重命名站点
+        Rename a station
+
+        Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
+
+        - Spec: `commands.rename_station` in `spec/commands/station.yaml`
+        - Docs: `docs-site/reference/commands/rename_station.md`
+        """
+
+
+class StationPartialHandlers(StationHandlers):
+    """`PartialRobot` 的一部分：`station` 组的指令。
+    The part of `PartialRobot` with the commands of the group `station`.
+    """
+
+    @rt.left_out
+    async def get_station(self, context: rt.Context, request: GetStationRequest) -> GetStationResponse:
+        """See `Robot.get_station`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def upload_map_stations(
+        self, context: rt.Context, request: UploadMapStationsRequest
+    ) -> UploadMapStationsResponse:
+        """See `Robot.upload_map_stations`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def add_station(self, context: rt.Context, request: AddStationRequest) -> AddStationResponse:
+        """See `Robot.add_station`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def delete_station(self, context: rt.Context, request: DeleteStationRequest) -> DeleteStationResponse:
+        """See `Robot.delete_station`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def rename_station(self, context: rt.Context, request: RenameStationRequest) -> RenameStationResponse:
+        """See `Robot.rename_station`."""
+        raise NotImplementedError

@@ -9,11 +9,32 @@ The status that the robot reports, its list of faults, and the result of its sel
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Final, TypeAlias
 
 import fc_runtime as rt
+
+__all__ = [
+    "GET_SELF_CHECK",
+    "LIST_FAULTS",
+    "ROBOT_STATUS",
+    "Fault",
+    "FaultLevel",
+    "GetSelfCheckRequest",
+    "GetSelfCheckResponse",
+    "ListFaultsRequest",
+    "ListFaultsResponse",
+    "LowerStatus",
+    "RobotStatus",
+    "RobotStatusAck",
+    "RobotStatusData",
+    "SelfCheckItem",
+    "SelfCheckName",
+    "SelfCheckStatus",
+    "UpperStatus",
+]
 
 
 @rt.wire_enum("u16")
@@ -479,3 +500,217 @@ class SelfCheckItem(rt.Message):
 
     extra: rt.Extra = field(default_factory=rt.Extra)
     """其他键，原样保留。Other keys, kept unchanged."""
+
+
+ROBOT_STATUS: Final = rt.Report(
+    name="robot_status",
+    code=0x0342,
+    zh="主动上报机器人状态",
+    en="Status of the robot",
+    request=RobotStatus,
+    response=RobotStatusAck,
+    since="2023-05",
+    docs="reference/reports/robot_status.md",
+    spec="spec/commands/status.yaml",
+)
+"""主动上报机器人状态
+Status of the robot
+"""
+
+LIST_FAULTS: Final = rt.Command(
+    name="list_faults",
+    code=0x0A0C,
+    zh="获取异常列表",
+    en="List the faults",
+    request=ListFaultsRequest,
+    response=ListFaultsResponse,
+    effect=rt.Effect.READ,
+    docs="reference/commands/list_faults.md",
+    spec="spec/commands/status.yaml",
+)
+"""获取异常列表
+List the faults
+"""
+
+GET_SELF_CHECK: Final = rt.Command(
+    name="get_self_check",
+    code=0x0A0D,
+    zh="获取自检结果",
+    en="Get the result of the self-check",
+    request=GetSelfCheckRequest,
+    response=GetSelfCheckResponse,
+    effect=rt.Effect.READ,
+    docs="reference/commands/get_self_check.md",
+    spec="spec/commands/status.yaml",
+)
+"""获取自检结果
+Get the result of the self-check
+"""
+
+STATUS_REPORTS: Final = (ROBOT_STATUS,)
+
+STATUS_COMMANDS: Final = (
+    LIST_FAULTS,
+    GET_SELF_CHECK,
+)
+
+AnyStatusReport: TypeAlias = RobotStatus
+
+
+class StatusCalls(rt.Calls):
+    """`Client` 的一部分：`status` 组的指令。
+    The part of `Client` with the commands of the group `status`.
+    """
+
+    async def list_faults(
+        self, request: ListFaultsRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> ListFaultsResponse:
+        """获取异常列表
+        List the faults
+
+        返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
+
+        Returns a list of faults, each with its code, level, source, possible cause and guidance.
+
+        Code 0x0A0C. Only reads, inferred.
+
+        - Spec: `commands.list_faults` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/list_faults.md`
+        """
+        return await self.connection.call(LIST_FAULTS, request, timeout=timeout, repeat=repeat)
+
+    async def get_self_check(
+        self, request: GetSelfCheckRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetSelfCheckResponse:
+        """获取自检结果
+        Get the result of the self-check
+
+        检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
+
+        Tells whether each module of the robot is working normally. After power-on all items are checked in
+        parallel; the timeout is 2 minutes by default.
+
+        Code 0x0A0D. Only reads, inferred.
+
+        - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/get_self_check.md`
+        """
+        return await self.connection.call(GET_SELF_CHECK, request, timeout=timeout, repeat=repeat)
+
+
+class StatusSyncCalls(rt.SyncCalls):
+    """`sync.Client` 的一部分：`status` 组的指令。
+    The part of `sync.Client` with the commands of the group `status`.
+    """
+
+    def list_faults(
+        self, request: ListFaultsRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> ListFaultsResponse:
+        """获取异常列表
+        List the faults
+
+        返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
+
+        Returns a list of faults, each with its code, level, source, possible cause and guidance.
+
+        Code 0x0A0C. Only reads, inferred.
+
+        - Spec: `commands.list_faults` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/list_faults.md`
+        """
+        return self._call(LIST_FAULTS, request, timeout, repeat)
+
+    def get_self_check(
+        self, request: GetSelfCheckRequest | None = None, *, timeout: float | None = None, repeat: bool | None = None
+    ) -> GetSelfCheckResponse:
+        """获取自检结果
+        Get the result of the self-check
+
+        检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
+
+        Tells whether each module of the robot is working normally. After power-on all items are checked in
+        parallel; the timeout is 2 minutes by default.
+
+        Code 0x0A0D. Only reads, inferred.
+
+        - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/get_self_check.md`
+        """
+        return self._call(GET_SELF_CHECK, request, timeout, repeat)
+
+
+class StatusHandlers(ABC):
+    """`Robot` 的一部分：`status` 组的指令。
+    The part of `Robot` with the commands of the group `status`.
+    """
+
+    @abstractmethod
+    async def list_faults(self, context: rt.Context, request: ListFaultsRequest) -> ListFaultsResponse:
+        """获取异常列表
+        List the faults
+
+        返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
+
+        Returns a list of faults, each with its code, level, source, possible cause and guidance.
+
+        Code 0x0A0C. Only reads, inferred.
+
+        - Spec: `commands.list_faults` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/list_faults.md`
+        """
+
+    @abstractmethod
+    async def get_self_check(self, context: rt.Context, request: GetSelfCheckRequest) -> GetSelfCheckResponse:
+        """获取自检结果
+        Get the result of the self-check
+
+        检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
+
+        Tells whether each module of the robot is working normally. After power-on all items are checked in
+        parallel; the timeout is 2 minutes by default.
+
+        Code 0x0A0D. Only reads, inferred.
+
+        - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/commands/get_self_check.md`
+        """
+
+
+class StatusPartialHandlers(StatusHandlers):
+    """`PartialRobot` 的一部分：`status` 组的指令。
+    The part of `PartialRobot` with the commands of the group `status`.
+    """
+
+    @rt.left_out
+    async def list_faults(self, context: rt.Context, request: ListFaultsRequest) -> ListFaultsResponse:
+        """See `Robot.list_faults`."""
+        raise NotImplementedError
+
+    @rt.left_out
+    async def get_self_check(self, context: rt.Context, request: GetSelfCheckRequest) -> GetSelfCheckResponse:
+        """See `Robot.get_self_check`."""
+        raise NotImplementedError
+
+
+class StatusReporter(rt.Reporter):
+    """`Reporter` 的一部分：`status` 组的上报。
+    The part of `Reporter` with the reports of the group `status`.
+    """
+
+    async def robot_status(self, report: RobotStatus, to: int | None = None) -> list[rt.Acknowledgement]:
+        """主动上报机器人状态
+        Status of the robot
+
+        上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
+
+        Reports the robot's state, sub-state and fault code. The source does not say when, on a change or at
+        intervals.
+
+        Code 0x0342. Since 2023-05.
+
+        Returns what became of it at each connection.
+
+        - Spec: `reports.robot_status` in `spec/commands/status.yaml`
+        - Docs: `docs-site/reference/reports/robot_status.md`
+        """
+        return await self.server.push(ROBOT_STATUS, report, to)

@@ -1,0 +1,256 @@
+//! `client.py`, `sync.py` and `robot.py`: the classes that a user names, each put together from the parts of all groups.
+
+use super::homes::{Homes, Piece};
+use super::protocol;
+use super::source::{Code, PYTHON, Python, method};
+use crate::emit::stub::context::Context;
+use crate::emit::stub::docs::Docs;
+use crate::emit::stub::ranges::pass_through;
+use crate::emit::stub::source::Source;
+
+/// The head of a file: what it is, and what it imports of the standard library and the runtime.
+fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
+    let mut out = Source::new(&PYTHON);
+    out.docstring(&Docs::said(&about));
+    out.blank();
+    out.line("from __future__ import annotations");
+    out.blank();
+    for (module, names) in standard {
+        out.import_from(module, names);
+    }
+    out.blank();
+    out.line("import fc_runtime as rt");
+    out.blank();
+    out
+}
+
+/// A class with the parts of all groups.
+fn class(
+    out: &mut Source,
+    name: &str,
+    parts: &[&str],
+    own: &[&str],
+    about: &[&'static str],
+    body: impl FnOnce(&mut Source),
+) {
+    let bases = parts.iter().chain(own).map(|it| Code::from(*it)).collect();
+    out.gap();
+    Code::Call(format!("class {name}("), bases, ")").write(out, "", ":");
+    out.enclose("", "", |out| {
+        out.docstring(&Docs::said(about));
+        body(out);
+    });
+}
+
+/// What the protocol of a stub is.
+fn speaks(out: &mut Source, context: &Context<'_>) {
+    out.blank();
+    out.line(format!(
+        "protocol: ClassVar[rt.Protocol] = {}",
+        protocol::name(context)
+    ));
+}
+
+/// `client.py`.
+pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
+    let has_streams = !context.package.streams.is_empty();
+    let mut out = head(
+        [
+            "app 端：每条指令一个方法，全部主动上报汇成一个类型。",
+            "The app's side: one method per command, one type for any report.",
+        ],
+        &[("typing", &["ClassVar", "TypeAlias"])],
+    );
+    homes.import(&mut out, &[Piece::AnyReport, Piece::Calls, Piece::Streams]);
+    out.import_from(".protocol", &[&protocol::name(context)]);
+    out.blank();
+    let mut reports = homes.pieces(Piece::AnyReport);
+    reports.push("rt.RawReport");
+    let union = Code::Union(reports.into_iter().map(str::to_owned).collect());
+    union.write_in_parentheses(&mut out, "AnyReport: TypeAlias = ");
+    out.docstring(&Docs::said(&[
+        "任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。",
+        "Any report; a `RawReport`, kept unchanged, where the spec does not know the code.",
+    ]));
+    let about = [
+        "一个机器人，从 app 一侧看：每条指令一个方法。",
+        "A robot as seen from the app: one method per command.",
+    ];
+    let calls = homes.pieces(Piece::Calls);
+    class(
+        &mut out,
+        "Client",
+        &calls,
+        &["rt.Client[AnyReport]"],
+        &about,
+        |out| {
+            speaks(out, context);
+        },
+    );
+    if has_streams {
+        let about = [
+            "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
+            "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
+        ];
+        let streams = homes.pieces(Piece::Streams);
+        class(
+            &mut out,
+            "Streams",
+            &streams,
+            &["rt.Streams"],
+            &about,
+            |_| (),
+        );
+    }
+    out.finish()
+}
+
+/// `sync.py`.
+pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
+    let mut out = head(
+        [
+            "不用 `async` 的 app 端。",
+            "The app's side without `async`.",
+        ],
+        &[("typing", &["ClassVar"])],
+    );
+    out.import_from(".client", &["AnyReport"]);
+    homes.import(&mut out, &[Piece::SyncCalls]);
+    out.import_from(".protocol", &[&protocol::name(context)]);
+    let about = [
+        "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
+        "A robot as seen from the app: one method per command, which waits for the response.",
+    ];
+    let calls = homes.pieces(Piece::SyncCalls);
+    class(
+        &mut out,
+        "Client",
+        &calls,
+        &["rt.SyncClient[AnyReport]"],
+        &about,
+        |out| {
+            speaks(out, context);
+        },
+    );
+    out.finish()
+}
+
+/// `robot.py`.
+pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
+    let mut out = head(
+        [
+            "机器人端：每条指令一个方法，按示例应答的演示机器人，带类型的主动上报。",
+            "The robot's side: one method per command, a robot that responds with the examples in the spec, and typed reports.",
+        ],
+        &[("abc", &["ABC"]), ("typing", &["ClassVar"])],
+    );
+    homes.import(
+        &mut out,
+        &[
+            Piece::Handlers,
+            Piece::PartialHandlers,
+            Piece::Reporter,
+            Piece::Streamer,
+        ],
+    );
+    out.import_from(".protocol", &[&protocol::name(context)]);
+    complete(&mut out, context, homes);
+    let about = [
+        "有一部分指令的机器人：方法相同，都可以不写；没有写的指令以“未实现”拒绝。",
+        "A robot that has some of the commands so far: what is left out is refused as not implemented.",
+    ];
+    let handlers = homes.pieces(Piece::PartialHandlers);
+    class(
+        &mut out,
+        "PartialRobot",
+        &handlers,
+        &["Robot"],
+        &about,
+        |_| (),
+    );
+    let about = [
+        "用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
+        "Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `PartialRobot`.",
+        "会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装：`pretend_motion=True`。",
+        "It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend, with `pretend_motion=True`.",
+    ];
+    class(
+        &mut out,
+        "ExampleRobot",
+        &[],
+        &["rt.ExampleRobot"],
+        &about,
+        |out| {
+            speaks(out, context);
+        },
+    );
+    let about = [
+        "主动上报：每种上报一个方法。",
+        "Pushes reports: one method per report.",
+        "`to` 是某个连接的编号；不给出时，向全部连接上报。",
+        "`to` is the number of a connection; without it a report goes to all of them.",
+    ];
+    let reporters = homes.pieces(Piece::Reporter);
+    class(
+        &mut out,
+        "Reporter",
+        &reporters,
+        &["rt.Reporter"],
+        &about,
+        |_| (),
+    );
+    if !context.package.streams.is_empty() {
+        let about = [
+            "机器人发送的数据流：每个数据流一个方法。",
+            "Sends the robot's streams: one method per stream.",
+        ];
+        let streamers = homes.pieces(Piece::Streamer);
+        class(
+            &mut out,
+            "Streamer",
+            &streamers,
+            &["rt.Streamer"],
+            &about,
+            |_| (),
+        );
+    }
+    out.finish()
+}
+
+fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
+    let about = [
+        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出，创建对象时 Python 也会指出。",
+        "A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing here: the type checker says so, and Python when the robot is made.",
+        "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后只改这一个词。",
+        "A robot that has some of them so far inherits from `PartialRobot`: the methods are the same, and none has to be there. This one word is all that changes once nothing is missing.",
+    ];
+    let handlers = homes.pieces(Piece::Handlers);
+    class(
+        out,
+        "Robot",
+        &handlers,
+        &["rt.Robot", "ABC"],
+        &about,
+        |out| {
+            speaks(out, context);
+            for (name, range) in pass_through(context) {
+                let mut docs = Docs::of(&range.text);
+                docs.paragraph(format!(
+                    "Codes {} to {} that have no method of their own.",
+                    range.first_spelling, range.last_spelling
+                ));
+                docs.paragraph("不实现此方法时，按未知指令拒绝。");
+                docs.paragraph("Refused as an unknown command unless the robot has this method.");
+                let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
+                let parameters = parameters.map(Code::from).to_vec();
+                let open = format!("async def {name}(");
+                out.blank();
+                out.line("@rt.left_out");
+                method(out, &open, parameters, "rt.Json", |out| {
+                    out.docstring(&docs);
+                    out.line("raise NotImplementedError");
+                });
+            }
+        },
+    );
+}
