@@ -53,9 +53,9 @@ test('cpp: what is in a namespace and in no class has its page, too', needs(ther
 test('cpp: what has no comment is told, but for constructors and operators', () => {
   const warning = (file, what) => `stubs/cpp/${file}:7: warning: ${what} is not documented.`
   const allowed = [
-    warning('generated/include/fc/messages/cell.hpp', 'Member CellLocation(Value value) (function) of class fc::CellLocation'),
+    warning('generated/include/fc/groups/cell.hpp', 'Member CellLocation(Value value) (function) of class fc::CellLocation'),
     warning('include/fc_runtime/result.hpp', 'Member operator->() const (function) of class fc_runtime::Result'),
-    'stubs/cpp/generated/include/fc/messages/cell.hpp:7: warning: explicit link request to \'1\' could not be resolved',
+    'stubs/cpp/generated/include/fc/groups/cell.hpp:7: warning: explicit link request to \'1\' could not be resolved',
   ]
   assert.deepEqual(faults(allowed.join('\n')), [])
   const generated = warning('generated/include/fc/client.hpp', 'Member close() const (function) of class fc::Client')

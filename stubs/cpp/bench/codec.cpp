@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "fc/messages/station.hpp"
+#include "fc/groups/station.hpp"
 #include "fc/protocol.hpp"
 #include "fc_runtime/envelope.hpp"
 #include "fc_runtime/frame.hpp"

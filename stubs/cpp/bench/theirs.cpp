@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench.grpc.pb.h"
-#include "fc/messages/types.hpp"
+#include "fc/groups/types.hpp"
 #include "fc/protocol.hpp"
 #include "fc_runtime/envelope.hpp"
 #include "peer.hpp"

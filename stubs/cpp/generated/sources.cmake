@@ -8,19 +8,19 @@ set(FC_GENERATED_STUBS
 set(FC_GENERATED_MESSAGES
   generated/src/protocol.cpp
   generated/src/tables.cpp
-  generated/src/messages/building.cpp
-  generated/src/messages/cell.cpp
-  generated/src/messages/dispatch.cpp
-  generated/src/messages/identity.cpp
-  generated/src/messages/laser.cpp
-  generated/src/messages/map.cpp
-  generated/src/messages/recharge.cpp
-  generated/src/messages/settings.cpp
-  generated/src/messages/standby.cpp
-  generated/src/messages/station.cpp
-  generated/src/messages/status.cpp
-  generated/src/messages/task.cpp
-  generated/src/messages/types.cpp
-  generated/src/messages/unnamed.cpp
-  generated/src/messages/upper_body.cpp
+  generated/src/groups/building.cpp
+  generated/src/groups/cell.cpp
+  generated/src/groups/dispatch.cpp
+  generated/src/groups/identity.cpp
+  generated/src/groups/laser.cpp
+  generated/src/groups/map.cpp
+  generated/src/groups/recharge.cpp
+  generated/src/groups/settings.cpp
+  generated/src/groups/standby.cpp
+  generated/src/groups/station.cpp
+  generated/src/groups/status.cpp
+  generated/src/groups/task.cpp
+  generated/src/groups/types.cpp
+  generated/src/groups/unnamed.cpp
+  generated/src/groups/upper_body.cpp
 )

@@ -1,5 +1,6 @@
-//! The app's stub: a class with one method per command, and one variant over all reports.
+//! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
 
+use super::groups::Group;
 use super::layout::{Includes, literal};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
@@ -8,7 +9,7 @@ use crate::emit::stub::source::Source;
 use crate::surface::package::Call;
 
 /// The header.
-pub fn header(context: &Context<'_>) -> String {
+pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
     let space = &context.model().protocol.id;
     let mut out = Source::cpp();
     out.line("#pragma once");
@@ -21,30 +22,45 @@ pub fn header(context: &Context<'_>) -> String {
     includes.own(format!("{space}/protocol.hpp"));
     includes.own("fc_runtime/client.hpp");
     includes.own("fc_runtime/following.hpp");
+    includes.own("fc_runtime/types.hpp");
     includes.lines(&mut out);
     out.blank();
     out.namespace(space, |out| {
-        reports(out, context);
+        reports(out, groups);
         out.blank();
-        client(out, context);
+        client(out, groups);
         out.blank();
-        each(out, context);
+        for group in calling(groups) {
+            out.line(format!(
+                "extern template class {}<Client>;",
+                group.named("Calls")
+            ));
+        }
+        out.blank();
+        each(out, groups);
     });
     out.finish()
 }
 
-fn reports(out: &mut Source, context: &Context<'_>) {
+/// The groups that have commands.
+fn calling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+    groups.iter().filter(|group| !group.commands.is_empty())
+}
+
+/// The groups that have reports.
+fn reporting<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+    groups.iter().filter(|group| !group.reports.is_empty())
+}
+
+fn reports(out: &mut Source, groups: &[Group<'_>]) {
     out.docs(&Docs::said(&[
         "任意一个主动上报；编码不在规范中的，原样保留。",
         "Any report; one whose code the spec does not know is kept unchanged.",
     ]));
-    let mut types: Vec<String> = context
-        .reports()
-        .iter()
-        .map(|it| it.request.ty.name.to_string())
-        .collect();
-    types.push("fc_runtime::RawReport".to_owned());
-    out.variant("AnyReport", &types);
+    let lists = reporting(groups).map(|group| group.named("Reports"));
+    let raw = "fc_runtime::Types<fc_runtime::RawReport>".to_owned();
+    let lists: Vec<String> = lists.chain([raw]).collect();
+    out.alias("AnyReport", "fc_runtime::VariantOf", &lists);
     out.blank();
     out.line(
         "\
@@ -76,16 +92,21 @@ class Reports {
     );
 }
 
-fn client(out: &mut Source, context: &Context<'_>) {
+fn client(out: &mut Source, groups: &[Group<'_>]) {
     out.line(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法，等到响应才返回。
 ///
 /// A robot as seen from the app: one method per command, which waits for the response. Cheap to copy; all
 /// copies share one connection. May be used from any thread. What must not wait calls
-/// `connection().call_async`.
-class Client {
- public:
+/// `connection().call_async`.",
+    );
+    let bases: Vec<String> = calling(groups)
+        .map(|group| format!("public {}<Client>", group.named("Calls")))
+        .collect();
+    out.class("Client", &bases);
+    out.line(
+        " public:
   /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
   ///
   /// Connects to a robot; what `config` does not set has the default of the spec.
@@ -131,18 +152,29 @@ class Client {
   [[nodiscard]] fc_runtime::Called<fc_runtime::Following<Request, Message>> follow(
       const Request& request, const fc_runtime::CallOptions& options = {}) const {
     return fc_runtime::follow<Message>(connection_, request, options);
-  }",
+  }
+
+ private:
+  fc_runtime::Connection connection_;
+};",
     );
-    out.enclose("", "", |out| {
-        for command in &context.commands() {
+}
+
+/// The commands of a group as methods of the client.
+pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    out.docs(&Docs::said(&[
+        "一组指令，是 `Client` 的方法；`Self` 就是它。",
+        "The commands of a group as methods of `Client`, which is `Self`.",
+    ]));
+    out.line("template <class Self>");
+    out.line(format!("class {} {{", group.name("Calls")));
+    out.line(" public:");
+    out.enclose("", "};", |out| {
+        for command in &group.commands {
             out.blank();
             call(out, context, command);
         }
     });
-    out.blank();
-    out.line(" private:");
-    out.line("  fc_runtime::Connection connection_;");
-    out.line("};");
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
@@ -164,18 +196,44 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         out.line("// clang-format off");
         out.line(format!("[[deprecated({reason})]]"));
     }
-    out.parameters(&open, &parameters, ") const;");
+    out.parameters(&open, &parameters, ") const {");
+    out.line("  return static_cast<const Self*>(this)->connection().call(request, options);");
+    out.line("}");
     if deprecation.is_some() {
         out.line("// clang-format on");
     }
 }
 
-/// A function over the types of all commands, and one over those of all reports.
-fn each(out: &mut Source, context: &Context<'_>) {
-    for (what, zh, calls) in [
-        ("command", "请求", context.commands()),
-        ("report", "上报", context.reports()),
+/// The types of a group's requests and of its reports.
+pub fn lists(out: &mut Source, group: &Group<'_>) {
+    for (part, zh, en, calls) in [
+        (
+            "Commands",
+            "这一组指令的请求。",
+            "The requests of the group.",
+            &group.commands,
+        ),
+        (
+            "Reports",
+            "这一组的主动上报。",
+            "The reports of the group.",
+            &group.reports,
+        ),
     ] {
+        if !calls.is_empty() {
+            out.line(format!("/// {zh}{en}"));
+            let types = calls.iter().map(|call| call.request.ty.name.to_string());
+            let types: Vec<String> = types.collect();
+            out.alias(&group.name(part), "fc_runtime::Types", &types);
+        }
+    }
+}
+
+/// A function over the types of all commands, and one over those of all reports.
+fn each(out: &mut Source, groups: &[Group<'_>]) {
+    let commands: Vec<String> = calling(groups).map(|it| it.named("Commands")).collect();
+    let reports: Vec<String> = reporting(groups).map(|it| it.named("Reports")).collect();
+    for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
         let mut docs = Docs::default();
         docs.paragraph(format!(
             "对每一种{zh}调用一次 `visit`，参数是该类型的一个值。"
@@ -186,7 +244,7 @@ fn each(out: &mut Source, context: &Context<'_>) {
         out.blank();
         out.docs(&docs);
         out.line("template <class Visitor>");
-        let visit = if calls.is_empty() {
+        let visit = if lists.is_empty() {
             "/*visit*/"
         } else {
             "visit"
@@ -195,8 +253,8 @@ fn each(out: &mut Source, context: &Context<'_>) {
             &format!("void for_each_{what}(Visitor&& {visit}) {{"),
             "}",
             |out| {
-                for call in &calls {
-                    out.line(format!("visit({}());", call.request.ty.name));
+                for list in &lists {
+                    out.line(format!("fc_runtime::visit_each(visit, {list}());"));
                 }
             },
         );
@@ -204,41 +262,25 @@ fn each(out: &mut Source, context: &Context<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>) -> String {
+pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
     let space = &context.model().protocol.id;
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/client.hpp\""));
     out.blank();
+    out.line("#include \"fc_runtime/any_report.hpp\"");
+    out.blank();
     out.line("// clang-format off");
     out.blank();
     out.namespace(space, |out| {
-        out.enclose(
-            "std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {",
-            "}",
-            |out| {
-                out.line("auto raw = queue_->next(wait);");
-                out.line("if (!raw) return std::nullopt;");
-                out.line("// They were read before they were acknowledged.");
-                out.line("const fc_runtime::Allowance allowance = protocol().defaults.limits.json();");
-                out.enclose("switch (raw->code) {", "}", |out| {
-                    for report in &context.reports() {
-                        let name = &report.request.ty.name;
-                        out.enclose(&format!("case fc_runtime::Report<{name}>::code: {{"), "}", |out| {
-                            out.line(format!(
-                                "auto report = fc_runtime::read_report<{name}>(protocol(), raw->text, allowance);"
-                            ));
-                            out.line("if (report) return AnyReport(*std::move(report));");
-                            out.line("break;");
-                        });
-                    }
-                    out.line("default: break;");
-                });
-                out.line("return AnyReport(*std::move(raw));");
-            },
-        );
-        out.blank();
         out.line(
             "\
+std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {
+  auto raw = queue_->next(wait);
+  if (!raw) return std::nullopt;
+  // They were read before they were acknowledged.
+  return fc_runtime::any_report<AnyReport>(protocol(), *std::move(raw));
+}
+
 fc_runtime::Result<Client, fc_runtime::Loss> Client::connect(const fc_runtime::ClientConfig& config) {
   auto connection = fc_runtime::Connection::connect(protocol(), config);
   if (!connection) return std::move(connection).error();
@@ -249,14 +291,9 @@ Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
   return Client(fc_runtime::Connection::connect_lazy(protocol(), config));
 }",
         );
-        for command in &context.commands() {
-            let (request, response) = (&command.request.ty.name, &command.response.ty.name);
-            out.blank();
-            let open = format!(
-                "fc_runtime::Called<{response}> Client::{}(const {request}& request, const fc_runtime::CallOptions& options) const {{",
-                command.method
-            );
-            out.enclose(&open, "}", |out| out.line("return connection_.call(request, options);"));
+        out.blank();
+        for group in calling(groups) {
+            out.line(format!("template class {}<Client>;", group.named("Calls")));
         }
     });
     out.finish()

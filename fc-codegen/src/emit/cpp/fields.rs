@@ -1,5 +1,6 @@
-//! What each message names of its fields, and each enum of its values: the sources beside the headers.
+//! The sources beside the headers of groups: what each message names of its fields, and each enum of its values.
 
+use super::groups::{self, Group};
 use super::layout::{float, integer, literal, raw};
 use super::messages::opens;
 use super::process;
@@ -16,19 +17,37 @@ use fc_spec::model::{
 };
 
 /// The source of a header.
-pub fn source(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) -> String {
+pub fn source(
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    header: &Header<'_, '_>,
+    groups: &[&Group<'_>],
+) -> String {
     let space = &context.model().protocol.id;
     let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/messages/{}.hpp\"", header.id));
+    out.line(format!("#include \"{space}/groups/{}.hpp\"", header.id));
     out.blank();
     out.line("#include <ostream>");
     out.blank();
+    if groups.iter().any(|group| !group.commands.is_empty()) {
+        out.line(format!("#include \"{space}/protocol.hpp\""));
+    }
     out.line("#include \"fc_runtime/codec.hpp\"");
     out.line("#include \"fc_runtime/process.hpp\"");
     out.blank();
     out.line("// Tables of fields, a line for each.");
     out.line("// clang-format off");
     out.blank();
+    if !header.items.is_empty() {
+        types(&mut out, context, samples, header);
+    }
+    groups::define(&mut out, context, groups);
+    out.finish()
+}
+
+/// What is declared of the message types of a header, and of their operations.
+fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) {
+    let space = &context.model().protocol.id;
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
             out.blank();
@@ -68,7 +87,6 @@ pub fn source(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, 
             ));
         }
     });
-    out.finish()
 }
 
 fn record(

@@ -113,22 +113,35 @@ impl Source {
         self.line(line);
     }
 
-    /// `using name = std::variant<…>;`.
-    pub fn variant(&mut self, name: &str, types: &[String]) {
+    /// `using name = of<…>;`.
+    pub fn alias(&mut self, name: &str, of: &str, types: &[String]) {
         let using = format!("using {name} =");
         let all = join(types);
-        if self.has_room([&using, " std::variant<", &all, ">;"]) {
-            return self.line(format!("{using} std::variant<{all}>;"));
+        if self.has_room([&using, " ", of, "<", &all, ">;"]) {
+            return self.line(format!("{using} {of}<{all}>;"));
         }
         // Whatever takes fewer lines.
         let mut beside = Self::cpp();
-        beside.parameters(&format!("{using} std::variant<"), types, ">;");
+        beside.parameters(&format!("{using} {of}<"), types, ">;");
         let mut below = Self::cpp();
         below.line(using);
-        below.parameters("    std::variant<", types, ">;");
+        below.parameters(&format!("    {of}<"), types, ">;");
         let (beside, below) = (beside.finish(), below.finish());
         let is_below = below.lines().count() <= beside.lines().count();
         self.line(if is_below { below } else { beside });
+    }
+
+    /// The first line of a class with its bases: on one line if they fit, else each on one of its own.
+    pub fn class(&mut self, name: &str, bases: &[String]) {
+        if bases.is_empty() {
+            return self.line(format!("class {name} {{"));
+        }
+        let open = format!("class {name} : ");
+        if self.has_room([&open, &join(bases), " {"]) {
+            return self.line([&open, &*join(bases), " {"].concat());
+        }
+        let between = format!(",\n{}", " ".repeat(columns_of(&open)));
+        self.line([&open, &*bases.join(&between), " {"].concat());
     }
 
     /// A namespace, whose contents are not indented.

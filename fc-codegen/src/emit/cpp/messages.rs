@@ -1,5 +1,7 @@
-//! The headers of message types: structs, enums and choices, and what ties requests to their codes.
+//! The headers of groups: their message types, which are structs, enums and choices, what ties requests to their codes, and
+//! what both stubs have of their operations.
 
+use super::groups::{self, Group};
 use super::layout::{CPP, Includes, literal};
 use super::process;
 use super::tables;
@@ -18,28 +20,55 @@ use fc_spec::model::{
     Value, Variant,
 };
 
-/// A header.
-pub fn header(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) -> String {
+/// A header, and the groups whose operations are in it.
+pub fn header(
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    header: &Header<'_, '_>,
+    groups: &[&Group<'_>],
+) -> String {
     let space = &context.model().protocol.id;
     let mut body = Source::cpp();
     let mut includes = Includes::default();
     includes.standard("iosfwd");
     includes.own("fc_runtime/message.hpp");
     for id in &header.needs {
-        includes.own(format!("{space}/messages/{id}.hpp"));
+        includes.own(format!("{space}/groups/{id}.hpp"));
     }
+    if !header.items.is_empty() {
+        types(&mut body, &mut includes, context, samples, header);
+    }
+    groups::declare(&mut body, &mut includes, context, groups);
+    let mut out = Source::cpp();
+    out.line("#pragma once");
+    out.blank();
+    includes.lines(&mut out);
+    out.blank();
+    out.append(&body);
+    out.finish()
+}
+
+/// The message types of a header, and their operations.
+fn types(
+    body: &mut Source,
+    includes: &mut Includes,
+    context: &Context<'_>,
+    samples: &Samples<'_>,
+    header: &Header<'_, '_>,
+) {
+    let space = &context.model().protocol.id;
     body.namespace(space, |out| {
         for item in &header.items {
             out.blank();
             match &item.shape {
                 Shape::Record(_, fields) => {
-                    structure(out, &mut includes, context, samples, item, fields);
+                    structure(out, includes, context, samples, item, fields);
                 }
                 Shape::Enum(shape, values) => {
-                    enumeration(out, &mut includes, context, item, shape, values);
+                    enumeration(out, includes, context, item, shape, values);
                 }
                 Shape::Choice(_, variants) => {
-                    choice(out, &mut includes, context, item, variants);
+                    choice(out, includes, context, item, variants);
                 }
             }
         }
@@ -70,13 +99,6 @@ pub fn header(context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, 
             ));
         }
     });
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    includes.lines(&mut out);
-    out.blank();
-    out.append(&body);
-    out.finish()
 }
 
 /// The command or report that an item opens, if it has a code.
@@ -357,7 +379,7 @@ fn choice(
         .iter()
         .map(|variant| context.name_of(&variant.ty).to_owned())
         .collect();
-    out.variant(&item.ty.name, &types);
+    out.alias(&item.ty.name, "std::variant", &types);
 }
 
 /// What ties a request or a report to its code.

@@ -1,10 +1,12 @@
-//! The generated part of the C++ package: message types, the protocol as a value, both stubs, tables.
+//! The generated part of the C++ package: a file for each group with its messages and its share of both stubs, and what puts
+//! them together: the protocol as a value, client and robot; tables.
 //!
 //! Headers are laid out as clang-format would; of the sources, which are tables of fields, it is told to leave them.
 
 mod assignments;
 mod client;
 mod fields;
+mod groups;
 mod layout;
 mod messages;
 mod process;
@@ -31,7 +33,8 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &CPP, &layout::CPP, docs);
     let samples = &Samples::new(model);
     let space = &model.protocol.id;
-    let (headers, _) = types::headers(context);
+    let groups = &groups::groups(context);
+    let (headers, homes) = types::headers(context);
     let ids: Vec<&str> = headers.iter().map(|header| header.id).collect();
     let mut files = vec![
         (format!("include/{space}/messages.hpp"), all(space, &ids)),
@@ -41,15 +44,18 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ),
         (
             "src/protocol.cpp".to_owned(),
-            protocol::source(context, &ids),
+            protocol::source(context, groups),
         ),
         (
             format!("include/{space}/client.hpp"),
-            client::header(context),
+            client::header(context, groups),
         ),
-        ("src/client.cpp".to_owned(), client::source(context)),
-        (format!("include/{space}/robot.hpp"), robot::header(context)),
-        ("src/robot.cpp".to_owned(), robot::source(context)),
+        ("src/client.cpp".to_owned(), client::source(context, groups)),
+        (
+            format!("include/{space}/robot.hpp"),
+            robot::header(context, groups),
+        ),
+        ("src/robot.cpp".to_owned(), robot::source(context, groups)),
     ];
     let has_tables = !context.package.tables.is_empty();
     if has_tables {
@@ -61,10 +67,11 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     }
     for header in &headers {
         let id = header.id;
-        let path = format!("include/{space}/messages/{id}.hpp");
-        files.push((path, messages::header(context, samples, header)));
-        let path = format!("src/messages/{id}.cpp");
-        files.push((path, fields::source(context, samples, header)));
+        let here = &groups::of_header(groups, header, &homes);
+        let path = format!("include/{space}/groups/{id}.hpp");
+        files.push((path, messages::header(context, samples, header, here)));
+        let path = format!("src/groups/{id}.cpp");
+        files.push((path, fields::source(context, samples, header, here)));
     }
     files.push((SOURCES.to_owned(), sources(&ids, has_tables)));
     let artifact = |(path, text): (String, String)| {
@@ -84,7 +91,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 fn all(space: &str, ids: &[&str]) -> String {
     let mut out = "#pragma once\n\n".to_owned();
     for id in ids {
-        out.extend(["#include \"", space, "/messages/", id, ".hpp\"\n"]);
+        out.extend(["#include \"", space, "/groups/", id, ".hpp\"\n"]);
     }
     out
 }
@@ -99,7 +106,7 @@ fn sources(ids: &[&str], has_tables: bool) -> String {
         out.push_str("  generated/src/tables.cpp\n");
     }
     for id in ids {
-        out.extend(["  generated/src/messages/", id, ".cpp\n"]);
+        out.extend(["  generated/src/groups/", id, ".cpp\n"]);
     }
     out.push_str(")\n");
     out

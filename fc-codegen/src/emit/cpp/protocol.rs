@@ -1,5 +1,6 @@
 //! The protocol as a value: header, envelopes, result codes, ports, limits and operations.
 
+use super::groups::Group;
 use super::layout::{Includes, integer, literal};
 use super::messages::effect_name;
 use crate::emit::stub::about;
@@ -80,7 +81,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, headers: &[&str]) -> String {
+pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
     let model = context.model();
     let space = &model.protocol.id;
     let mut out = Source::cpp();
@@ -88,9 +89,7 @@ pub fn source(context: &Context<'_>, headers: &[&str]) -> String {
     out.blank();
     out.line("#include <limits>");
     out.blank();
-    for id in headers {
-        out.line(format!("#include \"{space}/messages/{id}.hpp\""));
-    }
+    out.line(format!("#include \"{space}/messages.hpp\""));
     out.blank();
     out.line("// Tables, a line for each entry.");
     out.line("// clang-format off");
@@ -108,11 +107,9 @@ pub fn source(context: &Context<'_>, headers: &[&str]) -> String {
             envelope(out, "request", &context.package.request_envelope);
             envelope(out, "response", &context.package.response_envelope);
             defaults(out, context);
-            out.enclose("protocol.operations = {", "};", |out| {
-                for operation in &model.operations {
-                    operation_info(out, context, operation);
-                }
-            });
+            for group in groups {
+                out.line(format!("{}(protocol.operations);", group.function("add")));
+            }
             out.line("return protocol;");
         });
         out.blank();
@@ -308,6 +305,28 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
     }
 }
 
+/// What tells the protocol of a group's operations, as the header declares it.
+pub fn declare_operations(out: &mut Source, group: &Group<'_>) {
+    out.line("/// 把这一组的指令、上报和数据流加到 `protocol().operations` 中。");
+    out.line("/// Adds the operations of the group to those of `protocol()`.");
+    let open = format!("void add_{}(", group.id);
+    let parameters = ["std::vector<fc_runtime::OperationInfo>& operations".to_owned()];
+    out.parameters(&open, &parameters, ");");
+}
+
+/// The function for that.
+pub fn operations(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    let open = format!(
+        "void add_{}(std::vector<fc_runtime::OperationInfo>& operations) {{",
+        group.id
+    );
+    out.enclose(&open, "}", |out| {
+        for operation in &group.operations {
+            operation_info(out, context, operation);
+        }
+    });
+}
+
 fn operation_info(out: &mut Source, context: &Context<'_>, operation: &Operation) {
     let kind = match operation.kind() {
         Kind::Command => "Command",
@@ -337,7 +356,7 @@ fn operation_info(out: &mut Source, context: &Context<'_>, operation: &Operation
         None => "std::nullopt".to_owned(),
     };
     out.line(format!(
-        "{{{}, {code}, fc_runtime::OperationKind::{kind}, fc_runtime::Effect::{effect}, {}, {}, {ack}, {interval}, {}, {}}},",
+        "operations.push_back({{{}, {code}, fc_runtime::OperationKind::{kind}, fc_runtime::Effect::{effect}, {}, {}, {ack}, {interval}, {}, {}}});",
         literal(&operation.name),
         literal(&operation.title.zh),
         literal(&operation.title.en),

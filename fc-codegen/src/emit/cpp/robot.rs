@@ -1,37 +1,35 @@
-//! The robot's stub: a class with one method per command to derive from, one that answers with the spec's examples,
-//! and typed pushing of reports.
+//! The robot's stub: a class to derive from whose methods are those of its groups, one per command, one that answers with
+//! the spec's examples, and typed pushing of reports.
 
+use super::groups::Group;
 use super::layout::Includes;
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::ranges::{UNKNOWN, pass_through};
 use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
-use fc_spec::model::Effect;
 
 /// The header.
-pub fn header(context: &Context<'_>) -> String {
+pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
     let space = &context.model().protocol.id;
     let mut out = Source::cpp();
     out.line("#pragma once");
     out.blank();
     let mut includes = Includes::default();
-    for name in ["memory", "optional", "string_view", "vector"] {
-        includes.standard(name);
-    }
+    includes.standard("memory");
+    includes.standard("string_view");
     includes.own(format!("{space}/messages.hpp"));
     includes.own(format!("{space}/protocol.hpp"));
     includes.own("fc_runtime/server.hpp");
+    includes.own("fc_runtime/stacked.hpp");
     includes.lines(&mut out);
     out.blank();
-    let commands = context.commands();
     out.namespace(space, |out| {
-        robot(out, context, &commands);
+        robot(out, context, groups);
         out.blank();
-        partial(out, &commands);
+        partial(out, groups);
         out.blank();
-        example(out, &commands);
+        example(out, groups);
         out.blank();
         out.line(
             "\
@@ -41,12 +39,17 @@ pub fn header(context: &Context<'_>) -> String {
 [[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);",
         );
         out.blank();
-        reporter(out, context);
+        reporter(out, groups);
     });
     out.finish()
 }
 
-fn robot(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>]) {
+/// The groups that have commands.
+fn handling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+    groups.iter().filter(|group| !group.commands.is_empty())
+}
+
+fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
     out.line(
         "\
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
@@ -63,16 +66,47 @@ fn robot(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>]) {
 ///
 /// Methods may be called by several threads at once. When one takes too long, the robot answers with a
 /// timeout in its place, and it still runs to its end: `Context::is_abandoned` tells it that nobody
-/// waits any more.
-class Robot {
- public:
+/// waits any more.",
+    );
+    let bases: Vec<String> = handling(groups)
+        .map(|group| format!("public {}", group.named("Robot")))
+        .collect();
+    out.class("Robot", &bases);
+    out.line(
+        " public:
   Robot() = default;
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
   virtual ~Robot() = default;",
     );
     out.enclose("", "};", |out| {
-        for command in commands {
+        for (name, range) in pass_through(context) {
+            let mut docs = Docs::of(&range.text);
+            docs.paragraph(format!(
+                "Codes {} to {} that have no method of their own.",
+                range.first_spelling, range.last_spelling
+            ));
+            raw(out, docs, &name);
+        }
+        let other = [
+            "功能码不在规范中的指令。",
+            "Commands whose code is not in the spec.",
+        ];
+        raw(out, Docs::said(&other), UNKNOWN);
+    });
+}
+
+/// The commands of a group as a robot handles them.
+pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    let name = group.name("Robot");
+    out.docs(&Docs::said(&[
+        "一组指令，由 `Robot` 处理。",
+        "The commands of a group as `Robot` handles them.",
+    ]));
+    out.line(format!("class {name} {{"));
+    out.line(" public:");
+    out.enclose("", "", |out| {
+        for command in &group.commands {
             let mut docs = facts::operation_docs(command.operation);
             facts::operation_end(context.style, &mut docs, command.operation);
             docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
@@ -88,19 +122,37 @@ class Robot {
             ];
             out.parameters(&open, &parameters, ") = 0;");
         }
-        for (name, range) in pass_through(context) {
-            let mut docs = Docs::of(&range.text);
-            docs.paragraph(format!(
-                "Codes {} to {} that have no method of their own.",
-                range.first_spelling, range.last_spelling
-            ));
-            raw(out, docs, &name);
+    });
+    out.blank();
+    out.line(" protected:");
+    out.line("  // Nobody has a part of a robot alone.");
+    out.line(format!("  ~{name}() = default;"));
+    out.line("};");
+}
+
+/// What `PartialRobot` and `ExampleRobot` do with the commands of a group.
+pub fn defaults(out: &mut Source, group: &Group<'_>) {
+    out.docs(&Docs::said(&[
+        "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。",
+        "The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.",
+    ]));
+    out.line("template <class Base>");
+    out.line(format!("class {} : public Base {{", group.name("Defaults")));
+    out.line(" public:");
+    out.enclose("", "};", |out| {
+        for command in &group.commands {
+            let open = format!(
+                "fc_runtime::Replied<{}> {}(",
+                command.response.ty.name, command.method
+            );
+            let parameters = [
+                "const fc_runtime::Context& /*context*/".to_owned(),
+                format!("const {}& request", command.request.ty.name),
+            ];
+            out.parameters(&open, &parameters, ") override {");
+            out.line("  return Base::answer_(request);");
+            out.line("}");
         }
-        let other = [
-            "功能码不在规范中的指令。",
-            "Commands whose code is not in the spec.",
-        ];
-        raw(out, Docs::said(&other), UNKNOWN);
     });
 }
 
@@ -128,70 +180,97 @@ fn serve_raw(name: &str) -> String {
     )
 }
 
-/// A method of a robot as a class declares it that overrides it.
-fn overriding(out: &mut Source, command: &Call<'_>) {
-    let open = format!(
-        "fc_runtime::Replied<{}> {}(",
-        command.response.ty.name, command.method
-    );
-    let parameters = [
-        "const fc_runtime::Context& context".to_owned(),
-        format!("const {}& request", command.request.ty.name),
-    ];
-    out.parameters(&open, &parameters, ") override;");
+/// A robot that has a part for each group, a line for each.
+fn of_parts(
+    out: &mut Source,
+    docs: &str,
+    name: &str,
+    answers: &str,
+    constructor: &str,
+    groups: &[Group<'_>],
+) {
+    let answers = format!("fc_runtime::{answers}<Robot, protocol>");
+    let parts = handling(groups).map(|group| group.named("Defaults"));
+    let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
+    // The formatter would fill the lines, and wrap all of them anew for another group.
+    out.line("// clang-format off");
+    out.line(docs);
+    out.line(format!("class {name} : public fc_runtime::Stacked<"));
+    out.line(format!("    {}> {{", parts.join(",\n    ")));
+    out.line(" public:");
+    out.line(format!("  {constructor};"));
+    out.line(format!("  ~{name}() override;"));
+    out.line("};");
+    out.line("// clang-format on");
 }
 
-fn partial(out: &mut Source, commands: &[Call<'_>]) {
-    out.line(
+fn partial(out: &mut Source, groups: &[Group<'_>]) {
+    of_parts(
+        out,
         "\
-/// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。
-/// A robot that has some of the commands: the others are refused as not implemented.
-class PartialRobot : public Robot {
- public:",
+/// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。
+/// A robot that has some of the commands: the others are refused as not implemented. It is a `Robot`.",
+        "PartialRobot",
+        "Refusing",
+        "PartialRobot()",
+        groups,
     );
-    out.enclose("", "};", |out| {
-        for command in commands {
-            overriding(out, command);
-        }
-    });
 }
 
-fn example(out: &mut Source, commands: &[Call<'_>]) {
-    out.line(
+fn example(out: &mut Source, groups: &[Group<'_>]) {
+    of_parts(
+        out,
         "\
 /// 用规范中的示例回答指令，只用于演示和测试。会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，
-/// 除非要求它假装。
+/// 除非要求它假装。它是一个 `Robot`。
 /// Answers with the spec's examples, for demos and tests alone. It does not carry out what sets something
 /// in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend.
-class ExampleRobot : public Robot {
- public:
-  explicit ExampleRobot(bool pretend_motion = false) : pretend_motion_(pretend_motion) {}",
+/// It is a `Robot`.",
+        "ExampleRobot",
+        "Exemplary",
+        "explicit ExampleRobot(bool pretend_motion = false)",
+        groups,
     );
-    out.enclose("", "", |out| {
-        out.blank();
-        for command in commands {
-            overriding(out, command);
-        }
-    });
-    out.blank();
-    out.line(" private:");
-    out.line("  bool pretend_motion_;");
-    out.line("};");
 }
 
-fn reporter(out: &mut Source, context: &Context<'_>) {
+fn reporter(out: &mut Source, groups: &[Group<'_>]) {
     out.line(
         "\
 /// 主动上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
 ///
 /// Pushes reports: one method per report, which waits until it has ended at each app. Without a connection
-/// it goes to all apps connected at the moment. The server has to outlive it.
-class Reporter {
- public:
-  explicit Reporter(const fc_runtime::Server& server) : server_(&server) {}",
+/// it goes to all apps connected at the moment. The server has to outlive it.",
     );
-    out.enclose("", "", |out| {
-        for report in &context.reports() {
+    let bases: Vec<String> = groups
+        .iter()
+        .filter(|group| !group.reports.is_empty())
+        .map(|group| format!("public {}<Reporter>", group.named("Reporter")))
+        .collect();
+    out.class("Reporter", &bases);
+    out.line(
+        " public:
+  explicit Reporter(const fc_runtime::Server& server) : server_(&server) {}
+
+  /// 上报由它发出。What sends the reports.
+  [[nodiscard]] const fc_runtime::Server& server() const { return *server_; }
+
+ private:
+  const fc_runtime::Server* server_;
+};",
+    );
+}
+
+/// The reports of a group as methods of the reporter.
+pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+    out.docs(&Docs::said(&[
+        "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
+        "The reports of a group as methods of `Reporter`, which is `Self`.",
+    ]));
+    out.line("template <class Self>");
+    out.line(format!("class {} {{", group.name("Reporter")));
+    out.line(" public:");
+    out.enclose("", "};", |out| {
+        for report in &group.reports {
             let mut docs = facts::operation_docs(report.operation);
             facts::operation_end(context.style, &mut docs, report.operation);
             docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
@@ -204,28 +283,55 @@ class Reporter {
             out.parameters(
                 &format!("fc_runtime::Acknowledged {}(", report.method),
                 &parameters,
-                ") const;",
+                ") const {",
             );
+            out.line("  return static_cast<const Self*>(this)->server().push(report, to);");
+            out.line("}");
         }
     });
-    out.blank();
-    out.line(" private:");
-    out.line("  const fc_runtime::Server* server_;");
-    out.line("};");
 }
 
-/// Whether a command sets something in motion, as far as anybody knows.
-fn may_move(command: &Call<'_>) -> bool {
-    match command.operation.effect() {
-        Some(Effect::Read | Effect::Config) => false,
-        Some(Effect::Motion | Effect::Unknown) | None => true,
-    }
+/// What hands a request on to its method, as the header declares it.
+pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
+    out.line("/// 由机器人处理这一组的指令；其他指令没有结果。");
+    out.line("/// Has a robot handle a command of the group; none if it is of another.");
+    let open = format!(
+        "[[nodiscard]] std::optional<fc_runtime::Handled> serve_{}(",
+        group.id
+    );
+    let parameters = [
+        format!("{}& robot", group.name("Robot")),
+        "const fc_runtime::Context& context".to_owned(),
+        "std::string_view text".to_owned(),
+    ];
+    out.parameters(&open, &parameters, ");");
+}
+
+/// The function for that.
+pub fn serve(out: &mut Source, group: &Group<'_>) {
+    let open = format!(
+        "std::optional<fc_runtime::Handled> serve_{}({}& robot, const fc_runtime::Context& context, std::string_view text) {{",
+        group.id,
+        group.name("Robot")
+    );
+    out.enclose(&open, "}", |out| {
+        out.enclose("switch (context.code) {", "}", |out| {
+            for command in &group.commands {
+                let (request, response) = (&command.request.ty.name, &command.response.ty.name);
+                out.line(format!("case fc_runtime::Command<{request}>::code:"));
+                out.line(format!(
+                    "  return fc_runtime::serve<{request}, {response}>(protocol(), context, text, [&robot](const fc_runtime::Context& known, const {request}& request) {{ return robot.{}(known, request); }});",
+                    command.method
+                ));
+            }
+            out.line("default: return std::nullopt;");
+        });
+    });
 }
 
 /// The source.
-pub fn source(context: &Context<'_>) -> String {
+pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
     let space = &context.model().protocol.id;
-    let commands = context.commands();
     let ranges = pass_through(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/robot.hpp\""));
@@ -243,46 +349,25 @@ pub fn source(context: &Context<'_>) -> String {
             );
             out.enclose(&open, "}", |out| out.line("return fc_runtime::unknown_command(protocol());"));
         }
-        for command in &commands {
-            let (request, response) = (&command.request.ty.name, &command.response.ty.name);
-            let open = format!(
-                "fc_runtime::Replied<{response}> PartialRobot::{}(const fc_runtime::Context& /*context*/, const {request}& /*request*/) {{",
-                command.method
-            );
-            out.blank();
-            out.enclose(&open, "}", |out| {
-                out.line("return fc_runtime::not_implemented(protocol());");
-            });
-        }
-        for command in &commands {
-            let (request, response) = (&command.request.ty.name, &command.response.ty.name);
-            let open = format!(
-                "fc_runtime::Replied<{response}> ExampleRobot::{}(const fc_runtime::Context& /*context*/, const {request}& /*request*/) {{",
-                command.method
-            );
-            out.blank();
-            out.enclose(&open, "}", |out| {
-                if may_move(command) {
-                    out.line("if (!pretend_motion_) return fc_runtime::not_implemented(protocol());");
-                }
-                out.line(format!("return fc_runtime::example<{response}>();"));
-            });
-        }
+        out.blank();
+        out.line(
+            "\
+PartialRobot::PartialRobot() = default;
+PartialRobot::~PartialRobot() = default;
+
+ExampleRobot::ExampleRobot(bool pretend_motion) { pretend_motion_ = pretend_motion; }
+ExampleRobot::~ExampleRobot() = default;",
+        );
         out.blank();
         out.enclose("fc_runtime::Service service(std::shared_ptr<Robot> robot) {", "}", |out| {
             let open = "return [robot = std::move(robot)](const fc_runtime::Context& context, std::string_view text) -> fc_runtime::Handled {";
             out.enclose(open, "};", |out| {
-                out.enclose("switch (context.code) {", "}", |out| {
-                    for command in &commands {
-                        let (request, response) = (&command.request.ty.name, &command.response.ty.name);
-                        out.line(format!("case fc_runtime::Command<{request}>::code:"));
-                        out.line(format!(
-                            "  return fc_runtime::serve<{request}, {response}>(protocol(), context, text, [&robot](const fc_runtime::Context& known, const {request}& request) {{ return robot->{}(known, request); }});",
-                            command.method
-                        ));
-                    }
-                    out.line("default: break;");
-                });
+                for group in handling(groups) {
+                    let serve = group.function("serve");
+                    out.line(format!(
+                        "if (auto handled = {serve}(*robot, context, text)) return *std::move(handled);"
+                    ));
+                }
                 for (name, range) in &ranges {
                     let (first, last) = (&range.first_spelling, &range.last_spelling);
                     // What every code is, compilers warn of.
@@ -303,15 +388,6 @@ pub fn source(context: &Context<'_>) -> String {
                 out.line(serve_raw(UNKNOWN));
             });
         });
-        for report in &context.reports() {
-            let name = &report.request.ty.name;
-            out.blank();
-            let open = format!(
-                "fc_runtime::Acknowledged Reporter::{}(const {name}& report, std::optional<fc_runtime::ConnectionId> to) const {{",
-                report.method
-            );
-            out.enclose(&open, "}", |out| out.line("return server_->push(report, to);"));
-        }
     });
     out.finish()
 }

@@ -37,7 +37,7 @@ pub fn integer_type(name: &str) -> String {
     format!("std::{unsigned}int{bits}_t")
 }
 
-/// A header: a module's types, or those of several that need each other.
+/// A header: a group's types and operations, or those of several groups that need each other.
 pub struct Header<'p, 'm> {
     /// What it is called.
     pub id: &'p str,
@@ -47,7 +47,7 @@ pub struct Header<'p, 'm> {
     pub needs: BTreeSet<&'p str>,
 }
 
-/// The message types by header, and for each module the header that has its types.
+/// The message types by header, and for each group the header that has its types.
 pub fn headers<'p, 'm>(
     context: &'p Context<'m>,
 ) -> (Vec<Header<'p, 'm>>, BTreeMap<&'p str, &'p str>) {
@@ -102,6 +102,18 @@ pub fn headers<'p, 'm>(
             }),
         }
     }
+    // What has streams alone has no types, and a header nevertheless.
+    for operation in &context.model().operations {
+        let id = operation.group.as_str();
+        if homes
+            .insert(id, homes.get(id).copied().unwrap_or(id))
+            .is_none()
+        {
+            let (items, needs) = (Vec::new(), BTreeSet::new());
+            headers.push(Header { id, items, needs });
+        }
+    }
+    headers.sort_by_key(|header| header.id);
     for header in &mut headers {
         let mut ordered = Vec::new();
         for item in header.items.clone() {

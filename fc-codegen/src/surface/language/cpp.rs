@@ -26,7 +26,7 @@ pub static CPP: Language = Language {
     ),
     fields: Words::new("extra"),
     methods: Words::new(
-        "close connect connect_lazy connection data follow reports state states unknown",
+        "close connect connect_lazy connection data follow reports server state states unknown",
     ),
     escape: |_, word| Some(format!("{word}_")),
     group_types: &[],

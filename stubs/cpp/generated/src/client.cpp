@@ -2,6 +2,8 @@
 
 #include "fc/client.hpp"
 
+#include "fc_runtime/any_report.hpp"
+
 // clang-format off
 
 namespace fc {
@@ -10,41 +12,7 @@ std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {
   auto raw = queue_->next(wait);
   if (!raw) return std::nullopt;
   // They were read before they were acknowledged.
-  const fc_runtime::Allowance allowance = protocol().defaults.limits.json();
-  switch (raw->code) {
-    case fc_runtime::Report<MapSyncProgress>::code: {
-      auto report = fc_runtime::read_report<MapSyncProgress>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    case fc_runtime::Report<RechargeProgress>::code: {
-      auto report = fc_runtime::read_report<RechargeProgress>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    case fc_runtime::Report<RobotStatus>::code: {
-      auto report = fc_runtime::read_report<RobotStatus>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    case fc_runtime::Report<ObstacleAnnouncement>::code: {
-      auto report = fc_runtime::read_report<ObstacleAnnouncement>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    case fc_runtime::Report<TargetReached>::code: {
-      auto report = fc_runtime::read_report<TargetReached>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    case fc_runtime::Report<TaskProgress>::code: {
-      auto report = fc_runtime::read_report<TaskProgress>(protocol(), raw->text, allowance);
-      if (report) return AnyReport(*std::move(report));
-      break;
-    }
-    default: break;
-  }
-  return AnyReport(*std::move(raw));
+  return fc_runtime::any_report<AnyReport>(protocol(), *std::move(raw));
 }
 
 fc_runtime::Result<Client, fc_runtime::Loss> Client::connect(const fc_runtime::ClientConfig& config) {
@@ -57,152 +25,19 @@ Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
   return Client(fc_runtime::Connection::connect_lazy(protocol(), config));
 }
 
-fc_runtime::Called<ListIotDevicesResponse> Client::list_iot_devices(const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetFloorsResponse> Client::get_floors(const GetFloorsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetCellConfigResponse> Client::get_cell_config(const GetCellConfigRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SetCellConfigResponse> Client::set_cell_config(const SetCellConfigRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<CheckCondition0333Response> Client::check_condition_0333(const CheckCondition0333Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetRobotSnResponse> Client::get_robot_sn(const GetRobotSnRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetFirmwareVersionsResponse> Client::get_firmware_versions(const GetFirmwareVersionsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetLaserScanResponse> Client::get_laser_scan(const GetLaserScanRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetMapImageResponse> Client::get_map_image(const GetMapImageRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<ListMapsResponse> Client::list_maps(const ListMapsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetMapInfoResponse> Client::get_map_info(const GetMapInfoRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SaveMapResponse> Client::save_map(const SaveMapRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<DownloadMapsResponse> Client::download_maps(const DownloadMapsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<UploadMapsResponse> Client::upload_maps(const UploadMapsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetMapSyncProgressResponse> Client::get_map_sync_progress(const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<StartRechargeResponse> Client::start_recharge(const StartRechargeRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<CancelRechargeResponse> Client::cancel_recharge(const CancelRechargeRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetRechargeStatusResponse> Client::get_recharge_status(const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<Switch0a08Response> Client::switch_0a08(const Switch0a08Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SetVoiceReminderResponse> Client::set_voice_reminder(const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SwitchEnvironmentResponse> Client::switch_environment(const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SetStandbyPositionResponse> Client::set_standby_position(const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetStandbyPositionResponse> Client::get_standby_position(const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<SetPositions0313Response> Client::set_positions_0313(const SetPositions0313Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetPositions0314Response> Client::get_positions_0314(const GetPositions0314Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetStationResponse> Client::get_station(const GetStationRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<UploadMapStationsResponse> Client::upload_map_stations(const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<AddStationResponse> Client::add_station(const AddStationRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<DeleteStationResponse> Client::delete_station(const DeleteStationRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<RenameStationResponse> Client::rename_station(const RenameStationRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<ListFaultsResponse> Client::list_faults(const ListFaultsRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetSelfCheckResponse> Client::get_self_check(const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<CreateTaskResponse> Client::create_task(const CreateTaskRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetTaskStatusResponse> Client::get_task_status(const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<Unnamed0309Response> Client::unnamed_0309(const Unnamed0309Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<Unnamed0460Response> Client::unnamed_0460(const Unnamed0460Request& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
-
-fc_runtime::Called<GetUpperBodyStatusResponse> Client::get_upper_body_status(const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options) const {
-  return connection_.call(request, options);
-}
+template class groups::BuildingCalls<Client>;
+template class groups::CellCalls<Client>;
+template class groups::DispatchCalls<Client>;
+template class groups::IdentityCalls<Client>;
+template class groups::LaserCalls<Client>;
+template class groups::MapCalls<Client>;
+template class groups::RechargeCalls<Client>;
+template class groups::SettingsCalls<Client>;
+template class groups::StandbyCalls<Client>;
+template class groups::StationCalls<Client>;
+template class groups::StatusCalls<Client>;
+template class groups::TaskCalls<Client>;
+template class groups::UnnamedCalls<Client>;
+template class groups::UpperBodyCalls<Client>;
 
 }  // namespace fc

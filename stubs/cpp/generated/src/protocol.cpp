@@ -4,21 +4,7 @@
 
 #include <limits>
 
-#include "fc/messages/building.hpp"
-#include "fc/messages/cell.hpp"
-#include "fc/messages/dispatch.hpp"
-#include "fc/messages/identity.hpp"
-#include "fc/messages/laser.hpp"
-#include "fc/messages/map.hpp"
-#include "fc/messages/recharge.hpp"
-#include "fc/messages/settings.hpp"
-#include "fc/messages/standby.hpp"
-#include "fc/messages/station.hpp"
-#include "fc/messages/status.hpp"
-#include "fc/messages/task.hpp"
-#include "fc/messages/types.hpp"
-#include "fc/messages/unnamed.hpp"
-#include "fc/messages/upper_body.hpp"
+#include "fc/messages.hpp"
 
 // Tables, a line for each entry.
 // clang-format off
@@ -80,58 +66,20 @@ fc_runtime::Protocol make_protocol() {
   protocol.defaults.limits.in_flight = 256;
   protocol.defaults.limits.queued_reports = 256;
   protocol.defaults.limits.connections = 64;
-  protocol.operations = {
-    {"list_iot_devices", std::uint16_t{0x0A07}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取物联网设备列表", "List the IoT devices of a type", std::nullopt, std::nullopt, fc_runtime::type_info<ListIotDevicesRequest>(), fc_runtime::type_info<ListIotDevicesResponse>()},
-    {"get_floors", std::uint16_t{0x03A1}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取楼层信息", "Get the floors", std::nullopt, std::nullopt, fc_runtime::type_info<GetFloorsRequest>(), fc_runtime::type_info<GetFloorsResponse>()},
-    {"get_cell_config", std::uint16_t{0x0A02}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人格口门配置", "Get the compartment configuration", std::nullopt, std::nullopt, fc_runtime::type_info<GetCellConfigRequest>(), fc_runtime::type_info<GetCellConfigResponse>()},
-    {"set_cell_config", std::uint16_t{0x0A0B}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人格口配置", "Set the compartment configuration", std::nullopt, std::nullopt, fc_runtime::type_info<SetCellConfigRequest>(), fc_runtime::type_info<SetCellConfigResponse>()},
-    {"upload_contended_resources", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "上传竞争资源到调度系统", "Upload contended resources to the dispatching system", std::nullopt, std::nullopt, fc_runtime::type_info<UploadContendedResourcesRequest>(), fc_runtime::type_info<UploadContendedResourcesResponse>()},
-    {"check_condition_0333", std::uint16_t{0x0333}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "检查条件是否满足（0x0333，用途不详）", "Check a condition (0x0333, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<CheckCondition0333Request>(), fc_runtime::type_info<CheckCondition0333Response>()},
-    {"get_robot_sn", std::uint16_t{0x0A01}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人序列号", "Get the serial number", std::nullopt, std::nullopt, fc_runtime::type_info<GetRobotSnRequest>(), fc_runtime::type_info<GetRobotSnResponse>()},
-    {"get_firmware_versions", std::uint16_t{0x0A0A}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取固件版本", "Get the firmware versions", std::nullopt, std::nullopt, fc_runtime::type_info<GetFirmwareVersionsRequest>(), fc_runtime::type_info<GetFirmwareVersionsResponse>()},
-    {"get_laser_scan", std::uint16_t{0x0001}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取激光数据", "Get the lidar data", std::nullopt, std::nullopt, fc_runtime::type_info<GetLaserScanRequest>(), fc_runtime::type_info<GetLaserScanResponse>()},
-    {"set_target_map", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置目标地图", "Set the target map", std::nullopt, std::nullopt, fc_runtime::type_info<SetTargetMapRequest>(), fc_runtime::type_info<SetTargetMapResponse>()},
-    {"get_map_image", std::uint16_t{0x0111}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取地图图像", "Get the picture of a map", std::nullopt, std::nullopt, fc_runtime::type_info<GetMapImageRequest>(), fc_runtime::type_info<GetMapImageResponse>()},
-    {"list_maps", std::uint16_t{0x0103}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取地图列表", "List the maps", std::nullopt, std::nullopt, fc_runtime::type_info<ListMapsRequest>(), fc_runtime::type_info<ListMapsResponse>()},
-    {"get_map_info", std::uint16_t{0x010C}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取地图信息", "Get the details of a map", std::nullopt, std::nullopt, fc_runtime::type_info<GetMapInfoRequest>(), fc_runtime::type_info<GetMapInfoResponse>()},
-    {"save_map", std::uint16_t{0x0109}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "保存地图", "Save the map", std::nullopt, std::nullopt, fc_runtime::type_info<SaveMapRequest>(), fc_runtime::type_info<SaveMapResponse>()},
-    {"download_maps", std::uint16_t{0x0320}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "下载地图", "Download maps", std::nullopt, std::nullopt, fc_runtime::type_info<DownloadMapsRequest>(), fc_runtime::type_info<DownloadMapsResponse>()},
-    {"upload_maps", std::uint16_t{0x0321}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "上传地图", "Upload maps", std::nullopt, std::nullopt, fc_runtime::type_info<UploadMapsRequest>(), fc_runtime::type_info<UploadMapsResponse>()},
-    {"get_map_sync_progress", std::uint16_t{0x0322}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取正在同步的地图进度", "Get the progress of map synchronisation", std::nullopt, std::nullopt, fc_runtime::type_info<GetMapSyncProgressRequest>(), fc_runtime::type_info<GetMapSyncProgressResponse>()},
-    {"map_sync_progress", std::uint16_t{0x0343}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "上报地图同步进度", "Progress of map synchronisation", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<MapSyncProgress>(), fc_runtime::type_info<MapSyncProgressAck>()},
-    {"start_recharge", std::uint16_t{0x0A04}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "发起一键回充", "Start returning to dock", std::nullopt, std::nullopt, fc_runtime::type_info<StartRechargeRequest>(), fc_runtime::type_info<StartRechargeResponse>()},
-    {"cancel_recharge", std::uint16_t{0x0A05}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "取消一键回充", "Cancel returning to dock", std::nullopt, std::nullopt, fc_runtime::type_info<CancelRechargeRequest>(), fc_runtime::type_info<CancelRechargeResponse>()},
-    {"get_recharge_status", std::uint16_t{0x0A06}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取回充状态", "Get the charging state", std::nullopt, std::nullopt, fc_runtime::type_info<GetRechargeStatusRequest>(), fc_runtime::type_info<GetRechargeStatusResponse>()},
-    {"recharge_progress", std::uint16_t{0x0B01}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报回充过程和结果", "Progress and result of charging", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<RechargeProgress>(), fc_runtime::type_info<RechargeProgressAck>()},
-    {"switch_0a08", std::uint16_t{0x0A08}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "读取或设置开关（0x0A08，用途不详）", "Read or set a switch (0x0A08, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<Switch0a08Request>(), fc_runtime::type_info<Switch0a08Response>()},
-    {"set_voice_reminder", std::uint16_t{0x0A09}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "语音提醒的开关", "Voice reminder switch", std::nullopt, std::nullopt, fc_runtime::type_info<SetVoiceReminderRequest>(), fc_runtime::type_info<SetVoiceReminderResponse>()},
-    {"switch_environment", std::uint16_t{0x03A0}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "切换业务环境", "Switch the environment", std::nullopt, std::nullopt, fc_runtime::type_info<SwitchEnvironmentRequest>(), fc_runtime::type_info<SwitchEnvironmentResponse>()},
-    {"set_standby_position", std::uint16_t{0x0311}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人待命时的位置", "Set the standby position", std::nullopt, std::nullopt, fc_runtime::type_info<SetStandbyPositionRequest>(), fc_runtime::type_info<SetStandbyPositionResponse>()},
-    {"get_standby_position", std::uint16_t{0x0312}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人待命时的位置", "Get the standby position", std::nullopt, std::nullopt, fc_runtime::type_info<GetStandbyPositionRequest>(), fc_runtime::type_info<GetStandbyPositionResponse>()},
-    {"set_positions_0313", std::uint16_t{0x0313}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "设置点位（0x0313，用途不详）", "Set points (0x0313, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<SetPositions0313Request>(), fc_runtime::type_info<SetPositions0313Response>()},
-    {"get_positions_0314", std::uint16_t{0x0314}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "获取点位（0x0314，用途不详）", "Get points (0x0314, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<GetPositions0314Request>(), fc_runtime::type_info<GetPositions0314Response>()},
-    {"get_station", std::uint16_t{0x0A03}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "根据站点 ID 获取站点信息", "Get a station by its ID", std::nullopt, std::nullopt, fc_runtime::type_info<GetStationRequest>(), fc_runtime::type_info<GetStationResponse>()},
-    {"upload_map_stations", std::uint16_t{0x0308}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "一键上报地图点位信息", "Report the stations of the map", std::nullopt, std::nullopt, fc_runtime::type_info<UploadMapStationsRequest>(), fc_runtime::type_info<UploadMapStationsResponse>()},
-    {"add_station", std::uint16_t{0x0302}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "添加站点信息", "Add a station", std::nullopt, std::nullopt, fc_runtime::type_info<AddStationRequest>(), fc_runtime::type_info<AddStationResponse>()},
-    {"delete_station", std::uint16_t{0x0304}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "删除站点信息", "Delete a station", std::nullopt, std::nullopt, fc_runtime::type_info<DeleteStationRequest>(), fc_runtime::type_info<DeleteStationResponse>()},
-    {"rename_station", std::uint16_t{0x0305}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "重命名站点", "Rename a station", std::nullopt, std::nullopt, fc_runtime::type_info<RenameStationRequest>(), fc_runtime::type_info<RenameStationResponse>()},
-    {"list_stations", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取站点列表", "List the stations of a map", std::nullopt, std::nullopt, fc_runtime::type_info<ListStationsRequest>(), fc_runtime::type_info<ListStationsResponse>()},
-    {"get_current_station", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人所在站点", "Get the station the robot is at", std::nullopt, std::nullopt, fc_runtime::type_info<GetCurrentStationRequest>(), fc_runtime::type_info<GetCurrentStationResponse>()},
-    {"station_reached", std::nullopt, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报机器人抵达站点", "Station reached", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<StationReached>(), fc_runtime::type_info<StationReachedAck>()},
-    {"list_faults", std::uint16_t{0x0A0C}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取异常列表", "List the faults", std::nullopt, std::nullopt, fc_runtime::type_info<ListFaultsRequest>(), fc_runtime::type_info<ListFaultsResponse>()},
-    {"get_self_check", std::uint16_t{0x0A0D}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取自检结果", "Get the result of the self-check", std::nullopt, std::nullopt, fc_runtime::type_info<GetSelfCheckRequest>(), fc_runtime::type_info<GetSelfCheckResponse>()},
-    {"robot_status", std::uint16_t{0x0342}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报机器人状态", "Status of the robot", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<RobotStatus>(), fc_runtime::type_info<RobotStatusAck>()},
-    {"create_task", std::uint16_t{0x0350}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "创建巡游/送物任务", "Create a patrol or delivery task", std::nullopt, std::nullopt, fc_runtime::type_info<CreateTaskRequest>(), fc_runtime::type_info<CreateTaskResponse>()},
-    {"execute_task", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "执行任务", "Execute a task", std::nullopt, std::nullopt, fc_runtime::type_info<ExecuteTaskRequest>(), fc_runtime::type_info<ExecuteTaskResponse>()},
-    {"get_task_status", std::uint16_t{0x0353}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取任务状态", "Get a task's status", std::nullopt, std::nullopt, fc_runtime::type_info<GetTaskStatusRequest>(), fc_runtime::type_info<GetTaskStatusResponse>()},
-    {"get_task_history", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取任务执行历史记录", "Get a task's execution history", std::nullopt, std::nullopt, fc_runtime::type_info<GetTaskHistoryRequest>(), fc_runtime::type_info<GetTaskHistoryResponse>()},
-    {"obstacle_announcement", std::uint16_t{0x0341}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "遇障语音播报", "Voice announcement of an obstacle", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<ObstacleAnnouncement>(), fc_runtime::type_info<ObstacleAnnouncementAck>()},
-    {"target_reached", std::uint16_t{0x0340}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "到达目标点通知上报", "Target reached", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<TargetReached>(), fc_runtime::type_info<TargetReachedAck>()},
-    {"task_progress", std::uint16_t{0x0345}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "上报机器人任务进度", "Task progress", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<TaskProgress>(), fc_runtime::type_info<TaskProgressAck>()},
-    {"unnamed_0309", std::uint16_t{0x0309}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0309）", "Unnamed command (0x0309)", std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0309Request>(), fc_runtime::type_info<Unnamed0309Response>()},
-    {"unnamed_0460", std::uint16_t{0x0460}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0460）", "Unnamed command (0x0460)", std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0460Request>(), fc_runtime::type_info<Unnamed0460Response>()},
-    {"get_upper_body_status", std::uint16_t{0x0204}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "查询上装", "Get the upper body's status", std::nullopt, std::nullopt, fc_runtime::type_info<GetUpperBodyStatusRequest>(), fc_runtime::type_info<GetUpperBodyStatusResponse>()},
-  };
+  groups::add_building(protocol.operations);
+  groups::add_cell(protocol.operations);
+  groups::add_dispatch(protocol.operations);
+  groups::add_identity(protocol.operations);
+  groups::add_laser(protocol.operations);
+  groups::add_map(protocol.operations);
+  groups::add_recharge(protocol.operations);
+  groups::add_settings(protocol.operations);
+  groups::add_standby(protocol.operations);
+  groups::add_station(protocol.operations);
+  groups::add_status(protocol.operations);
+  groups::add_task(protocol.operations);
+  groups::add_unnamed(protocol.operations);
+  groups::add_upper_body(protocol.operations);
   return protocol;
 }
 

@@ -38,6 +38,9 @@ struct Refusal {
 /// The refusal as one line.
 [[nodiscard]] std::string to_string(const Refusal& refusal);
 
+/// What a handler has come to: the text of a body with the keys of the response alone, or a refusal.
+using Handled = Result<std::string, Refusal>;
+
 /// Why a connection was lost, or why there is none.
 enum class LossKind {
   NotYet,          ///< The first attempt to connect is not over.

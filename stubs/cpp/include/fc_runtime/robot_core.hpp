@@ -19,12 +19,10 @@
 #include "fc_runtime/client_core.hpp"
 #include "fc_runtime/count.hpp"
 #include "fc_runtime/frame.hpp"
+#include "fc_runtime/push.hpp"
 #include "fc_runtime/session.hpp"
 
 namespace fc_runtime {
-
-/// Which connection of a robot; counted from 1, and never used again.
-using ConnectionId = std::uint64_t;
 
 /// What a robot has seen since it was started.
 struct RobotCounters {
@@ -57,35 +55,6 @@ struct Request {
   /// Set as soon as nobody waits for the answer any more.
   std::shared_ptr<const std::atomic<bool>> abandoned;
 };
-
-/// What a handler has come to: the text of a body with the keys of the response alone, or a refusal.
-using Handled = Result<std::string, Refusal>;
-
-/// How a report ended at one app.
-enum class AckOutcomeKind {
-  Acknowledged,  ///< The app has acknowledged it.
-  Refused,       ///< The app has answered with another result than success.
-  Invalid,       ///< The app has answered with something that is not an acknowledgement.
-  TimedOut,      ///< No acknowledgement has come, however often it was repeated.
-  Dropped,       ///< The app was so slow that the report gave way to newer ones.
-  Closed,        ///< The connection ended first.
-};
-
-/// The name of an outcome, the same in every language.
-[[nodiscard]] std::string_view name(AckOutcomeKind kind) noexcept;
-
-/// How a report ended at one app.
-struct AckOutcome {
-  /// The app.
-  ConnectionId connection = 0;
-  /// How it ended.
-  AckOutcomeKind kind = AckOutcomeKind::Closed;
-  /// What the app said, for `Refused`.
-  std::optional<Refusal> refusal;
-};
-
-/// What is done when a report has ended at every app that it was sent to.
-using Pushed = std::function<void(std::vector<AckOutcome>)>;
 
 /// What a robot needs to know, all of it filled in.
 struct RobotSettings {

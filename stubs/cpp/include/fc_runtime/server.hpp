@@ -13,6 +13,7 @@
 
 #include "fc_runtime/data.hpp"
 #include "fc_runtime/operation.hpp"
+#include "fc_runtime/push.hpp"
 #include "fc_runtime/robot_core.hpp"
 #include "fc_runtime/typed.hpp"
 
@@ -78,31 +79,6 @@ struct BindError {
 
 /// The error as one line.
 [[nodiscard]] inline std::string to_string(const BindError& error) { return error.detail; }
-
-/// Why a report or stream was not even queued.
-enum class PushErrorKind {
-  Invalid,       ///< It breaks one of its own constraints.
-  Frame,         ///< It does not fit into a frame.
-  NoConnection,  ///< There is no such connection any more; for a stream: no data connection.
-  Ambiguous,     ///< Several apps share the address, and nothing tells whose data connection it is.
-};
-
-/// The name of a kind, the same in every language.
-[[nodiscard]] std::string_view name(PushErrorKind kind) noexcept;
-
-/// Why a report or stream was not even queued.
-struct PushError {
-  /// Why.
-  PushErrorKind kind = PushErrorKind::NoConnection;
-  /// What is wrong with it, for `Invalid`.
-  std::optional<BodyError> body;
-};
-
-/// The error as one line.
-[[nodiscard]] std::string to_string(const PushError& error);
-
-/// What a report has come to at each app that it was sent to.
-using Acknowledged = Result<std::vector<AckOutcome>, PushError>;
 
 /// A frame of raw bytes that an app has sent.
 struct AppStream {

@@ -12,13 +12,15 @@
 #include "fc/protocol.hpp"
 #include "fc_runtime/client.hpp"
 #include "fc_runtime/following.hpp"
+#include "fc_runtime/types.hpp"
 
 namespace fc {
 
 /// 任意一个主动上报；编码不在规范中的，原样保留。
 /// Any report; one whose code the spec does not know is kept unchanged.
-using AnyReport = std::variant<MapSyncProgress, RechargeProgress, RobotStatus, ObstacleAnnouncement,
-                               TargetReached, TaskProgress, fc_runtime::RawReport>;
+using AnyReport =
+    fc_runtime::VariantOf<groups::MapReports, groups::RechargeReports, groups::StatusReports,
+                          groups::TaskReports, fc_runtime::Types<fc_runtime::RawReport>>;
 
 /// 收到的主动上报，按到达的先后。
 ///
@@ -51,7 +53,20 @@ class Reports {
 /// A robot as seen from the app: one method per command, which waits for the response. Cheap to copy; all
 /// copies share one connection. May be used from any thread. What must not wait calls
 /// `connection().call_async`.
-class Client {
+class Client : public groups::BuildingCalls<Client>,
+               public groups::CellCalls<Client>,
+               public groups::DispatchCalls<Client>,
+               public groups::IdentityCalls<Client>,
+               public groups::LaserCalls<Client>,
+               public groups::MapCalls<Client>,
+               public groups::RechargeCalls<Client>,
+               public groups::SettingsCalls<Client>,
+               public groups::StandbyCalls<Client>,
+               public groups::StationCalls<Client>,
+               public groups::StatusCalls<Client>,
+               public groups::TaskCalls<Client>,
+               public groups::UnnamedCalls<Client>,
+               public groups::UpperBodyCalls<Client> {
  public:
   /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
   ///
@@ -99,647 +114,54 @@ class Client {
       const Request& request, const fc_runtime::CallOptions& options = {}) const {
     return fc_runtime::follow<Message>(connection_, request, options);
   }
-  /// 获取物联网设备列表
-  /// List the IoT devices of a type
-  ///
-  /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
-  ///
-  /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys of
-  /// the request and the response.
-  ///
-  /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-  fc_runtime::Called<ListIotDevicesResponse> list_iot_devices(
-      const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取楼层信息
-  /// Get the floors
-  ///
-  /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
-  ///
-  /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title is
-  /// lost; the name is inferred from the keys of the response.
-  ///
-  /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/get_floors.md`
-  fc_runtime::Called<GetFloorsResponse> get_floors(
-      const GetFloorsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取机器人格口门配置
-  /// Get the compartment configuration
-  ///
-  /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
-  ///
-  /// Returns the number of compartments and, for each, its number, size and doors; location and
-  /// lock may be missing. This is presumably the active configuration; the source does not say so.
-  ///
-  /// Code 0x0A02. Only reads.
-  ///
-  /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-  fc_runtime::Called<GetCellConfigResponse> get_cell_config(
-      const GetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 设置机器人格口配置
-  /// Set the compartment configuration
-  ///
-  /// 有两种请求，靠 `data` 中的字段区分：
-  ///
-  /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
-  ///   只设置当前生效的是哪一种。
-  /// - 旧版：app
-  ///   下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
-  ///
-  /// There are two requests, told apart by the keys of `data`:
-  ///
-  /// - New form (updated November 2023): the layouts are stored in a configuration file on the
-  ///   chassis (see the table of layouts), and the app selects the active one.
-  /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-  ///   robot. Its values are the four layouts of the old table, which should be those of the table
-  ///   of layouts without location and index.
-  ///
-  /// Code 0x0A0B. Changes the configuration.
-  ///
-  /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-  fc_runtime::Called<SetCellConfigResponse> set_cell_config(
-      const SetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 检查条件是否满足（0x0333，用途不详）
-  /// Check a condition (0x0333, purpose unknown)
-  ///
-  /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
-  ///
-  /// The heading is lost. The request holds the envelope alone and the response says whether a
-  /// condition is met; which one is unknown.
-  ///
-  /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
-  ///
-  /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-  /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-  fc_runtime::Called<CheckCondition0333Response> check_condition_0333(
-      const CheckCondition0333Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取机器人序列号
-  /// Get the serial number
-  ///
-  /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
-  ///
-  /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
-  /// robot's model.
-  ///
-  /// Code 0x0A01. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-  fc_runtime::Called<GetRobotSnResponse> get_robot_sn(
-      const GetRobotSnRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取固件版本
-  /// Get the firmware versions
-  ///
-  /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
-  /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
-  ///
-  /// When it starts up, the main controller (主控) asks each module for its version and keeps it in
-  /// memory; it fills these into the JSON of the response. There are three modules: the firmware of
-  /// the cabinet (upper body), the firmware of the chassis (底盘), and the navigation software.
-  ///
-  /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-  fc_runtime::Called<GetFirmwareVersionsResponse> get_firmware_versions(
-      const GetFirmwareVersionsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取激光数据
-  /// Get the lidar data
-  ///
-  /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
-  ///
-  /// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
-  ///
-  /// Code 0x0001. Only reads. Since 2023-08-10.
-  ///
-  /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-  /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
-  fc_runtime::Called<GetLaserScanResponse> get_laser_scan(
-      const GetLaserScanRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取地图图像
-  /// Get the picture of a map
-  ///
-  /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
-  ///
-  /// Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64
-  /// inside the JSON, so the response may be large.
-  ///
-  /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
-  ///
-  /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_image.md`
-  fc_runtime::Called<GetMapImageResponse> get_map_image(
-      const GetMapImageRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取地图列表
-  /// List the maps
-  ///
-  /// 返回地图列表，含各文件的路径、楼栋和楼层。
-  ///
-  /// Returns the maps with the paths of their files, their building and their floor.
-  ///
-  /// Code 0x0103. Only reads.
-  ///
-  /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/list_maps.md`
-  fc_runtime::Called<ListMapsResponse> list_maps(const ListMapsRequest& request,
-                                                 const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取地图信息
-  /// Get the details of a map
-  ///
-  /// Code 0x010C. Only reads.
-  ///
-  /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_info.md`
-  fc_runtime::Called<GetMapInfoResponse> get_map_info(
-      const GetMapInfoRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 保存地图
-  /// Save the map
-  ///
-  /// 以指定的名称保存地图，并给出它的楼栋和楼层。
-  ///
-  /// Saves the map under a name, with its building and floor.
-  ///
-  /// Code 0x0109. Changes the configuration.
-  ///
-  /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/save_map.md`
-  fc_runtime::Called<SaveMapResponse> save_map(const SaveMapRequest& request,
-                                               const fc_runtime::CallOptions& options = {}) const;
-
-  /// 下载地图
-  /// Download maps
-  ///
-  /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
-  /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用 `get_map_sync_progress`
-  /// 查询。
-  ///
-  /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38, "upload
-  /// maps", tell what it does. The source does not say whether a response of 1001 means that the
-  /// download is complete; follow `map_sync_progress` or ask with `get_map_sync_progress`.
-  ///
-  /// Code 0x0320. Changes the configuration, inferred.
-  ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-  /// `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
-  ///
-  /// 没有写明哪个状态是终态：要由 app 停止。
-  ///
-  /// No state is said to be final: the app has to stop it.
-  ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
-  ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
-  ///
-  /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/download_maps.md`
-  fc_runtime::Called<DownloadMapsResponse> download_maps(
-      const DownloadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 上传地图
-  /// Upload maps
-  ///
-  /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
-  /// `map_sync_progress`。
-  ///
-  /// Uploads maps. The source does not say which maps, where to, or whether anything changes on the
-  /// robot; follow `map_sync_progress`.
-  ///
-  /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
-  ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-  /// `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
-  ///
-  /// 没有写明哪个状态是终态：要由 app 停止。
-  ///
-  /// No state is said to be final: the app has to stop it.
-  ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
-  ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
-  ///
-  /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_maps.md`
-  fc_runtime::Called<UploadMapsResponse> upload_maps(
-      const UploadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取正在同步的地图进度
-  /// Get the progress of map synchronisation
-  ///
-  /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
-  ///
-  /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress` also
-  /// reports.
-  ///
-  /// Code 0x0322. Only reads.
-  ///
-  /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-  fc_runtime::Called<GetMapSyncProgressResponse> get_map_sync_progress(
-      const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 发起一键回充
-  /// Start returning to dock
-  ///
-  /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
-  /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
-  /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
-  ///
-  /// The robot drives to its charging dock, docks and starts charging. It sends `recharge_progress`
-  /// on every change of state; `get_recharge_status` returns the current one. The source does not
-  /// say whether a response of 1001 means that the robot has set off, so rely on these two.
-  ///
-  /// Code 0x0A04. Moves the robot. Since 2023-05.
-  ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `RechargeProgress`。
-  /// `.follow()` gives the response, and then each `RechargeProgress` that it sets off.
-  ///
-  /// 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
-  ///
-  /// No state is said to be final: it ends only when `data.errorStatus` says that something failed,
-  /// or when the app stops it.
-  ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
-  ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
-  ///
-  /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/start_recharge.md`
-  fc_runtime::Called<StartRechargeResponse> start_recharge(
-      const StartRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 取消一键回充
-  /// Cancel returning to dock
-  ///
-  /// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
-  ///
-  /// The robot stops and the charging state becomes idle. If the robot is on the dock, it first
-  /// backs off and then stops.
-  ///
-  /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
-  ///
-  /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-  fc_runtime::Called<CancelRechargeResponse> cancel_recharge(
-      const CancelRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取回充状态
-  /// Get the charging state
-  ///
-  /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
-  ///
-  /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
-  /// that has just connected.
-  ///
-  /// Code 0x0A06. Only reads, inferred. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-  fc_runtime::Called<GetRechargeStatusResponse> get_recharge_status(
-      const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 读取或设置开关（0x0A08，用途不详）
-  /// Read or set a switch (0x0A08, purpose unknown)
-  ///
-  /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off` 时设置；响应返回开关的状态。
-  ///
-  /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
-  /// it. The response returns the state of the switch.
-  ///
-  /// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only
-  /// in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-  fc_runtime::Called<Switch0a08Response> switch_0a08(
-      const Switch0a08Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 语音提醒的开关
-  /// Voice reminder switch
-  ///
-  /// 语音提醒的开关，状态记录于机器人本体。
-  ///
-  /// The switch of the voice reminder; its state is stored on the robot.
-  ///
-  /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
-  ///
-  /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
-  /// whether robots still support the command. Do not use it in new code.
-  ///
-  /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-  // clang-format off
-  [[deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")]]
-  fc_runtime::Called<SetVoiceReminderResponse> set_voice_reminder(
-      const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options = {}) const;
-  // clang-format on
-
-  /// 切换业务环境
-  /// Switch the environment
-  ///
-  /// 切换 release 环境（生产）和 alpha 环境（测试）。
-  ///
-  /// Switches between the release environment (production) and the alpha environment (testing).
-  ///
-  /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_environment.md`
-  fc_runtime::Called<SwitchEnvironmentResponse> switch_environment(
-      const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 设置机器人待命时的位置
-  /// Set the standby position
-  ///
-  /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
-  ///
-  /// Says at which point, of type charging or standby, the robot stands by. It is an array in case
-  /// several standby points can be set one day.
-  ///
-  /// Code 0x0311. Changes the configuration. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_standby_position.md`
-  fc_runtime::Called<SetStandbyPositionResponse> set_standby_position(
-      const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取机器人待命时的位置
-  /// Get the standby position
-  ///
-  /// Code 0x0312. Only reads. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_standby_position.md`
-  fc_runtime::Called<GetStandbyPositionResponse> get_standby_position(
-      const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 设置点位（0x0313，用途不详）
-  /// Set points (0x0313, purpose unknown)
-  ///
-  /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
-  fc_runtime::Called<SetPositions0313Response> set_positions_0313(
-      const SetPositions0313Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取点位（0x0314，用途不详）
-  /// Get points (0x0314, purpose unknown)
-  ///
-  /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
-  ///
-  /// Its response has the structure of the request of `set_positions_0313`, so it may return the
-  /// points set by that command.
-  ///
-  /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
-  fc_runtime::Called<GetPositions0314Response> get_positions_0314(
-      const GetPositions0314Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 根据站点 ID 获取站点信息
-  /// Get a station by its ID
-  ///
-  /// Code 0x0A03. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/get_station.md`
-  fc_runtime::Called<GetStationResponse> get_station(
-      const GetStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 一键上报地图点位信息
-  /// Report the stations of the map
-  ///
-  /// 按 type（0x01），这是 app
-  /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
-  ///
-  /// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to
-  /// whom, of which map, and how the result is told has not survived in the source.
-  ///
-  /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-  fc_runtime::Called<UploadMapStationsResponse> upload_map_stations(
-      const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 添加站点信息
-  /// Add a station
-  ///
-  /// 请求中没有坐标，印出的响应中没有站点 ID。
-  ///
-  /// The request carries no coordinates and the printed response no station ID.
-  ///
-  /// Code 0x0302. Changes the configuration. Since 2023-07-17.
-  ///
-  /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/add_station.md`
-  fc_runtime::Called<AddStationResponse> add_station(
-      const AddStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 删除站点信息
-  /// Delete a station
-  ///
-  /// Code 0x0304. Changes the configuration. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/delete_station.md`
-  fc_runtime::Called<DeleteStationResponse> delete_station(
-      const DeleteStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 重命名站点
-  /// Rename a station
-  ///
-  /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/rename_station.md`
-  fc_runtime::Called<RenameStationResponse> rename_station(
-      const RenameStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取异常列表
-  /// List the faults
-  ///
-  /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
-  ///
-  /// Returns a list of faults, each with its code, level, source, possible cause and guidance.
-  ///
-  /// Code 0x0A0C. Only reads, inferred.
-  ///
-  /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/list_faults.md`
-  fc_runtime::Called<ListFaultsResponse> list_faults(
-      const ListFaultsRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取自检结果
-  /// Get the result of the self-check
-  ///
-  /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
-  ///
-  /// Tells whether each module of the robot is working normally. After power-on all items are
-  /// checked in parallel; the timeout is 2 minutes by default.
-  ///
-  /// Code 0x0A0D. Only reads, inferred.
-  ///
-  /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/get_self_check.md`
-  fc_runtime::Called<GetSelfCheckResponse> get_self_check(
-      const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 创建巡游/送物任务
-  /// Create a patrol or delivery task
-  ///
-  /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
-  /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
-  ///
-  /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and
-  /// ID. Executing it is a command of its own, `execute_task`; query it with `get_task_status` and
-  /// `get_task_history`.
-  ///
-  /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
-  ///
-  /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/create_task.md`
-  fc_runtime::Called<CreateTaskResponse> create_task(
-      const CreateTaskRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 获取任务状态
-  /// Get a task's status
-  ///
-  /// Code 0x0353. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/get_task_status.md`
-  fc_runtime::Called<GetTaskStatusResponse> get_task_status(
-      const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 未命名指令（0x0309）
-  /// Unnamed command (0x0309)
-  ///
-  /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
-  /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
-  ///
-  /// Its title and response are lost and its request is the bare envelope. The code follows 0x0308
-  /// (report the stations of the map), so the two may be related. Do not try it out before its
-  /// purpose is known.
-  ///
-  /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-  fc_runtime::Called<Unnamed0309Response> unnamed_0309(
-      const Unnamed0309Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 未命名指令（0x0460）
-  /// Unnamed command (0x0460)
-  ///
-  /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
-  ///
-  /// Its request and response are complete and consist of the envelope alone, but the title is lost
-  /// and its purpose unknown. Do not try it out before that is known.
-  ///
-  /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-  fc_runtime::Called<Unnamed0460Response> unnamed_0460(
-      const Unnamed0460Request& request, const fc_runtime::CallOptions& options = {}) const;
-
-  /// 查询上装
-  /// Get the upper body's status
-  ///
-  /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
-  ///
-  /// Returns the status of the push rod, of the released compartment and of the door locks. The
-  /// source calls it an existing command, unchanged: the upper body is queried before a compartment
-  /// is operated, and the app controls the doors according to the status returned.
-  ///
-  /// Code 0x0204. Only reads.
-  ///
-  /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-  /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-  fc_runtime::Called<GetUpperBodyStatusResponse> get_upper_body_status(
-      const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
  private:
   fc_runtime::Connection connection_;
 };
 
+extern template class groups::BuildingCalls<Client>;
+extern template class groups::CellCalls<Client>;
+extern template class groups::DispatchCalls<Client>;
+extern template class groups::IdentityCalls<Client>;
+extern template class groups::LaserCalls<Client>;
+extern template class groups::MapCalls<Client>;
+extern template class groups::RechargeCalls<Client>;
+extern template class groups::SettingsCalls<Client>;
+extern template class groups::StandbyCalls<Client>;
+extern template class groups::StationCalls<Client>;
+extern template class groups::StatusCalls<Client>;
+extern template class groups::TaskCalls<Client>;
+extern template class groups::UnnamedCalls<Client>;
+extern template class groups::UpperBodyCalls<Client>;
+
 /// 对每一种请求调用一次 `visit`，参数是该类型的一个值。
 /// Calls `visit` once for each command, with a value of its type, to be told by that.
 template <class Visitor>
 void for_each_command(Visitor&& visit) {
-  visit(ListIotDevicesRequest());
-  visit(GetFloorsRequest());
-  visit(GetCellConfigRequest());
-  visit(SetCellConfigRequest());
-  visit(CheckCondition0333Request());
-  visit(GetRobotSnRequest());
-  visit(GetFirmwareVersionsRequest());
-  visit(GetLaserScanRequest());
-  visit(GetMapImageRequest());
-  visit(ListMapsRequest());
-  visit(GetMapInfoRequest());
-  visit(SaveMapRequest());
-  visit(DownloadMapsRequest());
-  visit(UploadMapsRequest());
-  visit(GetMapSyncProgressRequest());
-  visit(StartRechargeRequest());
-  visit(CancelRechargeRequest());
-  visit(GetRechargeStatusRequest());
-  visit(Switch0a08Request());
-  visit(SetVoiceReminderRequest());
-  visit(SwitchEnvironmentRequest());
-  visit(SetStandbyPositionRequest());
-  visit(GetStandbyPositionRequest());
-  visit(SetPositions0313Request());
-  visit(GetPositions0314Request());
-  visit(GetStationRequest());
-  visit(UploadMapStationsRequest());
-  visit(AddStationRequest());
-  visit(DeleteStationRequest());
-  visit(RenameStationRequest());
-  visit(ListFaultsRequest());
-  visit(GetSelfCheckRequest());
-  visit(CreateTaskRequest());
-  visit(GetTaskStatusRequest());
-  visit(Unnamed0309Request());
-  visit(Unnamed0460Request());
-  visit(GetUpperBodyStatusRequest());
+  fc_runtime::visit_each(visit, groups::BuildingCommands());
+  fc_runtime::visit_each(visit, groups::CellCommands());
+  fc_runtime::visit_each(visit, groups::DispatchCommands());
+  fc_runtime::visit_each(visit, groups::IdentityCommands());
+  fc_runtime::visit_each(visit, groups::LaserCommands());
+  fc_runtime::visit_each(visit, groups::MapCommands());
+  fc_runtime::visit_each(visit, groups::RechargeCommands());
+  fc_runtime::visit_each(visit, groups::SettingsCommands());
+  fc_runtime::visit_each(visit, groups::StandbyCommands());
+  fc_runtime::visit_each(visit, groups::StationCommands());
+  fc_runtime::visit_each(visit, groups::StatusCommands());
+  fc_runtime::visit_each(visit, groups::TaskCommands());
+  fc_runtime::visit_each(visit, groups::UnnamedCommands());
+  fc_runtime::visit_each(visit, groups::UpperBodyCommands());
 }
 
 /// 对每一种上报调用一次 `visit`，参数是该类型的一个值。
 /// Calls `visit` once for each report, with a value of its type, to be told by that.
 template <class Visitor>
 void for_each_report(Visitor&& visit) {
-  visit(MapSyncProgress());
-  visit(RechargeProgress());
-  visit(RobotStatus());
-  visit(ObstacleAnnouncement());
-  visit(TargetReached());
-  visit(TaskProgress());
+  fc_runtime::visit_each(visit, groups::MapReports());
+  fc_runtime::visit_each(visit, groups::RechargeReports());
+  fc_runtime::visit_each(visit, groups::StatusReports());
+  fc_runtime::visit_each(visit, groups::TaskReports());
 }
 
 }  // namespace fc

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "fc/messages.hpp"
 #include "fc/protocol.hpp"
 #include "fc_runtime/server.hpp"
+#include "fc_runtime/stacked.hpp"
 
 namespace fc {
 
@@ -28,556 +27,25 @@ namespace fc {
 /// Methods may be called by several threads at once. When one takes too long, the robot answers with a
 /// timeout in its place, and it still runs to its end: `Context::is_abandoned` tells it that nobody
 /// waits any more.
-class Robot {
+class Robot : public groups::BuildingRobot,
+              public groups::CellRobot,
+              public groups::DispatchRobot,
+              public groups::IdentityRobot,
+              public groups::LaserRobot,
+              public groups::MapRobot,
+              public groups::RechargeRobot,
+              public groups::SettingsRobot,
+              public groups::StandbyRobot,
+              public groups::StationRobot,
+              public groups::StatusRobot,
+              public groups::TaskRobot,
+              public groups::UnnamedRobot,
+              public groups::UpperBodyRobot {
  public:
   Robot() = default;
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
   virtual ~Robot() = default;
-  /// 获取物联网设备列表
-  /// List the IoT devices of a type
-  ///
-  /// 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
-  ///
-  /// Returns the IoT devices of one type. The title is lost; the name is inferred from the keys of
-  /// the request and the response.
-  ///
-  /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
-  virtual fc_runtime::Replied<ListIotDevicesResponse> list_iot_devices(
-      const fc_runtime::Context& context, const ListIotDevicesRequest& request) = 0;
-
-  /// 获取楼层信息
-  /// Get the floors
-  ///
-  /// 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
-  ///
-  /// Returns the number of floors and two lists, of floor labels and of floor numbers. The title is
-  /// lost; the name is inferred from the keys of the response.
-  ///
-  /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/get_floors.md`
-  virtual fc_runtime::Replied<GetFloorsResponse> get_floors(const fc_runtime::Context& context,
-                                                            const GetFloorsRequest& request) = 0;
-
-  /// 获取机器人格口门配置
-  /// Get the compartment configuration
-  ///
-  /// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
-  ///
-  /// Returns the number of compartments and, for each, its number, size and doors; location and
-  /// lock may be missing. This is presumably the active configuration; the source does not say so.
-  ///
-  /// Code 0x0A02. Only reads.
-  ///
-  /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/get_cell_config.md`
-  virtual fc_runtime::Replied<GetCellConfigResponse> get_cell_config(
-      const fc_runtime::Context& context, const GetCellConfigRequest& request) = 0;
-
-  /// 设置机器人格口配置
-  /// Set the compartment configuration
-  ///
-  /// 有两种请求，靠 `data` 中的字段区分：
-  ///
-  /// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
-  ///   只设置当前生效的是哪一种。
-  /// - 旧版：app
-  ///   下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
-  ///
-  /// There are two requests, told apart by the keys of `data`:
-  ///
-  /// - New form (updated November 2023): the layouts are stored in a configuration file on the
-  ///   chassis (see the table of layouts), and the app selects the active one.
-  /// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-  ///   robot. Its values are the four layouts of the old table, which should be those of the table
-  ///   of layouts without location and index.
-  ///
-  /// Code 0x0A0B. Changes the configuration.
-  ///
-  /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/set_cell_config.md`
-  virtual fc_runtime::Replied<SetCellConfigResponse> set_cell_config(
-      const fc_runtime::Context& context, const SetCellConfigRequest& request) = 0;
-
-  /// 检查条件是否满足（0x0333，用途不详）
-  /// Check a condition (0x0333, purpose unknown)
-  ///
-  /// 标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
-  ///
-  /// The heading is lost. The request holds the envelope alone and the response says whether a
-  /// condition is met; which one is unknown.
-  ///
-  /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
-  ///
-  /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-  /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
-  virtual fc_runtime::Replied<CheckCondition0333Response> check_condition_0333(
-      const fc_runtime::Context& context, const CheckCondition0333Request& request) = 0;
-
-  /// 获取机器人序列号
-  /// Get the serial number
-  ///
-  /// 返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
-  ///
-  /// Returns the 15-character asset number and, in the form of January 2024 (section 50), the
-  /// robot's model.
-  ///
-  /// Code 0x0A01. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
-  virtual fc_runtime::Replied<GetRobotSnResponse> get_robot_sn(
-      const fc_runtime::Context& context, const GetRobotSnRequest& request) = 0;
-
-  /// 获取固件版本
-  /// Get the firmware versions
-  ///
-  /// 主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
-  /// 中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
-  ///
-  /// When it starts up, the main controller (主控) asks each module for its version and keeps it in
-  /// memory; it fills these into the JSON of the response. There are three modules: the firmware of
-  /// the cabinet (upper body), the firmware of the chassis (底盘), and the navigation software.
-  ///
-  /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
-  virtual fc_runtime::Replied<GetFirmwareVersionsResponse> get_firmware_versions(
-      const fc_runtime::Context& context, const GetFirmwareVersionsRequest& request) = 0;
-
-  /// 获取激光数据
-  /// Get the lidar data
-  ///
-  /// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
-  ///
-  /// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
-  ///
-  /// Code 0x0001. Only reads. Since 2023-08-10.
-  ///
-  /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-  /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
-  virtual fc_runtime::Replied<GetLaserScanResponse> get_laser_scan(
-      const fc_runtime::Context& context, const GetLaserScanRequest& request) = 0;
-
-  /// 获取地图图像
-  /// Get the picture of a map
-  ///
-  /// 返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
-  ///
-  /// Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64
-  /// inside the JSON, so the response may be large.
-  ///
-  /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
-  ///
-  /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_image.md`
-  virtual fc_runtime::Replied<GetMapImageResponse> get_map_image(
-      const fc_runtime::Context& context, const GetMapImageRequest& request) = 0;
-
-  /// 获取地图列表
-  /// List the maps
-  ///
-  /// 返回地图列表，含各文件的路径、楼栋和楼层。
-  ///
-  /// Returns the maps with the paths of their files, their building and their floor.
-  ///
-  /// Code 0x0103. Only reads.
-  ///
-  /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/list_maps.md`
-  virtual fc_runtime::Replied<ListMapsResponse> list_maps(const fc_runtime::Context& context,
-                                                          const ListMapsRequest& request) = 0;
-
-  /// 获取地图信息
-  /// Get the details of a map
-  ///
-  /// Code 0x010C. Only reads.
-  ///
-  /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_info.md`
-  virtual fc_runtime::Replied<GetMapInfoResponse> get_map_info(
-      const fc_runtime::Context& context, const GetMapInfoRequest& request) = 0;
-
-  /// 保存地图
-  /// Save the map
-  ///
-  /// 以指定的名称保存地图，并给出它的楼栋和楼层。
-  ///
-  /// Saves the map under a name, with its building and floor.
-  ///
-  /// Code 0x0109. Changes the configuration.
-  ///
-  /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/save_map.md`
-  virtual fc_runtime::Replied<SaveMapResponse> save_map(const fc_runtime::Context& context,
-                                                        const SaveMapRequest& request) = 0;
-
-  /// 下载地图
-  /// Download maps
-  ///
-  /// 从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
-  /// 是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用 `get_map_sync_progress`
-  /// 查询。
-  ///
-  /// Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38, "upload
-  /// maps", tell what it does. The source does not say whether a response of 1001 means that the
-  /// download is complete; follow `map_sync_progress` or ask with `get_map_sync_progress`.
-  ///
-  /// Code 0x0320. Changes the configuration, inferred.
-  ///
-  /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/download_maps.md`
-  virtual fc_runtime::Replied<DownloadMapsResponse> download_maps(
-      const fc_runtime::Context& context, const DownloadMapsRequest& request) = 0;
-
-  /// 上传地图
-  /// Upload maps
-  ///
-  /// 上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看
-  /// `map_sync_progress`。
-  ///
-  /// Uploads maps. The source does not say which maps, where to, or whether anything changes on the
-  /// robot; follow `map_sync_progress`.
-  ///
-  /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
-  ///
-  /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_maps.md`
-  virtual fc_runtime::Replied<UploadMapsResponse> upload_maps(const fc_runtime::Context& context,
-                                                              const UploadMapsRequest& request) = 0;
-
-  /// 获取正在同步的地图进度
-  /// Get the progress of map synchronisation
-  ///
-  /// 查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
-  ///
-  /// Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress` also
-  /// reports.
-  ///
-  /// Code 0x0322. Only reads.
-  ///
-  /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
-  virtual fc_runtime::Replied<GetMapSyncProgressResponse> get_map_sync_progress(
-      const fc_runtime::Context& context, const GetMapSyncProgressRequest& request) = 0;
-
-  /// 发起一键回充
-  /// Start returning to dock
-  ///
-  /// 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用
-  /// `recharge_progress` 上报一次，也可以用 `get_recharge_status` 查询。响应 1001
-  /// 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
-  ///
-  /// The robot drives to its charging dock, docks and starts charging. It sends `recharge_progress`
-  /// on every change of state; `get_recharge_status` returns the current one. The source does not
-  /// say whether a response of 1001 means that the robot has set off, so rely on these two.
-  ///
-  /// Code 0x0A04. Moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/start_recharge.md`
-  virtual fc_runtime::Replied<StartRechargeResponse> start_recharge(
-      const fc_runtime::Context& context, const StartRechargeRequest& request) = 0;
-
-  /// 取消一键回充
-  /// Cancel returning to dock
-  ///
-  /// 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
-  ///
-  /// The robot stops and the charging state becomes idle. If the robot is on the dock, it first
-  /// backs off and then stops.
-  ///
-  /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
-  ///
-  /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
-  virtual fc_runtime::Replied<CancelRechargeResponse> cancel_recharge(
-      const fc_runtime::Context& context, const CancelRechargeRequest& request) = 0;
-
-  /// 获取回充状态
-  /// Get the charging state
-  ///
-  /// 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
-  ///
-  /// Returns the charging state in the same two fields as `recharge_progress`. Useful for an app
-  /// that has just connected.
-  ///
-  /// Code 0x0A06. Only reads, inferred. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
-  virtual fc_runtime::Replied<GetRechargeStatusResponse> get_recharge_status(
-      const fc_runtime::Context& context, const GetRechargeStatusRequest& request) = 0;
-
-  /// 读取或设置开关（0x0A08，用途不详）
-  /// Read or set a switch (0x0A08, purpose unknown)
-  ///
-  /// 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off` 时设置；响应返回开关的状态。
-  ///
-  /// One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set
-  /// it. The response returns the state of the switch.
-  ///
-  /// Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only
-  /// in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_0a08.md`
-  virtual fc_runtime::Replied<Switch0a08Response> switch_0a08(const fc_runtime::Context& context,
-                                                              const Switch0a08Request& request) = 0;
-
-  /// 语音提醒的开关
-  /// Voice reminder switch
-  ///
-  /// 语音提醒的开关，状态记录于机器人本体。
-  ///
-  /// The switch of the voice reminder; its state is stored on the robot.
-  ///
-  /// 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
-  ///
-  /// Deprecated: The source strikes out the whole heading. It gives no reason and does not say
-  /// whether robots still support the command. Do not use it in new code.
-  ///
-  /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
-  virtual fc_runtime::Replied<SetVoiceReminderResponse> set_voice_reminder(
-      const fc_runtime::Context& context, const SetVoiceReminderRequest& request) = 0;
-
-  /// 切换业务环境
-  /// Switch the environment
-  ///
-  /// 切换 release 环境（生产）和 alpha 环境（测试）。
-  ///
-  /// Switches between the release environment (production) and the alpha environment (testing).
-  ///
-  /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
-  ///
-  /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_environment.md`
-  virtual fc_runtime::Replied<SwitchEnvironmentResponse> switch_environment(
-      const fc_runtime::Context& context, const SwitchEnvironmentRequest& request) = 0;
-
-  /// 设置机器人待命时的位置
-  /// Set the standby position
-  ///
-  /// 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
-  ///
-  /// Says at which point, of type charging or standby, the robot stands by. It is an array in case
-  /// several standby points can be set one day.
-  ///
-  /// Code 0x0311. Changes the configuration. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_standby_position.md`
-  virtual fc_runtime::Replied<SetStandbyPositionResponse> set_standby_position(
-      const fc_runtime::Context& context, const SetStandbyPositionRequest& request) = 0;
-
-  /// 获取机器人待命时的位置
-  /// Get the standby position
-  ///
-  /// Code 0x0312. Only reads. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_standby_position.md`
-  virtual fc_runtime::Replied<GetStandbyPositionResponse> get_standby_position(
-      const fc_runtime::Context& context, const GetStandbyPositionRequest& request) = 0;
-
-  /// 设置点位（0x0313，用途不详）
-  /// Set points (0x0313, purpose unknown)
-  ///
-  /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
-  virtual fc_runtime::Replied<SetPositions0313Response> set_positions_0313(
-      const fc_runtime::Context& context, const SetPositions0313Request& request) = 0;
-
-  /// 获取点位（0x0314，用途不详）
-  /// Get points (0x0314, purpose unknown)
-  ///
-  /// 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
-  ///
-  /// Its response has the structure of the request of `set_positions_0313`, so it may return the
-  /// points set by that command.
-  ///
-  /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-  ///
-  /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
-  virtual fc_runtime::Replied<GetPositions0314Response> get_positions_0314(
-      const fc_runtime::Context& context, const GetPositions0314Request& request) = 0;
-
-  /// 根据站点 ID 获取站点信息
-  /// Get a station by its ID
-  ///
-  /// Code 0x0A03. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/get_station.md`
-  virtual fc_runtime::Replied<GetStationResponse> get_station(const fc_runtime::Context& context,
-                                                              const GetStationRequest& request) = 0;
-
-  /// 一键上报地图点位信息
-  /// Report the stations of the map
-  ///
-  /// 按 type（0x01），这是 app
-  /// 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
-  ///
-  /// Its type (0x01) makes it a command from the app to the robot. Who reports the stations to
-  /// whom, of which map, and how the result is told has not survived in the source.
-  ///
-  /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
-  virtual fc_runtime::Replied<UploadMapStationsResponse> upload_map_stations(
-      const fc_runtime::Context& context, const UploadMapStationsRequest& request) = 0;
-
-  /// 添加站点信息
-  /// Add a station
-  ///
-  /// 请求中没有坐标，印出的响应中没有站点 ID。
-  ///
-  /// The request carries no coordinates and the printed response no station ID.
-  ///
-  /// Code 0x0302. Changes the configuration. Since 2023-07-17.
-  ///
-  /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/add_station.md`
-  virtual fc_runtime::Replied<AddStationResponse> add_station(const fc_runtime::Context& context,
-                                                              const AddStationRequest& request) = 0;
-
-  /// 删除站点信息
-  /// Delete a station
-  ///
-  /// Code 0x0304. Changes the configuration. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/delete_station.md`
-  virtual fc_runtime::Replied<DeleteStationResponse> delete_station(
-      const fc_runtime::Context& context, const DeleteStationRequest& request) = 0;
-
-  /// 重命名站点
-  /// Rename a station
-  ///
-  /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
-  ///
-  /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/rename_station.md`
-  virtual fc_runtime::Replied<RenameStationResponse> rename_station(
-      const fc_runtime::Context& context, const RenameStationRequest& request) = 0;
-
-  /// 获取异常列表
-  /// List the faults
-  ///
-  /// 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
-  ///
-  /// Returns a list of faults, each with its code, level, source, possible cause and guidance.
-  ///
-  /// Code 0x0A0C. Only reads, inferred.
-  ///
-  /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/list_faults.md`
-  virtual fc_runtime::Replied<ListFaultsResponse> list_faults(const fc_runtime::Context& context,
-                                                              const ListFaultsRequest& request) = 0;
-
-  /// 获取自检结果
-  /// Get the result of the self-check
-  ///
-  /// 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
-  ///
-  /// Tells whether each module of the robot is working normally. After power-on all items are
-  /// checked in parallel; the timeout is 2 minutes by default.
-  ///
-  /// Code 0x0A0D. Only reads, inferred.
-  ///
-  /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/get_self_check.md`
-  virtual fc_runtime::Replied<GetSelfCheckResponse> get_self_check(
-      const fc_runtime::Context& context, const GetSelfCheckRequest& request) = 0;
-
-  /// 创建巡游/送物任务
-  /// Create a patrol or delivery task
-  ///
-  /// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
-  /// `execute_task`，查询用 `get_task_status`、`get_task_history`。
-  ///
-  /// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and
-  /// ID. Executing it is a command of its own, `execute_task`; query it with `get_task_status` and
-  /// `get_task_history`.
-  ///
-  /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
-  ///
-  /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/create_task.md`
-  virtual fc_runtime::Replied<CreateTaskResponse> create_task(const fc_runtime::Context& context,
-                                                              const CreateTaskRequest& request) = 0;
-
-  /// 获取任务状态
-  /// Get a task's status
-  ///
-  /// Code 0x0353. Only reads. Since 2023-05.
-  ///
-  /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/get_task_status.md`
-  virtual fc_runtime::Replied<GetTaskStatusResponse> get_task_status(
-      const fc_runtime::Context& context, const GetTaskStatusRequest& request) = 0;
-
-  /// 未命名指令（0x0309）
-  /// Unnamed command (0x0309)
-  ///
-  /// 标题和响应都已丢失，请求只有公共字段。功能码紧接
-  /// 0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
-  ///
-  /// Its title and response are lost and its request is the bare envelope. The code follows 0x0308
-  /// (report the stations of the map), so the two may be related. Do not try it out before its
-  /// purpose is known.
-  ///
-  /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
-  virtual fc_runtime::Replied<Unnamed0309Response> unnamed_0309(
-      const fc_runtime::Context& context, const Unnamed0309Request& request) = 0;
-
-  /// 未命名指令（0x0460）
-  /// Unnamed command (0x0460)
-  ///
-  /// 请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
-  ///
-  /// Its request and response are complete and consist of the envelope alone, but the title is lost
-  /// and its purpose unknown. Do not try it out before that is known.
-  ///
-  /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-  ///
-  /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
-  virtual fc_runtime::Replied<Unnamed0460Response> unnamed_0460(
-      const fc_runtime::Context& context, const Unnamed0460Request& request) = 0;
-
-  /// 查询上装
-  /// Get the upper body's status
-  ///
-  /// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
-  ///
-  /// Returns the status of the push rod, of the released compartment and of the door locks. The
-  /// source calls it an existing command, unchanged: the upper body is queried before a compartment
-  /// is operated, and the app controls the doors according to the status returned.
-  ///
-  /// Code 0x0204. Only reads.
-  ///
-  /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-  /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
-  virtual fc_runtime::Replied<GetUpperBodyStatusResponse> get_upper_body_status(
-      const fc_runtime::Context& context, const GetUpperBodyStatusRequest& request) = 0;
-
   /// 直接透传给上装
   /// Passed straight through to the upper body
   ///
@@ -598,171 +66,58 @@ class Robot {
   virtual fc_runtime::RawReplied unknown(const fc_runtime::Context& context, std::string_view text);
 };
 
-/// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。
-/// A robot that has some of the commands: the others are refused as not implemented.
-class PartialRobot : public Robot {
+// clang-format off
+/// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。
+/// A robot that has some of the commands: the others are refused as not implemented. It is a `Robot`.
+class PartialRobot : public fc_runtime::Stacked<
+    fc_runtime::Refusing<Robot, protocol>,
+    groups::BuildingDefaults,
+    groups::CellDefaults,
+    groups::DispatchDefaults,
+    groups::IdentityDefaults,
+    groups::LaserDefaults,
+    groups::MapDefaults,
+    groups::RechargeDefaults,
+    groups::SettingsDefaults,
+    groups::StandbyDefaults,
+    groups::StationDefaults,
+    groups::StatusDefaults,
+    groups::TaskDefaults,
+    groups::UnnamedDefaults,
+    groups::UpperBodyDefaults> {
  public:
-  fc_runtime::Replied<ListIotDevicesResponse> list_iot_devices(
-      const fc_runtime::Context& context, const ListIotDevicesRequest& request) override;
-  fc_runtime::Replied<GetFloorsResponse> get_floors(const fc_runtime::Context& context,
-                                                    const GetFloorsRequest& request) override;
-  fc_runtime::Replied<GetCellConfigResponse> get_cell_config(
-      const fc_runtime::Context& context, const GetCellConfigRequest& request) override;
-  fc_runtime::Replied<SetCellConfigResponse> set_cell_config(
-      const fc_runtime::Context& context, const SetCellConfigRequest& request) override;
-  fc_runtime::Replied<CheckCondition0333Response> check_condition_0333(
-      const fc_runtime::Context& context, const CheckCondition0333Request& request) override;
-  fc_runtime::Replied<GetRobotSnResponse> get_robot_sn(const fc_runtime::Context& context,
-                                                       const GetRobotSnRequest& request) override;
-  fc_runtime::Replied<GetFirmwareVersionsResponse> get_firmware_versions(
-      const fc_runtime::Context& context, const GetFirmwareVersionsRequest& request) override;
-  fc_runtime::Replied<GetLaserScanResponse> get_laser_scan(
-      const fc_runtime::Context& context, const GetLaserScanRequest& request) override;
-  fc_runtime::Replied<GetMapImageResponse> get_map_image(
-      const fc_runtime::Context& context, const GetMapImageRequest& request) override;
-  fc_runtime::Replied<ListMapsResponse> list_maps(const fc_runtime::Context& context,
-                                                  const ListMapsRequest& request) override;
-  fc_runtime::Replied<GetMapInfoResponse> get_map_info(const fc_runtime::Context& context,
-                                                       const GetMapInfoRequest& request) override;
-  fc_runtime::Replied<SaveMapResponse> save_map(const fc_runtime::Context& context,
-                                                const SaveMapRequest& request) override;
-  fc_runtime::Replied<DownloadMapsResponse> download_maps(
-      const fc_runtime::Context& context, const DownloadMapsRequest& request) override;
-  fc_runtime::Replied<UploadMapsResponse> upload_maps(const fc_runtime::Context& context,
-                                                      const UploadMapsRequest& request) override;
-  fc_runtime::Replied<GetMapSyncProgressResponse> get_map_sync_progress(
-      const fc_runtime::Context& context, const GetMapSyncProgressRequest& request) override;
-  fc_runtime::Replied<StartRechargeResponse> start_recharge(
-      const fc_runtime::Context& context, const StartRechargeRequest& request) override;
-  fc_runtime::Replied<CancelRechargeResponse> cancel_recharge(
-      const fc_runtime::Context& context, const CancelRechargeRequest& request) override;
-  fc_runtime::Replied<GetRechargeStatusResponse> get_recharge_status(
-      const fc_runtime::Context& context, const GetRechargeStatusRequest& request) override;
-  fc_runtime::Replied<Switch0a08Response> switch_0a08(const fc_runtime::Context& context,
-                                                      const Switch0a08Request& request) override;
-  fc_runtime::Replied<SetVoiceReminderResponse> set_voice_reminder(
-      const fc_runtime::Context& context, const SetVoiceReminderRequest& request) override;
-  fc_runtime::Replied<SwitchEnvironmentResponse> switch_environment(
-      const fc_runtime::Context& context, const SwitchEnvironmentRequest& request) override;
-  fc_runtime::Replied<SetStandbyPositionResponse> set_standby_position(
-      const fc_runtime::Context& context, const SetStandbyPositionRequest& request) override;
-  fc_runtime::Replied<GetStandbyPositionResponse> get_standby_position(
-      const fc_runtime::Context& context, const GetStandbyPositionRequest& request) override;
-  fc_runtime::Replied<SetPositions0313Response> set_positions_0313(
-      const fc_runtime::Context& context, const SetPositions0313Request& request) override;
-  fc_runtime::Replied<GetPositions0314Response> get_positions_0314(
-      const fc_runtime::Context& context, const GetPositions0314Request& request) override;
-  fc_runtime::Replied<GetStationResponse> get_station(const fc_runtime::Context& context,
-                                                      const GetStationRequest& request) override;
-  fc_runtime::Replied<UploadMapStationsResponse> upload_map_stations(
-      const fc_runtime::Context& context, const UploadMapStationsRequest& request) override;
-  fc_runtime::Replied<AddStationResponse> add_station(const fc_runtime::Context& context,
-                                                      const AddStationRequest& request) override;
-  fc_runtime::Replied<DeleteStationResponse> delete_station(
-      const fc_runtime::Context& context, const DeleteStationRequest& request) override;
-  fc_runtime::Replied<RenameStationResponse> rename_station(
-      const fc_runtime::Context& context, const RenameStationRequest& request) override;
-  fc_runtime::Replied<ListFaultsResponse> list_faults(const fc_runtime::Context& context,
-                                                      const ListFaultsRequest& request) override;
-  fc_runtime::Replied<GetSelfCheckResponse> get_self_check(
-      const fc_runtime::Context& context, const GetSelfCheckRequest& request) override;
-  fc_runtime::Replied<CreateTaskResponse> create_task(const fc_runtime::Context& context,
-                                                      const CreateTaskRequest& request) override;
-  fc_runtime::Replied<GetTaskStatusResponse> get_task_status(
-      const fc_runtime::Context& context, const GetTaskStatusRequest& request) override;
-  fc_runtime::Replied<Unnamed0309Response> unnamed_0309(const fc_runtime::Context& context,
-                                                        const Unnamed0309Request& request) override;
-  fc_runtime::Replied<Unnamed0460Response> unnamed_0460(const fc_runtime::Context& context,
-                                                        const Unnamed0460Request& request) override;
-  fc_runtime::Replied<GetUpperBodyStatusResponse> get_upper_body_status(
-      const fc_runtime::Context& context, const GetUpperBodyStatusRequest& request) override;
+  PartialRobot();
+  ~PartialRobot() override;
 };
+// clang-format on
 
+// clang-format off
 /// 用规范中的示例回答指令，只用于演示和测试。会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，
-/// 除非要求它假装。
+/// 除非要求它假装。它是一个 `Robot`。
 /// Answers with the spec's examples, for demos and tests alone. It does not carry out what sets something
 /// in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend.
-class ExampleRobot : public Robot {
+/// It is a `Robot`.
+class ExampleRobot : public fc_runtime::Stacked<
+    fc_runtime::Exemplary<Robot, protocol>,
+    groups::BuildingDefaults,
+    groups::CellDefaults,
+    groups::DispatchDefaults,
+    groups::IdentityDefaults,
+    groups::LaserDefaults,
+    groups::MapDefaults,
+    groups::RechargeDefaults,
+    groups::SettingsDefaults,
+    groups::StandbyDefaults,
+    groups::StationDefaults,
+    groups::StatusDefaults,
+    groups::TaskDefaults,
+    groups::UnnamedDefaults,
+    groups::UpperBodyDefaults> {
  public:
-  explicit ExampleRobot(bool pretend_motion = false) : pretend_motion_(pretend_motion) {}
-  fc_runtime::Replied<ListIotDevicesResponse> list_iot_devices(
-      const fc_runtime::Context& context, const ListIotDevicesRequest& request) override;
-  fc_runtime::Replied<GetFloorsResponse> get_floors(const fc_runtime::Context& context,
-                                                    const GetFloorsRequest& request) override;
-  fc_runtime::Replied<GetCellConfigResponse> get_cell_config(
-      const fc_runtime::Context& context, const GetCellConfigRequest& request) override;
-  fc_runtime::Replied<SetCellConfigResponse> set_cell_config(
-      const fc_runtime::Context& context, const SetCellConfigRequest& request) override;
-  fc_runtime::Replied<CheckCondition0333Response> check_condition_0333(
-      const fc_runtime::Context& context, const CheckCondition0333Request& request) override;
-  fc_runtime::Replied<GetRobotSnResponse> get_robot_sn(const fc_runtime::Context& context,
-                                                       const GetRobotSnRequest& request) override;
-  fc_runtime::Replied<GetFirmwareVersionsResponse> get_firmware_versions(
-      const fc_runtime::Context& context, const GetFirmwareVersionsRequest& request) override;
-  fc_runtime::Replied<GetLaserScanResponse> get_laser_scan(
-      const fc_runtime::Context& context, const GetLaserScanRequest& request) override;
-  fc_runtime::Replied<GetMapImageResponse> get_map_image(
-      const fc_runtime::Context& context, const GetMapImageRequest& request) override;
-  fc_runtime::Replied<ListMapsResponse> list_maps(const fc_runtime::Context& context,
-                                                  const ListMapsRequest& request) override;
-  fc_runtime::Replied<GetMapInfoResponse> get_map_info(const fc_runtime::Context& context,
-                                                       const GetMapInfoRequest& request) override;
-  fc_runtime::Replied<SaveMapResponse> save_map(const fc_runtime::Context& context,
-                                                const SaveMapRequest& request) override;
-  fc_runtime::Replied<DownloadMapsResponse> download_maps(
-      const fc_runtime::Context& context, const DownloadMapsRequest& request) override;
-  fc_runtime::Replied<UploadMapsResponse> upload_maps(const fc_runtime::Context& context,
-                                                      const UploadMapsRequest& request) override;
-  fc_runtime::Replied<GetMapSyncProgressResponse> get_map_sync_progress(
-      const fc_runtime::Context& context, const GetMapSyncProgressRequest& request) override;
-  fc_runtime::Replied<StartRechargeResponse> start_recharge(
-      const fc_runtime::Context& context, const StartRechargeRequest& request) override;
-  fc_runtime::Replied<CancelRechargeResponse> cancel_recharge(
-      const fc_runtime::Context& context, const CancelRechargeRequest& request) override;
-  fc_runtime::Replied<GetRechargeStatusResponse> get_recharge_status(
-      const fc_runtime::Context& context, const GetRechargeStatusRequest& request) override;
-  fc_runtime::Replied<Switch0a08Response> switch_0a08(const fc_runtime::Context& context,
-                                                      const Switch0a08Request& request) override;
-  fc_runtime::Replied<SetVoiceReminderResponse> set_voice_reminder(
-      const fc_runtime::Context& context, const SetVoiceReminderRequest& request) override;
-  fc_runtime::Replied<SwitchEnvironmentResponse> switch_environment(
-      const fc_runtime::Context& context, const SwitchEnvironmentRequest& request) override;
-  fc_runtime::Replied<SetStandbyPositionResponse> set_standby_position(
-      const fc_runtime::Context& context, const SetStandbyPositionRequest& request) override;
-  fc_runtime::Replied<GetStandbyPositionResponse> get_standby_position(
-      const fc_runtime::Context& context, const GetStandbyPositionRequest& request) override;
-  fc_runtime::Replied<SetPositions0313Response> set_positions_0313(
-      const fc_runtime::Context& context, const SetPositions0313Request& request) override;
-  fc_runtime::Replied<GetPositions0314Response> get_positions_0314(
-      const fc_runtime::Context& context, const GetPositions0314Request& request) override;
-  fc_runtime::Replied<GetStationResponse> get_station(const fc_runtime::Context& context,
-                                                      const GetStationRequest& request) override;
-  fc_runtime::Replied<UploadMapStationsResponse> upload_map_stations(
-      const fc_runtime::Context& context, const UploadMapStationsRequest& request) override;
-  fc_runtime::Replied<AddStationResponse> add_station(const fc_runtime::Context& context,
-                                                      const AddStationRequest& request) override;
-  fc_runtime::Replied<DeleteStationResponse> delete_station(
-      const fc_runtime::Context& context, const DeleteStationRequest& request) override;
-  fc_runtime::Replied<RenameStationResponse> rename_station(
-      const fc_runtime::Context& context, const RenameStationRequest& request) override;
-  fc_runtime::Replied<ListFaultsResponse> list_faults(const fc_runtime::Context& context,
-                                                      const ListFaultsRequest& request) override;
-  fc_runtime::Replied<GetSelfCheckResponse> get_self_check(
-      const fc_runtime::Context& context, const GetSelfCheckRequest& request) override;
-  fc_runtime::Replied<CreateTaskResponse> create_task(const fc_runtime::Context& context,
-                                                      const CreateTaskRequest& request) override;
-  fc_runtime::Replied<GetTaskStatusResponse> get_task_status(
-      const fc_runtime::Context& context, const GetTaskStatusRequest& request) override;
-  fc_runtime::Replied<Unnamed0309Response> unnamed_0309(const fc_runtime::Context& context,
-                                                        const Unnamed0309Request& request) override;
-  fc_runtime::Replied<Unnamed0460Response> unnamed_0460(const fc_runtime::Context& context,
-                                                        const Unnamed0460Request& request) override;
-  fc_runtime::Replied<GetUpperBodyStatusResponse> get_upper_body_status(
-      const fc_runtime::Context& context, const GetUpperBodyStatusRequest& request) override;
-
- private:
-  bool pretend_motion_;
+  explicit ExampleRobot(bool pretend_motion = false);
+  ~ExampleRobot() override;
 };
+// clang-format on
 
 /// 由一个机器人处理规范中的指令，交给 `fc_runtime::Server::bind`。
 ///
@@ -773,109 +128,15 @@ class ExampleRobot : public Robot {
 ///
 /// Pushes reports: one method per report, which waits until it has ended at each app. Without a connection
 /// it goes to all apps connected at the moment. The server has to outlive it.
-class Reporter {
+class Reporter : public groups::MapReporter<Reporter>,
+                 public groups::RechargeReporter<Reporter>,
+                 public groups::StatusReporter<Reporter>,
+                 public groups::TaskReporter<Reporter> {
  public:
   explicit Reporter(const fc_runtime::Server& server) : server_(&server) {}
-  /// 上报地图同步进度
-  /// Progress of map synchronisation
-  ///
-  /// 地图下载或上传期间上报，进度从 0 到 100。
-  ///
-  /// Sent while maps are downloaded or uploaded, from 0 to 100.
-  ///
-  /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
-  ///
-  /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
-  fc_runtime::Acknowledged map_sync_progress(
-      const MapSyncProgress& report,
-      std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
 
-  /// 主动上报回充过程和结果
-  /// Progress and result of charging
-  ///
-  /// 机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
-  ///
-  /// - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
-  /// - 异常：`errorStatus` 为 1，`rechargeStatus`
-  ///   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
-  ///
-  /// The robot may retry and so change state by itself; the same state can then be reported again,
-  /// and the receiver has to cope.
-  ///
-  /// - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
-  /// - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be
-  ///   ignored. From then on the robot acts only on a command, such as starting to return to dock.
-  ///
-  /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
-  ///
-  /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/reports/recharge_progress.md`
-  fc_runtime::Acknowledged recharge_progress(
-      const RechargeProgress& report,
-      std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
-
-  /// 主动上报机器人状态
-  /// Status of the robot
-  ///
-  /// 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
-  ///
-  /// Reports the robot's state, sub-state and fault code. The source does not say when, on a change
-  /// or at intervals.
-  ///
-  /// Code 0x0342. Since 2023-05.
-  ///
-  /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/reports/robot_status.md`
-  fc_runtime::Acknowledged robot_status(
-      const RobotStatus& report, std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
-
-  /// 遇障语音播报
-  /// Voice announcement of an obstacle
-  ///
-  /// 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app
-  /// 还是机器人播报、播报什么，源文档没有说明。
-  ///
-  /// Judging by the title, the robot presumably sends this when it meets an obstacle, so that a
-  /// voice announcement is made. The source does not say whether the app or the robot makes it, nor
-  /// what it says.
-  ///
-  /// Code 0x0341. Since 2023-05.
-  ///
-  /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
-  fc_runtime::Acknowledged obstacle_announcement(
-      const ObstacleAnnouncement& report,
-      std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
-
-  /// 到达目标点通知上报
-  /// Target reached
-  ///
-  /// 机器人到达目标点时上报。
-  ///
-  /// Sent when the robot has reached its target.
-  ///
-  /// Code 0x0340, inferred. Since 2023-05.
-  ///
-  /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/target_reached.md`
-  fc_runtime::Acknowledged target_reached(
-      const TargetReached& report, std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
-
-  /// 上报机器人任务进度
-  /// Task progress
-  ///
-  /// 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
-  ///
-  /// Reports the progress of the robot's task: general progress, and the stages of passing gates
-  /// and doors and of taking an elevator.
-  ///
-  /// Code 0x0345. Since 2024-01-29.
-  ///
-  /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/task_progress.md`
-  fc_runtime::Acknowledged task_progress(
-      const TaskProgress& report, std::optional<fc_runtime::ConnectionId> to = std::nullopt) const;
+  /// 上报由它发出。What sends the reports.
+  [[nodiscard]] const fc_runtime::Server& server() const { return *server_; }
 
  private:
   const fc_runtime::Server* server_;

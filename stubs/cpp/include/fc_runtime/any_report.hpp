@@ -1,0 +1,47 @@
+// A report of a code that is known only once it is there, as the type that has this code.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "fc_runtime/operation.hpp"
+#include "fc_runtime/reports.hpp"
+#include "fc_runtime/typed.hpp"
+
+namespace fc_runtime {
+
+namespace detail {
+
+/// Reads a report as a type, if it has its code. Says whether no other type needs to be tried.
+template <class Message, class Any>
+bool read_as(const Protocol& protocol, const RawReport& raw, std::optional<Any>& out) {
+  if constexpr (!std::is_same_v<Message, RawReport>) {
+    if (raw.code != Report<Message>::code) return false;
+    auto report = read_report<Message>(protocol, raw.text, protocol.defaults.limits.json());
+    if (report) out.emplace(*std::move(report));
+    return true;
+  }
+  return false;
+}
+
+template <class... Each>
+std::variant<Each...> any_report(const Protocol& protocol, RawReport raw,
+                                 const std::variant<Each...>* /*which*/) {
+  std::optional<std::variant<Each...>> typed;
+  static_cast<void>((read_as<Each>(protocol, raw, typed) || ...));
+  if (typed) return *std::move(typed);
+  return std::variant<Each...>(std::move(raw));
+}
+
+}  // namespace detail
+
+/// A report as the one of the types of `Any` that has its code; where none has, or it does not read as
+/// that type says, as it came. `Any` is a `std::variant` over reports and `RawReport`.
+template <class Any>
+[[nodiscard]] Any any_report(const Protocol& protocol, RawReport raw) {
+  return detail::any_report(protocol, std::move(raw), static_cast<const Any*>(nullptr));
+}
+
+}  // namespace fc_runtime
