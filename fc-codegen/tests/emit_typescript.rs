@@ -153,8 +153,8 @@ fn a_field_has_a_type_and_a_schema() {
         let yaml = yaml.replacen("{ ", "{ zh: 字段, en: Field, ", 1);
         let files = emitted(&model(&group(&format!("      field: {yaml}"), "")));
         let name = ty.split([':', '?']).next().unwrap_or_default();
-        assert_eq!(line(&files["messages/more.ts"], name), ty, "{yaml}");
-        let found = line(&files["schemas/more.ts"], &format!("{name}: {{"));
+        assert_eq!(line(&files["groups/more/messages.ts"], name), ty, "{yaml}");
+        let found = line(&files["groups/more/schemas.ts"], &format!("{name}: {{"));
         assert_eq!(found, schema, "{yaml}");
     }
 }
@@ -165,10 +165,12 @@ fn a_condition_asks_the_fields_beside_it_by_their_names() {
                   speed: { zh: 速度, en: Speed, type: \"u8?\", when: { the_mode: [2] }, example: 1 }";
     let files = emitted(&model(&group(fields, "")));
     assert_eq!(
-        line(&files["schemas/more.ts"], "speed"),
+        line(&files["groups/more/schemas.ts"], "speed"),
         "speed: { key: 'speed', type: 'u8', optional: true, when: { theMode: [messages.Mode.Busy] } },"
     );
-    assert!(files["messages/more.ts"].contains("Present only when `theMode` is `Mode.Busy`."));
+    assert!(
+        files["groups/more/messages.ts"].contains("Present only when `theMode` is `Mode.Busy`.")
+    );
 }
 
 #[test]
@@ -179,9 +181,9 @@ fn enums_are_open_unless_they_are_closed() {
         );
         let fields = "      way: { zh: 路, en: Way, type: Way, example: 1 }";
         let files = emitted(&model(&group(fields, &types)));
-        let found = line(&files["messages/more.ts"], "export type Way =");
+        let found = line(&files["groups/more/messages.ts"], "export type Way =");
         assert_eq!(found, format!("export type Way = {ty}"));
-        let is_closed = files["schemas/more.ts"].contains("repr: 'u8', closed: true");
+        let is_closed = files["groups/more/schemas.ts"].contains("repr: 'u8', closed: true");
         assert_eq!(is_closed, !closed.is_empty());
     }
 }
@@ -194,14 +196,34 @@ fn a_command_is_in_every_file_that_commands_are_in() {
         "",
     )));
     for (file, start) in [
-        ("client.ts", "doMore(request: messages.DoMoreRequest"),
-        ("commands.ts", "export const doMore: Command<"),
-        ("messages/index.ts", "export * from './more.ts'"),
-        ("messages/more.ts", "export interface DoMoreRequest {"),
-        ("operations.ts", "doMore: commands.doMore,"),
-        ("robot.ts", "doMore(request: messages.DoMoreRequest"),
         (
-            "schemas/more.ts",
+            "client.ts",
+            "export interface Client extends messages.DemoGroupCalls, messages.MoreCalls {}",
+        ),
+        ("commands.ts", "export * from './groups/more/commands.ts'"),
+        ("groups/more/commands.ts", "export const doMore: Command<"),
+        ("groups/more/commands.ts", "export default { doMore } as"),
+        (
+            "groups/more/messages.ts",
+            "doMore(request: DoMoreRequest, options?: CallOptions): Promise<DoMoreResponse>",
+        ),
+        (
+            "groups/more/messages.ts",
+            "doMore(request: DoMoreRequest, context: Context): Answer<DoMoreResponse>",
+        ),
+        ("groups/more/messages.ts", "doMore(): DoMoreResponse"),
+        (
+            "groups/more/messages.ts",
+            "export interface DoMoreRequest {",
+        ),
+        ("messages.ts", "export * from './groups/more/messages.ts'"),
+        ("operations.ts", "...moreCommands,"),
+        (
+            "robot.ts",
+            "export interface Robot extends messages.DemoGroupRobot, messages.MoreRobot {",
+        ),
+        (
+            "groups/more/schemas.ts",
             "export const DoMoreRequest: Struct<messages.DoMoreRequest> = {",
         ),
     ] {

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs'
 import { nodePlatform } from '../dist/src/node.js'
 import { FrameStream, Framing } from '../dist/src/runtime.js'
 import { Bodies } from '../dist/src/bodies.js'
-import * as schemas from '../dist/generated/schemas/index.js'
+import * as schemas from '../dist/generated/schemas.js'
 import { wire } from '../dist/generated/wire.js'
 import { measure } from './measure.mjs'
 

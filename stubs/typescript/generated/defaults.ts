@@ -8,8 +8,4 @@
  * @module
  */
 
-import type { DefaultsOf } from '../src/runtime.ts'
-import * as messages from './messages/index.ts'
-
-/** {@link messages.SaveMapRequest} */
-export const SaveMapRequest: DefaultsOf<messages.SaveMapRequest, 'tower' | 'level'> = { tower: '未知', level: '1' }
+export * from './groups/map/defaults.ts'

@@ -8,10 +8,55 @@
  * @module
  */
 
-import type { ProtocolOf, ServiceOf } from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import * as reports from './reports.ts'
+import type { AnyCommand, AnyReportOf, AnyStream, ProtocolOf, ServiceOf } from '../src/runtime.ts'
+import buildingCommands from './groups/building/commands.ts'
+import cellCommands from './groups/cell/commands.ts'
+import dispatchCommands from './groups/dispatch/commands.ts'
+import identityCommands from './groups/identity/commands.ts'
+import laserCommands from './groups/laser/commands.ts'
+import mapCommands from './groups/map/commands.ts'
+import rechargeCommands from './groups/recharge/commands.ts'
+import settingsCommands from './groups/settings/commands.ts'
+import standbyCommands from './groups/standby/commands.ts'
+import stationCommands from './groups/station/commands.ts'
+import statusCommands from './groups/status/commands.ts'
+import taskCommands from './groups/task/commands.ts'
+import unnamedCommands from './groups/unnamed/commands.ts'
+import upperBodyCommands from './groups/upper_body/commands.ts'
+import mapReports from './groups/map/reports.ts'
+import rechargeReports from './groups/recharge/reports.ts'
+import statusReports from './groups/status/reports.ts'
+import taskReports from './groups/task/reports.ts'
 import { wire } from './wire.ts'
+
+/** 全部指令，按方法名。All commands, by the names of their methods. */
+export const commands: Readonly<Record<string, AnyCommand>> = {
+  ...buildingCommands,
+  ...cellCommands,
+  ...dispatchCommands,
+  ...identityCommands,
+  ...laserCommands,
+  ...mapCommands,
+  ...rechargeCommands,
+  ...settingsCommands,
+  ...standbyCommands,
+  ...stationCommands,
+  ...statusCommands,
+  ...taskCommands,
+  ...unnamedCommands,
+  ...upperBodyCommands,
+}
+
+/** 全部上报，按方法名。All reports, by the names of their methods. */
+export const reports: Readonly<Record<string, AnyReportOf>> = {
+  ...mapReports,
+  ...rechargeReports,
+  ...statusReports,
+  ...taskReports,
+}
+
+/** 全部数据流，按方法名中的名称。All streams, by what methods call them. */
+export const streams: Readonly<Record<string, AnyStream>> = {}
 
 /**
  * FC 配送机器人通信协议
@@ -28,97 +73,14 @@ import { wire } from './wire.ts'
  */
 export const Fc: ProtocolOf = {
   wire: wire,
-  commands: [
-    commands.listIotDevices,
-    commands.getFloors,
-    commands.getCellConfig,
-    commands.setCellConfig,
-    commands.checkCondition0333,
-    commands.getRobotSn,
-    commands.getFirmwareVersions,
-    commands.getLaserScan,
-    commands.getMapImage,
-    commands.listMaps,
-    commands.getMapInfo,
-    commands.saveMap,
-    commands.downloadMaps,
-    commands.uploadMaps,
-    commands.getMapSyncProgress,
-    commands.startRecharge,
-    commands.cancelRecharge,
-    commands.getRechargeStatus,
-    commands.switch0a08,
-    commands.setVoiceReminder,
-    commands.switchEnvironment,
-    commands.setStandbyPosition,
-    commands.getStandbyPosition,
-    commands.setPositions0313,
-    commands.getPositions0314,
-    commands.getStation,
-    commands.uploadMapStations,
-    commands.addStation,
-    commands.deleteStation,
-    commands.renameStation,
-    commands.listFaults,
-    commands.getSelfCheck,
-    commands.createTask,
-    commands.getTaskStatus,
-    commands.unnamed0309,
-    commands.unnamed0460,
-    commands.getUpperBodyStatus,
-  ],
-  reports: [
-    reports.mapSyncProgress,
-    reports.rechargeProgress,
-    reports.robotStatus,
-    reports.obstacleAnnouncement,
-    reports.targetReached,
-    reports.taskProgress,
-  ],
-  streams: [],
+  commands: Object.values(commands),
+  reports: Object.values(reports),
+  streams: Object.values(streams),
 }
 
 /** 机器人的每个方法处理哪条指令。Which command each method of a robot handles. */
 export const service: ServiceOf = {
-  methods: {
-    listIotDevices: commands.listIotDevices,
-    getFloors: commands.getFloors,
-    getCellConfig: commands.getCellConfig,
-    setCellConfig: commands.setCellConfig,
-    checkCondition0333: commands.checkCondition0333,
-    getRobotSn: commands.getRobotSn,
-    getFirmwareVersions: commands.getFirmwareVersions,
-    getLaserScan: commands.getLaserScan,
-    getMapImage: commands.getMapImage,
-    listMaps: commands.listMaps,
-    getMapInfo: commands.getMapInfo,
-    saveMap: commands.saveMap,
-    downloadMaps: commands.downloadMaps,
-    uploadMaps: commands.uploadMaps,
-    getMapSyncProgress: commands.getMapSyncProgress,
-    startRecharge: commands.startRecharge,
-    cancelRecharge: commands.cancelRecharge,
-    getRechargeStatus: commands.getRechargeStatus,
-    switch0a08: commands.switch0a08,
-    setVoiceReminder: commands.setVoiceReminder,
-    switchEnvironment: commands.switchEnvironment,
-    setStandbyPosition: commands.setStandbyPosition,
-    getStandbyPosition: commands.getStandbyPosition,
-    setPositions0313: commands.setPositions0313,
-    getPositions0314: commands.getPositions0314,
-    getStation: commands.getStation,
-    uploadMapStations: commands.uploadMapStations,
-    addStation: commands.addStation,
-    deleteStation: commands.deleteStation,
-    renameStation: commands.renameStation,
-    listFaults: commands.listFaults,
-    getSelfCheck: commands.getSelfCheck,
-    createTask: commands.createTask,
-    getTaskStatus: commands.getTaskStatus,
-    unnamed0309: commands.unnamed0309,
-    unnamed0460: commands.unnamed0460,
-    getUpperBodyStatus: commands.getUpperBodyStatus,
-  },
+  methods: commands,
   ranges: [{ first: 0x0200, last: 0x0300, method: 'passThrough' }],
   unknown: 'unknown',
 }

@@ -91,7 +91,7 @@ import type {
   UploadMapStationsResponse,
   UploadMapsRequest,
   UploadMapsResponse,
-} from './messages/index.ts'
+} from './messages.ts'
 import {
   CellLocation,
   CellType,
@@ -112,7 +112,7 @@ import {
   SwitchUpdate,
   TaskProcess,
   UpperStatus,
-} from './messages/index.ts'
+} from './messages.ts'
 import type { Robot } from './robot.ts'
 import { Reporter, serve } from './robot.ts'
 

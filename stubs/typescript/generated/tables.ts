@@ -8,7 +8,7 @@
  * @module
  */
 
-import * as messages from './messages/index.ts'
+import * as messages from './messages.ts'
 
 /**
  * 分格表

@@ -136,3 +136,5 @@ export type {
 export type { Allowed } from './server/allow.ts'
 export type { ServerConfig } from './server/config.ts'
 export type { ServerCounters } from './server/counters.ts'
+export { addAppStreams, addCalls, addExamples, addReports, addRobotStreams } from './stubs.ts'
+export type { Stub } from './stubs.ts'

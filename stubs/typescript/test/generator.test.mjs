@@ -39,8 +39,8 @@ test('each audience has a whole package', { skip: unlessGenerated }, () => {
     writeFileSync(path.join(folder, 'fc.yaml'), `targets: { typescript: { out: generated, audience: ${audience} } }\n`)
     generate(folder)
     assert.equal(compile(folder), '')
-    const client = readFileSync(path.join(folder, 'generated/client.ts'), 'utf8')
-    assert.equal(client.includes('closeSwitch'), has, audience)
+    const messages = readFileSync(path.join(folder, 'generated/groups/power/messages.ts'), 'utf8')
+    assert.equal(messages.includes('closeSwitch('), has, audience)
   }
 })
 

@@ -40,11 +40,24 @@ const vectorsIn = (folder) =>
 /** Every vector file: `{ file, operation, code, accepted, rejected }`. */
 export const vectors = vectorsIn(path.join(generated, 'vectors'))
 
-/** Another protocol and its vectors; what is generated is JSON behind the name of a constant. */
+/** A protocol as data, of which each group has its part in a file; what is generated is JSON behind names of constants. */
+function protocolIn(folder) {
+  const valueOf = (file, name) => {
+    const module = readFileSync(path.join(folder, file), 'utf8')
+    const [value] = module.slice(module.indexOf(`export const ${name}: `)).split('\n\n', 1)
+    return value.slice(value.indexOf(' = ') + ' = '.length)
+  }
+  const [head] = valueOf('protocol.ts', 'protocol').split(',\n  "types": {', 1)
+  const groups = readdirSync(path.join(folder, 'groups')).map((group) => `groups/${group}/protocol.ts`)
+  const types = groups.map((file) => JSON.parse(valueOf(file, 'types')))
+  const operations = groups.flatMap((file) => JSON.parse(valueOf(file, 'operations')))
+  return { ...JSON.parse(`${head}}`), types: Object.assign({}, ...types), operations }
+}
+
+/** Another protocol and its vectors. */
 function other(name) {
   const folder = path.join(generated, 'tests', name)
-  const module = readFileSync(path.join(folder, 'generated/protocol.ts'), 'utf8')
-  const protocol = JSON.parse(module.slice(module.indexOf('Protocol = {') + 'Protocol = '.length))
+  const protocol = protocolIn(path.join(folder, 'generated'))
   return { name, codec: { protocol, algorithms: nodeAlgorithms }, vectors: vectorsIn(path.join(folder, 'vectors')) }
 }
 

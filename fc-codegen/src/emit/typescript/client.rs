@@ -1,76 +1,66 @@
-//! `client.ts`: the app's side.
+//! `client.ts`: the app's side. Its methods are declared group by group.
 
-use super::context::{Context, page_of};
-use super::messages::deprecated;
-use super::operations::{carried, stream_name};
+use super::context::{Context, own, page_of};
+use super::group::{Group, What, merged, parts};
+use super::messages::{deprecated, union};
+use super::operations::carried;
 use super::protocol;
-use super::source::{alternatives, head, import_types};
+use super::source::{alternatives, head, import, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
-use crate::emit::stub::process::{self, set_off};
+use crate::emit::stub::process::{is_followed, set_off};
 use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Spelled};
-use fc_spec::model::{Direction, Operation, Side};
+use crate::surface::package::Call;
+use fc_spec::model::{Operation, Side};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
-    let commands = context.commands();
-    let reports = context.reports();
-    let streams = &context.package.streams;
+pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
+    let has_commands = groups.iter().any(|it| it.has(What::Commands));
+    let has_streams = groups.iter().any(|it| it.has(What::Streams));
     let mut out = head([
         "app 端：每条指令一个方法。",
         "The app's side: one method per command.",
     ]);
-    out.line("import { Connection, dial, dialLater } from '../src/runtime.ts'");
+    let mut names = vec!["Connection", "dial", "dialLater"];
+    names.extend(has_commands.then_some("addCalls"));
+    names.extend(has_streams.then_some("addAppStreams"));
+    import(&mut out, &names, "../src/runtime.ts");
     let mut names = vec!["ClientConfig", "Platform", "UnknownReport"];
-    let follows = |call: &Call<'_>| process::is_followed(context, call.operation);
-    names.extend((!commands.is_empty()).then_some("CallOptions"));
-    names.extend((!reports.is_empty()).then_some("Reported"));
-    names.extend(commands.iter().any(follows).then_some("FollowableCall"));
-    names.extend((!streams.is_empty()).then_some("DataConnection"));
-    let from_robot = |it: &Spelled<'_, Operation>| it.sender == Side::Robot;
-    names.extend(streams.iter().any(from_robot).then_some("Subscription"));
+    names.extend(has_streams.then_some("DataConnection"));
     import_types(&mut out, &names, "../src/runtime.ts");
-    if !commands.is_empty() {
-        out.line("import * as commands from './commands.ts'");
+    if has_commands || has_streams || groups.iter().any(|it| it.has(What::Reports)) {
+        out.line("import type * as messages from './messages.ts'");
     }
-    let json = streams
-        .iter()
-        .any(|it| it.body(Direction::Request).is_some());
-    if !commands.is_empty() || !reports.is_empty() || json {
-        out.line("import type * as messages from './messages/index.ts'");
-    }
-    let (protocol, import) = protocol::imported(context);
-    out.line(format!("import {{ {import} }} from './operations.ts'"));
-    if !streams.is_empty() {
-        out.line("import * as streams from './streams.ts'");
-    }
-    any_report(&mut out, &reports);
+    let (protocol, name) = protocol::imported(context);
+    let mut names = vec![name];
+    names.extend(has_commands.then(|| "service".to_owned()));
+    names.extend(has_streams.then(|| "streams".to_owned()));
+    import(&mut out, &names, "./operations.ts");
     out.blank();
-    client_class(&mut out, context, &protocol, &commands);
-    if !streams.is_empty() {
-        app_streams(&mut out, context);
+    out.line("/** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */");
+    let mut reports = parts(context, groups, "report", What::Reports);
+    reports.push("UnknownReport".to_owned());
+    union(&mut out, "AnyReport", &reports);
+    out.blank();
+    let calls = parts(context, groups, "calls", What::Commands);
+    if has_commands {
+        let about = "/** 每组指令的方法。The methods of each group of commands. */";
+        merged(&mut out, "Client", about, &calls);
+    }
+    client_class(&mut out, &protocol, has_commands);
+    if has_streams {
+        app_streams(&mut out, &parts(context, groups, "streams", What::Streams));
     }
     out.finish()
 }
 
-fn any_report(out: &mut Source, reports: &[Call<'_>]) {
-    out.blank();
-    out.line("/** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */");
-    let known = reports.iter().map(|report| {
-        let name = &report.request.ty.name;
-        let docs = Docs::of(&report.operation.title);
-        (docs, format!("Reported<'{name}', messages.{name}>"))
-    });
-    let mut other = Docs::default();
-    other.raw("编码不在规范中的上报。One whose code the spec does not know.");
-    let all = known.chain([(other, "UnknownReport".to_owned())]);
-    alternatives(out, "AnyReport", &all.collect::<Vec<_>>());
-}
-
-fn client_class(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[Call<'_>]) {
+fn client_class(out: &mut Source, protocol: &str, has_commands: bool) {
     out.line("/** 一个机器人，从 app 一侧看：每条指令一个方法。A robot as seen from the app: one method per command. */");
     out.block("export class Client extends Connection<AnyReport>", |out| {
+        if has_commands {
+            out.line("static {\n  addCalls(Client, service.methods)\n}");
+            out.blank();
+        }
         out.line(format!(
             "\
 /**
@@ -89,48 +79,125 @@ static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
   return new Client(dialLater({protocol}, platform, config))
 }}"
         ));
-        for command in commands {
-            out.blank();
-            call(out, context, command);
-        }
     });
+}
+
+fn app_streams(out: &mut Source, parts: &[String]) {
+    let about = "/** 每组数据流的方法。The methods of each group of streams. */";
+    merged(out, "Streams", about, parts);
+    out.line(
+        "\
+/**
+ * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
+ * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+ */",
+    );
+    out.block("export class Streams", |out| {
+        out.line("static {\n  addAppStreams(Streams, streams)\n}");
+        out.blank();
+        let about = "/** 数据连接。The data connection. */";
+        let made = "/** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */";
+        constructor(out, ["data", "DataConnection"], about, made);
+    });
+}
+
+/// The members that keep what a class stands on; its methods, which are declared elsewhere, find it there.
+pub fn constructor(out: &mut Source, [field, ty]: [&str; 2], about: &str, made: &str) {
+    out.line(format!(
+        "{about}\nprotected readonly {field}: {ty}\n\n{made}\nconstructor({field}: {ty}) {{\n  this.{field} = {field}\n}}"
+    ));
+}
+
+/// Types of the runtime that a group's part of this side names.
+pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'static str> {
+    let follows = |call: &Call<'_>| is_followed(context, call.operation);
+    let mut names = Vec::new();
+    names.extend(group.has(What::Commands).then_some("CallOptions"));
+    names.extend(
+        group
+            .commands
+            .iter()
+            .any(follows)
+            .then_some("FollowableCall"),
+    );
+    names.extend(group.has(What::Reports).then_some("Reported"));
+    names.extend(group.has(What::RobotStreams).then_some("Subscription"));
+    names
+}
+
+/// What a group adds to this side.
+pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
+    if group.has(What::Commands) {
+        out.blank();
+        out.line("/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */");
+        let name = group.part(context, "calls");
+        out.block(format!("export interface {name}"), |out| {
+            for command in &group.commands {
+                out.blank();
+                call(out, context, command);
+            }
+        });
+    }
+    if group.has(What::Reports) {
+        out.blank();
+        out.line("/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */");
+        let reported = own(context, "Reported");
+        let reports = group.reports.iter().map(|report| {
+            let name = &report.request.ty.name;
+            let docs = Docs::of(&report.operation.title);
+            (docs, format!("{reported}<'{name}', {name}>"))
+        });
+        let name = group.part(context, "report");
+        alternatives(out, &name, &reports.collect::<Vec<_>>());
+    }
+    if group.has(What::Streams) {
+        out.blank();
+        out.line("/** 本组的数据流，从 app 一侧看：`Streams` 的方法。The streams of the group on the app's side: methods of `Streams`. */");
+        let name = group.part(context, "streams");
+        out.block(format!("export interface {name}"), |out| {
+            for stream in &group.streams {
+                let (name, held) = (&stream.name, carried(context, stream, ""));
+                out.blank();
+                out.docs(&stream_docs(context, stream));
+                if stream.sender == Side::Robot {
+                    let result = format!("{}<{held}>", own(context, "Subscription"));
+                    method(out, &format!("subscribe{name}"), &[], &result);
+                } else {
+                    let parameters = ["id: number".to_owned(), format!("content: {held}")];
+                    method(out, &format!("send{name}"), &parameters, "Promise<void>");
+                }
+            }
+        });
+    }
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
     let mut docs = facts::call_docs(context, operation, |error| {
-        format!("`CallError.declared` says which {{@link messages.{error}}} it was.")
+        format!("`CallError.declared` says which {{@link {error}}} it was.")
     });
     deprecated(&mut docs, operation.deprecated.as_ref());
     out.docs(&docs);
     let [request, response] = [command.request, command.response].map(|it| &it.ty.name);
     let is_optional = command.request.fields().iter().all(|field| field.optional);
-    let unless_given = if is_optional { " = {}" } else { "" };
+    let mark = if is_optional { "?" } else { "" };
     let answer = match set_off(context, operation).next() {
         Some((_, _, report)) => {
             let report = context.name_of(&report.request.ty);
-            format!("FollowableCall<messages.{response}, messages.{report}>")
+            format!("{}<{response}, {report}>", own(context, "FollowableCall"))
         }
-        None => format!("Promise<messages.{response}>"),
+        None => format!("Promise<{response}>"),
     };
     let parameters = [
-        format!("request: messages.{request}{unless_given}"),
-        "options?: CallOptions".to_owned(),
+        format!("request{mark}: {request}"),
+        format!("options?: {}", own(context, "CallOptions")),
     ];
-    let method = command.method;
-    method_of(
-        out,
-        method,
-        &parameters,
-        &answer,
-        &format!("return this.call(commands.{method}, request, options)"),
-    );
+    method(out, command.method, &parameters, &answer);
 }
 
-/// A method with a body of one line.
-pub fn method_of(out: &mut Source, name: &str, parameters: &[String], result: &str, body: &str) {
-    out.list(&format!("{name}("), parameters, &format!("): {result} {{"));
-    out.line(format!("  {body}\n}}"));
+/// A method of an interface.
+pub fn method(out: &mut Source, name: &str, parameters: &[String], result: &str) {
+    out.list(&format!("{name}("), parameters, &format!("): {result}"));
 }
 
 /// The comment on the method of a stream.
@@ -140,40 +207,4 @@ pub fn stream_docs<'m>(context: &Context<'_>, stream: &'m Operation) -> Docs<'m>
     docs.paragraph(context.links(&stream.location, &page_of(stream)));
     deprecated(&mut docs, stream.deprecated.as_ref());
     docs
-}
-
-/// The members that keep what a class of this file stands on.
-pub fn constructor(out: &mut Source, field: &str, ty: &str, about: &str) {
-    out.line(format!(
-        "private readonly {field}: {ty}\n\n{about}\nconstructor({field}: {ty}) {{\n  this.{field} = {field}\n}}"
-    ));
-}
-
-fn app_streams(out: &mut Source, context: &Context<'_>) {
-    out.blank();
-    out.line(
-        "\
-/**
- * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
- * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
- */",
-    );
-    out.block("export class Streams", |out| {
-        let about = "/** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */";
-        constructor(out, "data", "DataConnection", about);
-        for stream in &context.package.streams {
-            let (name, constant) = (&stream.name, stream_name(stream));
-            let held = carried(context, stream);
-            out.blank();
-            out.docs(&stream_docs(context, stream));
-            if stream.sender == Side::Robot {
-                let body = format!("return this.data.subscribe(streams.{constant})");
-                method_of(out, &format!("subscribe{name}"), &[], &format!("Subscription<{held}>"), &body);
-            } else {
-                let parameters = ["id: number".to_owned(), format!("content: {held}")];
-                let body = format!("return this.data.sendStream(streams.{constant}, id, content)");
-                method_of(out, &format!("send{name}"), &parameters, "Promise<void>", &body);
-            }
-        }
-    });
 }

@@ -1,6 +1,6 @@
 //! What the files of the package ask beyond those of any: the types of TypeScript, and what is imported from where.
 
-use crate::surface::package::{Item, Module, Shape};
+use crate::surface::package::{Item, Shape};
 use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -39,15 +39,16 @@ pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
     }
 }
 
-/// Types of other modules that the types of this one name, by module.
+/// Those of these types that are not in the module of this id, by the names of their modules.
 pub fn imports<'a>(
     context: &'a Context<'_>,
-    home: &'a Module<'_>,
+    home: &str,
+    types: impl IntoIterator<Item = &'a TypeRef>,
 ) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
     let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for named in home.items.iter().flat_map(parts) {
+    for named in types {
         let module = context.package.module_of(named);
-        if module.id != home.id {
+        if module.id != home {
             let names = imports.entry(&module.name).or_default();
             names.insert(context.name_of(named));
         }
@@ -76,7 +77,7 @@ pub fn imported(context: &Context<'_>, name: &str) -> String {
 }
 
 /// The types that an item is made of.
-fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
+pub fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
     match &item.shape {
         Shape::Record(_, fields) => fields
             .iter()

@@ -1,49 +1,59 @@
-//! The message types of one group: interfaces, enums with the constants of their values, choices.
+//! The message types of one group: interfaces, enums with the constants of their values, choices; and its methods on
+//! both sides, as interfaces. Nothing of it needs the schemas: these have the constants of enums at once when loaded.
 
 use super::constants::wire;
-use super::context::{Context, field_type, imported, imports, own, repr_is_large};
-use super::source::{Source, alternatives, file, import_types, literal, tag_text};
+use super::context::{Context, field_type, imported, imports, own, parts, repr_is_large};
+use super::group::Group;
+use super::source::{self, Source, alternatives, import_types, literal, tag_text};
+use super::{client, robot};
 use crate::emit::stub::about;
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Module, Shape, Spelled};
+use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
 };
 
-/// A module of message types.
-pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
-    let mut out = file();
-    let docs = module_docs(module);
+/// What the file of all messages says of itself.
+pub const ABOUT: [&str; 2] = [
+    "每组指令的消息，以及各组在 app 和机器人两侧的方法。",
+    "The messages of each group, and its methods on the side of the app and of the robot.",
+];
+
+/// `messages.ts` of a group: its message types, and what it adds to the stubs.
+pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let mut out = source::file();
+    let mut docs = Docs::default();
+    let titled = group.titled(context);
+    about::group(&mut docs, titled);
+    docs.raw("@module");
     out.docs(&docs);
     out.blank();
-    let records = || {
-        module
-            .items
-            .iter()
-            .filter(|item| matches!(item.shape, Shape::Record(..)))
-    };
-    let has_json = records()
-        .flat_map(Item::fields)
-        .any(|field| *field.ty.item() == Type::Json);
+    let items = group.items();
     let mut names: Vec<&str> = Vec::new();
-    names.extend(records().next().map(|_| "Extra"));
-    names.extend(has_json.then_some("JsonText"));
+    let is_record = |item: &Item<'_>| matches!(item.shape, Shape::Record(..));
+    let is_json = |field: &Spelled<'_, Field>| *field.ty.item() == Type::Json;
     let is_choice = |item: &Item<'_>| matches!(item.shape, Shape::Choice(..));
-    names.extend(module.items.iter().any(is_choice).then_some("Tagged"));
+    names.extend(items.iter().any(is_record).then_some("Extra"));
+    let mut fields = items.iter().flat_map(Item::fields);
+    names.extend(fields.any(is_json).then_some("JsonText"));
+    names.extend(items.iter().any(is_choice).then_some("Tagged"));
+    names.extend(client::runtime_types(context, group));
+    names.extend(robot::runtime_types(group));
     let names: Vec<String> = names.iter().map(|name| imported(context, name)).collect();
-    import_types(&mut out, &names, "../../src/schema.ts");
-    for (from, names) in imports(context, module) {
+    import_types(&mut out, &names, "../../../src/runtime.ts");
+    let types = items.iter().flat_map(parts).chain(group.bodies(context));
+    for (from, names) in imports(context, group.id, types) {
         import_types(
             &mut out,
             &names.into_iter().collect::<Vec<_>>(),
-            &format!("./{from}.ts"),
+            &format!("../{from}/messages.ts"),
         );
     }
-    for item in &module.items {
+    for item in items {
         out.blank();
         match &item.shape {
             Shape::Record(_, fields) => {
@@ -56,15 +66,9 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
             Shape::Choice(_, variants) => choice(&mut out, context, item, variants),
         }
     }
+    client::group(&mut out, context, group);
+    robot::group(&mut out, context, group);
     out.finish()
-}
-
-/// What a module says of itself.
-pub fn module_docs<'m>(module: &Module<'m>) -> Docs<'m> {
-    let mut docs = Docs::default();
-    about::group(&mut docs, module.group);
-    docs.raw("@module");
-    docs
 }
 
 /// Marks what is withdrawn for editors and compilers; the last of a comment.

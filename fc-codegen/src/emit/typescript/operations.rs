@@ -1,9 +1,10 @@
-//! `commands.ts`, `reports.ts` and `streams.ts`: a constant for each operation with all that the runtime has to know of it.
+//! `commands.ts`, `reports.ts` and `streams.ts` of a group: a constant for each operation with all that the runtime has to know of it.
 
 use super::constants::constant;
 use super::context::{Context, page_of};
+use super::group::Group;
 use super::layout::Layout;
-use super::source::{Source, float, head, import_types, literal, nothing};
+use super::source::{Source, float, head, import_types, literal};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::process::{is_followed, set_off};
 use crate::emit::stub::source::join;
@@ -19,30 +20,47 @@ use fc_spec::model::{
 /// Members of an object.
 type Members = Vec<(&'static str, Layout)>;
 
-/// `commands.ts`.
-pub fn commands(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head([
-        "每条指令的说明数据。",
-        "What there is to know of each command.",
-    ]);
-    let commands = context.commands();
-    if commands.is_empty() {
-        return nothing(out);
-    }
-    let mut names = Vec::new();
-    for call in &commands {
+/// What `commands.ts` says of itself.
+pub const COMMANDS: [&str; 2] = [
+    "每条指令的说明数据。",
+    "What there is to know of each command.",
+];
+
+/// `commands.ts` of a group.
+pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let commands = &group.commands;
+    let mut out = head(COMMANDS);
+    let mut names = vec!["AnyCommand"];
+    for call in commands {
         names.push(command_type(context, call.operation));
     }
-    import_types(&mut out, &names, "../src/runtime.ts");
-    out.line("import * as messages from './messages/index.ts'");
+    import_types(&mut out, &names, "../../../src/runtime.ts");
+    out.line("import * as messages from '../../messages.ts'");
     if names.contains(&"FollowedCommand") {
-        out.line("import * as reports from './reports.ts'");
+        out.line("import * as reports from '../../reports.ts'");
     }
-    out.line("import * as schemas from './schemas/index.ts'");
-    for call in &commands {
+    out.line("import * as schemas from '../../schemas.ts'");
+    for call in commands {
         command(&mut out, context, samples, call);
     }
+    let about =
+        "/** 本组的指令，按方法名。The commands of the group, by the names of their methods. */";
+    let methods: Vec<String> = commands.iter().map(|it| it.method.to_owned()).collect();
+    all(&mut out, about, "AnyCommand", &methods);
     out.finish()
+}
+
+/// What the group has for the lists of the package, in the order of the spec; `export *` leaves it out.
+fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
+    out.blank();
+    out.line(about);
+    let close = format!("}} as Readonly<Record<string, {ty}>>");
+    let flat = format!("export default {{ {} {close}", join(members));
+    if out.has_room([&flat]) {
+        out.line(flat);
+    } else {
+        out.lines("export default {", members, &close);
+    }
 }
 
 /// What the runtime calls the type of a command's constant.
@@ -270,20 +288,24 @@ fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
     out
 }
 
-/// `reports.ts`.
-pub fn reports(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head([
-        "每种主动上报的说明数据。",
-        "What there is to know of each report.",
-    ]);
-    let reports = context.reports();
-    if reports.is_empty() {
-        return nothing(out);
-    }
-    import_types(&mut out, &["Report"], "../src/runtime.ts");
-    out.line("import * as messages from './messages/index.ts'");
-    out.line("import * as schemas from './schemas/index.ts'");
-    for call in &reports {
+/// What `reports.ts` says of itself.
+pub const REPORTS: [&str; 2] = [
+    "每种主动上报的说明数据。",
+    "What there is to know of each report.",
+];
+
+/// `reports.ts` of a group.
+pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let reports = &group.reports;
+    let mut out = head(REPORTS);
+    import_types(
+        &mut out,
+        &["AnyReportOf", "Report"],
+        "../../../src/runtime.ts",
+    );
+    out.line("import * as messages from '../../messages.ts'");
+    out.line("import * as schemas from '../../schemas.ts'");
+    for call in reports {
         let body = &*call.request.ty.name;
         let mut members = facts_of(call.operation, "report");
         members.insert(2, ("case", Layout::text(body)));
@@ -307,6 +329,10 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>) -> String {
             members,
         );
     }
+    let about =
+        "/** 本组的上报，按方法名。The reports of the group, by the names of their methods. */";
+    let methods: Vec<String> = reports.iter().map(|it| it.method.to_owned()).collect();
+    all(&mut out, about, "AnyReportOf", &methods);
     out.finish()
 }
 
@@ -363,23 +389,27 @@ fn cadence(cadence: &Cadence) -> Layout {
     }
 }
 
-/// `streams.ts`.
-pub fn streams(context: &Context<'_>) -> String {
-    let mut out = head([
-        "每个数据流的说明数据。",
-        "What there is to know of each stream.",
-    ]);
-    let streams = &context.package.streams;
-    if streams.is_empty() {
-        return nothing(out);
-    }
-    import_types(&mut out, &["Stream"], "../src/runtime.ts");
+/// What `streams.ts` says of itself.
+pub const STREAMS: [&str; 2] = [
+    "每个数据流的说明数据。",
+    "What there is to know of each stream.",
+];
+
+/// `streams.ts` of a group.
+pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let streams = &group.streams;
+    let mut out = head(STREAMS);
+    import_types(
+        &mut out,
+        &["AnyStream", "Stream"],
+        "../../../src/runtime.ts",
+    );
     if streams
         .iter()
         .any(|stream| stream.body(Direction::Request).is_some())
     {
-        out.line("import type * as messages from './messages/index.ts'");
-        out.line("import * as schemas from './schemas/index.ts'");
+        out.line("import type * as messages from '../../messages.ts'");
+        out.line("import * as schemas from '../../schemas.ts'");
     }
     for stream in streams {
         let body = stream
@@ -408,10 +438,15 @@ pub fn streams(context: &Context<'_>) -> String {
             stream,
             &stream_name(stream),
             "Stream",
-            &[carried(context, stream)],
+            &[carried(context, stream, "messages.")],
             members,
         );
     }
+    let about = "/** 本组的数据流，按方法名中的名称。The streams of the group, by what methods call them. */";
+    let named = streams
+        .iter()
+        .map(|it| format!("{}: {}", it.name, stream_name(it)));
+    all(&mut out, about, "AnyStream", &named.collect::<Vec<_>>());
     out.finish()
 }
 
@@ -421,11 +456,11 @@ pub fn stream_name(stream: &Operation) -> String {
     name.unwrap_or_else(|name| name).into_owned()
 }
 
-/// The type of what a stream's frames carry.
-pub fn carried(context: &Context<'_>, stream: &Operation) -> String {
+/// The type of what a stream's frames carry, in a file that has `prefix` before the name of a message.
+pub fn carried(context: &Context<'_>, stream: &Operation, prefix: &str) -> String {
     let body = stream.body(Direction::Request);
     body.map_or_else(
         || "Uint8Array".to_owned(),
-        |body| format!("messages.{}", context.name_of(&body.ty)),
+        |body| [prefix, context.name_of(&body.ty)].concat(),
     )
 }

@@ -1,39 +1,60 @@
-//! `operations.ts`: the protocol with all of its operations, and what the methods of a robot are called.
+//! `operations.ts`: the protocol with all of its operations, group by group, and what the methods of a robot are called.
 
 use super::context::Context;
+use super::group::{Group, What};
 use super::layout::Layout;
-use super::operations::stream_name;
-use super::source::{head, import_types};
+use super::source::{Source, head, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::ranges::{self, UNKNOWN};
 use crate::surface::language::{Role, TYPESCRIPT};
 use fc_spec::model::CodeRange;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut out = head([
         "协议：数值和全部操作。",
         "The protocol: its numbers and all of its operations.",
     ]);
-    import_types(&mut out, &["ProtocolOf", "ServiceOf"], "../src/runtime.ts");
-    let names = |calls: Vec<crate::surface::package::Call<'_>>| -> Vec<String> {
-        calls.iter().map(|call| call.method.to_owned()).collect()
-    };
-    let streams = context.package.streams.iter();
-    let lists = [
-        ("commands", names(context.commands())),
-        ("reports", names(context.reports())),
-        (
-            "streams",
-            streams.map(|stream| stream_name(stream)).collect(),
-        ),
+    let names = [
+        "AnyCommand",
+        "AnyReportOf",
+        "AnyStream",
+        "ProtocolOf",
+        "ServiceOf",
     ];
-    for (word, names) in &lists {
-        if !names.is_empty() {
-            out.line(format!("import * as {word} from './{word}.ts'"));
+    import_types(&mut out, &names, "../src/runtime.ts");
+    let all = [
+        ("commands", "AnyCommand", What::Commands),
+        ("reports", "AnyReportOf", What::Reports),
+        ("streams", "AnyStream", What::Streams),
+    ];
+    for (word, _, what) in &all {
+        for group in groups.iter().filter(|it| it.has(*what)) {
+            let (variable, name) = (group.variable(word), &group.name);
+            out.line(format!(
+                "import {variable} from './groups/{name}/{word}.ts'"
+            ));
         }
     }
     out.line("import { wire } from './wire.ts'");
+    let about = [
+        "/** 全部指令，按方法名。All commands, by the names of their methods. */",
+        "/** 全部上报，按方法名。All reports, by the names of their methods. */",
+        "/** 全部数据流，按方法名中的名称。All streams, by what methods call them. */",
+    ];
+    for ((word, ty, what), about) in all.iter().zip(about) {
+        out.blank();
+        out.line(about);
+        let groups = groups.iter().filter(|it| it.has(*what));
+        let variables: Vec<String> = groups
+            .map(|it| format!("...{}", it.variable(word)))
+            .collect();
+        spread(
+            &mut out,
+            &format!("export const {word}: Readonly<Record<string, {ty}>> = "),
+            &variables,
+        );
+    }
 
     let protocol = &context.model().protocol;
     let mut docs = Docs::of(&protocol.title);
@@ -41,22 +62,15 @@ pub fn file(context: &Context<'_>) -> String {
     docs.paragraph(format!("Version {} of the spec.", protocol.version));
     out.blank();
     out.docs(&docs);
-    let members = lists.iter().map(|(word, names)| {
-        let names = names
-            .iter()
-            .map(|name| Layout::word(format!("{word}.{name}")));
-        (*word, Layout::list(names))
-    });
+    let members = all
+        .iter()
+        .map(|(word, ..)| (*word, Layout::word(format!("Object.values({word})"))));
     let head = format!("export const {}: ProtocolOf = ", context.package.name);
     Layout::lines([("wire", Layout::word("wire"))].into_iter().chain(members))
         .write(&mut out, &head, "");
 
     out.blank();
     out.line("/** 机器人的每个方法处理哪条指令。Which command each method of a robot handles. */");
-    let commands = context.commands();
-    let methods = commands
-        .iter()
-        .map(|it| (it.method, Layout::word(format!("commands.{}", it.method))));
     let ranges = self::ranges(context).into_iter().map(|(method, range)| {
         Layout::object([
             ("first", Layout::Number(range.first_spelling.to_lowercase())),
@@ -65,12 +79,20 @@ pub fn file(context: &Context<'_>) -> String {
         ])
     });
     Layout::lines([
-        ("methods", Layout::lines(methods)),
+        ("methods", Layout::word("commands")),
         ("ranges", Layout::list(ranges)),
         (UNKNOWN, Layout::text(UNKNOWN)),
     ])
     .write(&mut out, "export const service: ServiceOf = ", "");
     out.finish()
+}
+
+/// `head { ...one, ...other }`, with each on a line of its own.
+fn spread(out: &mut Source, head: &str, members: &[String]) {
+    if members.is_empty() {
+        return out.line([head, "{}"].concat());
+    }
+    out.lines(&[head, "{"].concat(), members, "}");
 }
 
 /// Names of the runtime that stand beside the protocol's own in the stubs.

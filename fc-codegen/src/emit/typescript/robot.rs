@@ -1,34 +1,34 @@
-//! `robot.ts`: the robot's side.
+//! `robot.ts`: the robot's side. Its methods are declared group by group.
 
-use super::client::{constructor, method_of, stream_docs};
-use super::context::{Context, page_of};
+use super::client::{constructor, method, stream_docs};
+use super::context::{Context, own, page_of};
+use super::group::{Group, What, extending, merged, parts};
 use super::messages::deprecated;
-use super::operations::{carried, stream_name};
+use super::operations::carried;
 use super::protocol::{imported, ranges};
-use super::source::{head, import_types};
+use super::source::{head, import, import_types};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::ranges::UNKNOWN;
 use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Spelled};
-use fc_spec::model::{Direction, Effect, Operation, Side};
+use crate::surface::package::Call;
+use fc_spec::model::{Effect, Side};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
-    let commands = context.commands();
-    let reports = context.reports();
-    let own: Vec<_> = context
-        .package
-        .streams
-        .iter()
-        .filter(|it| it.sender == Side::Robot)
-        .collect();
+pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
+    let has_commands = groups.iter().any(|it| it.has(What::Commands));
+    let has_reports = groups.iter().any(|it| it.has(What::Reports));
+    let has_streams = groups.iter().any(|it| it.has(What::RobotStreams));
     let mut out = head([
         "机器人端：每条指令一个方法，以及带类型的主动上报。",
         "The robot's side: one method per command, and typed reports.",
     ]);
-    out.line("import { serveRobot } from '../src/runtime.ts'");
-    let mut names = vec![
+    let mut names = vec!["serveRobot"];
+    names.extend(has_commands.then_some("addExamples"));
+    names.extend(has_reports.then_some("addReports"));
+    names.extend(has_streams.then_some("addRobotStreams"));
+    import(&mut out, &names, "../src/runtime.ts");
+    let names = [
         "Answer",
         "Context",
         "RawRequest",
@@ -36,28 +36,21 @@ pub fn file(context: &Context<'_>) -> String {
         "ServerConfig",
         "ServerPlatform",
     ];
-    names.extend((!reports.is_empty()).then_some("Acknowledgement"));
-    names.extend((!reports.is_empty() || !own.is_empty()).then_some("Audience"));
     import_types(&mut out, &names, "../src/runtime.ts");
-    if !commands.is_empty() {
-        out.line("import * as commands from './commands.ts'");
+    if has_commands || has_reports || has_streams {
+        out.line("import type * as messages from './messages.ts'");
     }
-    let json = own.iter().any(|it| it.body(Direction::Request).is_some());
-    if !commands.is_empty() || !reports.is_empty() || json {
-        out.line("import type * as messages from './messages/index.ts'");
-    }
-    let (protocol, import) = imported(context);
-    out.line(format!(
-        "import {{ {import}, service }} from './operations.ts'"
-    ));
-    if !reports.is_empty() {
-        out.line("import * as reports from './reports.ts'");
-    }
-    if !own.is_empty() {
-        out.line("import * as streams from './streams.ts'");
-    }
+    let (protocol, name) = imported(context);
+    let mut names = vec![name, "service".to_owned()];
+    names.extend(has_reports.then(|| "reports".to_owned()));
+    names.extend(has_streams.then(|| "streams".to_owned()));
+    import(&mut out, &names, "./operations.ts");
     out.blank();
-    robot_interface(&mut out, context, &commands);
+    robot_interface(
+        &mut out,
+        context,
+        &parts(context, groups, "robot", What::Commands),
+    );
     out.blank();
     out.line(format!(
         "\
@@ -75,15 +68,43 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
   return serveRobot({protocol}, service, platform, robot, config)
 }}"
     ));
-    example(&mut out, &commands);
-    reporter(&mut out, context, &reports);
-    if !own.is_empty() {
-        streamer(&mut out, context, &own);
+    if has_commands {
+        example(
+            &mut out,
+            &parts(context, groups, "examples", What::Commands),
+        );
+    }
+    if has_reports {
+        let about = "/** 主动上报：每种上报一个方法。Pushes reports: one method per report. */";
+        let parts = parts(context, groups, "reporter", What::Reports);
+        let constructor = "/** 向一个服务端的各个 app 上报。Reports to the apps of a server. */";
+        pushing(
+            &mut out,
+            "Reporter",
+            &parts,
+            about,
+            "addReports(Reporter, reports)",
+            constructor,
+        );
+    }
+    if has_streams {
+        let about = "/** 机器人发送的数据流：每个数据流一个方法。Sends the robot's streams: one method per stream. */";
+        let parts = parts(context, groups, "streamer", What::RobotStreams);
+        let constructor =
+            "/** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */";
+        pushing(
+            &mut out,
+            "Streamer",
+            &parts,
+            about,
+            "addRobotStreams(Streamer, streams)",
+            constructor,
+        );
     }
     out.finish()
 }
 
-fn robot_interface(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>]) {
+fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
     out.line(
         "\
 /**
@@ -97,31 +118,8 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, commands: &[Call<'_>
  * more: the handler took too long, or the connection broke.
  */",
     );
-    out.block("export interface Robot", |out| {
-        for command in commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(context.style, &mut docs, command.operation);
-            if context.package.error_type(command.operation).is_some() {
-                docs.raw(format!(
-                    "`Refusal.declared(commands.{}, …)` makes one of its errors.",
-                    command.method
-                ));
-            }
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
-            deprecated(&mut docs, command.operation.deprecated.as_ref());
-            out.blank();
-            out.docs(&docs);
-            let [request, response] = [command.request, command.response].map(|it| &it.ty.name);
-            let parameters = [
-                format!("request: messages.{request}"),
-                "context: Context".to_owned(),
-            ];
-            out.list(
-                &format!("{}(", command.method),
-                &parameters,
-                &format!("): Answer<messages.{response}>"),
-            );
-        }
+    let open = extending(out, "Robot", parts);
+    out.block(open, |out| {
         for (name, range) in ranges(context) {
             let mut docs = Docs::of(&range.text);
             let (first, last) = (&range.first_spelling, &range.last_spelling);
@@ -150,19 +148,9 @@ fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
     ));
 }
 
-/// Whether a command sets something in motion, as far as anybody knows.
-fn may_move(command: &Call<'_>) -> bool {
-    !matches!(
-        command.operation.effect(),
-        Some(Effect::Read | Effect::Config)
-    )
-}
-
-fn example(out: &mut Source, commands: &[Call<'_>]) {
-    if commands.is_empty() {
-        return;
-    }
-    out.blank();
+fn example(out: &mut Source, parts: &[String]) {
+    let about = "/** 每组指令的方法。The methods of each group of commands. */";
+    merged(out, "ExampleRobot", about, parts);
     out.line(
         "\
 /**
@@ -178,6 +166,10 @@ fn example(out: &mut Source, commands: &[Call<'_>]) {
     out.block("export class ExampleRobot implements Robot", |out| {
         out.line(
             "\
+static {
+  addExamples(ExampleRobot, service.methods)
+}
+
 /**
  * 对会引起动作的指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
  * Whether to answer what sets something in motion with success as well, though nothing moves; only where there is no
@@ -190,91 +182,139 @@ constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion
   this.pretendMotion = pretendMotion
 }",
         );
-        for command in commands {
-            let [request, response] = [command.request, command.response].map(|it| &it.ty.name);
-            let mut docs = Docs::default();
-            docs.raw(format!("{{@inheritDoc Robot.{}}}", command.method));
-            out.blank();
-            out.docs(&docs);
-            let parameters = [format!("_request: messages.{request}"), "context: Context".to_owned()];
-            let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
-            out.list(&format!("{}(", command.method), parameters, &format!("): messages.{response} {{"));
-            if may_move(command) {
-                out.line("  if (!this.pretendMotion) throw context.notImplemented()");
-            }
-            out.line(format!("  return commands.{}.responseExample()\n}}", command.method));
-        }
     });
 }
 
-fn reporter(out: &mut Source, context: &Context<'_>, reports: &[Call<'_>]) {
-    if reports.is_empty() {
-        return;
+/// A class whose methods send something to the apps of a server.
+fn pushing(out: &mut Source, name: &str, parts: &[String], about: &str, add: &str, made: &str) {
+    let methods = "/** 每组的方法。The methods of each group. */";
+    merged(out, name, methods, parts);
+    out.line(about);
+    out.block(format!("export class {name}"), |out| {
+        out.line(format!("static {{\n  {add}\n}}"));
+        out.blank();
+        let server = "/** 服务端。The server. */";
+        constructor(out, ["server", "Server"], server, made);
+    });
+}
+
+/// Whether a command sets something in motion, as far as anybody knows.
+fn may_move(command: &Call<'_>) -> bool {
+    !matches!(
+        command.operation.effect(),
+        Some(Effect::Read | Effect::Config)
+    )
+}
+
+/// Types of the runtime that a group's part of this side names.
+pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    if group.has(What::Commands) {
+        names.extend(["Answer", "Context"]);
     }
-    out.blank();
-    out.line("/** 主动上报：每种上报一个方法。Pushes reports: one method per report. */");
-    out.block("export class Reporter", |out| {
-        constructor(
-            out,
-            "server",
-            "Server",
-            "/** 向一个服务端的各个 app 上报。Reports to the apps of a server. */",
-        );
-        for report in reports {
-            let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(context.style, &mut docs, report.operation);
-            docs.paragraph("Resolves to what became of it at each app.");
-            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
-            deprecated(&mut docs, report.operation.deprecated.as_ref());
-            out.blank();
-            out.docs(&docs);
-            let parameters = [
-                format!("report: messages.{}", report.request.ty.name),
-                "audience: Audience = 'all'".to_owned(),
-            ];
-            let body = format!(
-                "return this.server.push(audience, reports.{}, report)",
-                report.method
-            );
-            method_of(
-                out,
-                report.method,
-                &parameters,
-                "Promise<Acknowledgement[]>",
-                &body,
-            );
-        }
-    });
+    names.extend(group.has(What::Reports).then_some("Acknowledgement"));
+    let pushes = group.has(What::Reports) || group.has(What::RobotStreams);
+    names.extend(pushes.then_some("Audience"));
+    names
 }
 
-fn streamer(out: &mut Source, context: &Context<'_>, streams: &[&Spelled<'_, Operation>]) {
+/// What a group adds to this side.
+pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
+    if group.has(What::Commands) {
+        out.blank();
+        out.line("/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */");
+        let robot = group.part(context, "robot");
+        out.block(format!("export interface {robot}"), |out| {
+            for command in &group.commands {
+                handler(out, context, command);
+            }
+        });
+        out.blank();
+        out.line("/** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */");
+        let name = group.part(context, "examples");
+        out.block(format!("export interface {name}"), |out| {
+            for command in &group.commands {
+                let mut docs = Docs::default();
+                docs.raw(format!("{{@inheritDoc {robot}.{}}}", command.method));
+                out.blank();
+                out.docs(&docs);
+                let parameters = parameters(context, command);
+                let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
+                method(out, command.method, parameters, &command.response.ty.name);
+            }
+        });
+    }
+    let audience = format!("audience?: {}", own(context, "Audience"));
+    if group.has(What::Reports) {
+        out.blank();
+        out.line("/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */");
+        let name = group.part(context, "reporter");
+        out.block(format!("export interface {name}"), |out| {
+            for report in &group.reports {
+                let operation = report.operation;
+                let mut docs = facts::operation_docs(operation);
+                facts::operation_end(context.style, &mut docs, operation);
+                docs.paragraph("Resolves to what became of it at each app.");
+                docs.paragraph(context.links(&operation.location, &page_of(operation)));
+                deprecated(&mut docs, operation.deprecated.as_ref());
+                out.blank();
+                out.docs(&docs);
+                let parameters = [
+                    format!("report: {}", report.request.ty.name),
+                    audience.clone(),
+                ];
+                let result = format!("Promise<{}[]>", own(context, "Acknowledgement"));
+                method(out, report.method, &parameters, &result);
+            }
+        });
+    }
+    if group.has(What::RobotStreams) {
+        out.blank();
+        out.line("/** 本组由机器人发送的数据流：`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */");
+        let name = group.part(context, "streamer");
+        out.block(format!("export interface {name}"), |out| {
+            let mut streams = group.streams.iter();
+            while let Some(stream) = streams.find(|it| it.sender == Side::Robot) {
+                let mut docs = stream_docs(context, stream);
+                docs.paragraph("Resolves to the number of data connections that took it.");
+                out.blank();
+                out.docs(&docs);
+                let parameters = [
+                    "id: number".to_owned(),
+                    format!("content: {}", carried(context, stream, "")),
+                    audience.clone(),
+                ];
+                method(
+                    out,
+                    &format!("send{}", stream.name),
+                    &parameters,
+                    "Promise<number>",
+                );
+            }
+        });
+    }
+}
+
+fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
+    let operation = command.operation;
+    let mut docs = facts::operation_docs(operation);
+    facts::operation_end(context.style, &mut docs, operation);
+    if context.package.error_type(operation).is_some() {
+        docs.raw(format!(
+            "`Refusal.declared(commands.{}, …)` makes one of its errors.",
+            command.method
+        ));
+    }
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    deprecated(&mut docs, operation.deprecated.as_ref());
     out.blank();
-    out.line("/** 机器人发送的数据流：每个数据流一个方法。Sends the robot's streams: one method per stream. */");
-    out.block("export class Streamer", |out| {
-        let about =
-            "/** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */";
-        constructor(out, "server", "Server", about);
-        for stream in streams {
-            let mut docs = stream_docs(context, stream);
-            docs.paragraph("Resolves to the number of data connections that took it.");
-            out.blank();
-            out.docs(&docs);
-            let parameters = [
-                "id: number".to_owned(),
-                format!("content: {}", carried(context, stream)),
-                "audience: Audience = 'all'".to_owned(),
-            ];
-            let body = format!(
-                "return this.server.sendStream(audience, streams.{}, id, content)",
-                stream_name(stream)
-            );
-            method_of(
-                out,
-                &format!("send{}", stream.name),
-                &parameters,
-                "Promise<number>",
-                &body,
-            );
-        }
-    });
+    out.docs(&docs);
+    let result = format!("{}<{}>", own(context, "Answer"), command.response.ty.name);
+    method(out, command.method, &parameters(context, command), &result);
+}
+
+/// What a method of a robot takes.
+fn parameters(context: &Context<'_>, command: &Call<'_>) -> [String; 2] {
+    let request = format!("request: {}", command.request.ty.name);
+    [request, format!("context: {}", own(context, "Context"))]
 }

@@ -19,6 +19,14 @@ const RUNTIME_TYPES: &str = "\
     PushErrorKind RawRequest RawResponse ServerConfig ServerCounters ServerPlatform StreamFrame \
     StreamItem Transport UnknownReport";
 
+/// Whether the root has something of the runtime that is called that.
+pub fn has(name: &str) -> bool {
+    let names = [RUNTIME, RUNTIME_TYPES].into_iter();
+    names
+        .flat_map(str::split_whitespace)
+        .any(|known| known == name)
+}
+
 /// The file.
 pub fn file(context: &Context<'_>) -> String {
     let mut out = empty();
@@ -55,9 +63,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.line("export type { AnyReport } from './client.ts'");
     out.line("export * as commands from './commands.ts'");
     out.line("export * as defaults from './defaults.ts'");
-    if !package.modules.is_empty() {
-        out.line("export * from './messages/index.ts'");
-    }
+    out.line("export * from './messages.ts'");
     out.line(format!(
         "export {{ {} }} from './operations.ts'",
         package.name
@@ -75,9 +81,7 @@ pub fn file(context: &Context<'_>) -> String {
     );
     named(&mut out, "export", &robot, "./robot.ts");
     out.line("export type { PartialRobot, Robot } from './robot.ts'");
-    if !package.modules.is_empty() {
-        out.line("export * as schemas from './schemas/index.ts'");
-    }
+    out.line("export * as schemas from './schemas.ts'");
     out.line("export * as streams from './streams.ts'");
     out.line("export * as tables from './tables.ts'");
     named(&mut out, "export", &["ResultCode"], "./wire.ts");

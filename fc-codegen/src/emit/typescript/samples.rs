@@ -263,8 +263,8 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let Names { types, constants } = names;
     let enums: Vec<String> = constants.enums.into_iter().collect();
     let types: Vec<String> = types.into_iter().filter(|it| !enums.contains(it)).collect();
-    import_types(&mut out, &types, "./messages/index.ts");
-    import(&mut out, &enums, "./messages/index.ts");
+    import_types(&mut out, &types, "./messages.ts");
+    import(&mut out, &enums, "./messages.ts");
     import_types(&mut out, &["Robot"], "./robot.ts");
     let mut stub = vec!["serve"];
     stub.extend((!reports.is_empty()).then_some("Reporter"));

@@ -1,39 +1,41 @@
 //! What the runtime has to know of the types of one group: a constant for each, held to the type by the compiler.
 
 use super::constants::{constant, number};
-use super::context::{Context, imported, imports, is_large, is_safe, own};
+use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
+use super::group::Group;
 use super::layout::Layout;
 use super::source::{head, import, import_types};
 use crate::sample::Samples;
 use crate::surface::expr::Expressions;
-use crate::surface::package::{Item, Module, Shape, Spelled};
+use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Asked, Condition, Constraint, EnumRepr, EnumType, EnumValue, Field, Quirk, Scalar, Type, Value,
     WireForm,
 };
 
-/// A module of schemas.
-pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
-    let mut out = head([
-        "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
-        "What reader and writer know of the message types; the compiler holds each to its type.",
-    ]);
-    let kinds = module
-        .items
-        .iter()
-        .map(|item| imported(context, kind(item)));
+/// What the files of schemas say of themselves.
+pub const ABOUT: [&str; 2] = [
+    "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
+    "What reader and writer know of the message types; the compiler holds each to its type.",
+];
+
+/// The schemas of a group.
+pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let mut out = head(ABOUT);
+    let items = group.items();
+    let kinds = items.iter().map(|item| imported(context, kind(item)));
     let kinds: Vec<String> = kinds.collect();
-    import_types(&mut out, &kinds, "../../src/schema.ts");
-    out.line("import * as messages from '../messages/index.ts'");
-    for (from, names) in imports(context, module) {
+    import_types(&mut out, &kinds, "../../../src/schema.ts");
+    out.line("import * as messages from '../../messages.ts'");
+    for (from, names) in imports(context, group.id, items.iter().flat_map(parts)) {
         import(
             &mut out,
             &names.into_iter().collect::<Vec<_>>(),
-            &format!("./{from}.ts"),
+            &format!("../{from}/schemas.ts"),
         );
     }
     let expressions = Expressions::new(&context.package, samples);
-    for item in &module.items {
+    for item in items {
         out.blank();
         let name = &item.ty.name;
         out.line(format!("/** {{@link messages.{name}}} */"));

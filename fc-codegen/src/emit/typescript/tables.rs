@@ -2,6 +2,7 @@
 
 use super::constants::constant;
 use super::context::{Context, imported, is_large, own};
+use super::group::{Group, has_default};
 use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, import_types, literal, nothing};
@@ -10,8 +11,13 @@ use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Spelled};
-use fc_spec::model::{Field, Value};
+use fc_spec::model::Value;
+
+/// What `defaults.ts` says of itself.
+pub const DEFAULTS: [&str; 2] = [
+    "字段不出现时的含义，用 `withDefaults` 填入。",
+    "What the absence of fields means; `withDefaults` fills it in.",
+];
 
 /// `tables.ts`.
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
@@ -20,7 +26,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     if tables.is_empty() {
         return nothing(out);
     }
-    out.line("import * as messages from './messages/index.ts'");
+    out.line("import * as messages from './messages.ts'");
     let expressions = Expressions::new(&context.package, samples);
     for table in tables {
         let mut docs = Docs::of(&table.title);
@@ -43,29 +49,18 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     out.finish()
 }
 
-/// `defaults.ts`: a constant for each struct of which a field may be absent and means something then.
-pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head([
-        "字段不出现时的含义，用 `withDefaults` 填入。",
-        "What the absence of fields means; `withDefaults` fills it in.",
-    ]);
-    let has_default = |field: &&Spelled<'_, Field>| field.details().default.is_some();
-    let items = context.package.items();
-    let items: Vec<&Item<'_>> = items
-        .filter(|it| it.fields().iter().any(|it| has_default(&it)))
-        .collect();
-    if items.is_empty() {
-        return nothing(out);
-    }
+/// `defaults.ts` of a group: a constant for each struct of which a field may be absent and means something then.
+pub fn defaults(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+    let mut out = head(DEFAULTS);
     import_types(
         &mut out,
         &[imported(context, "DefaultsOf")],
-        "../src/runtime.ts",
+        "../../../src/runtime.ts",
     );
-    out.line("import * as messages from './messages/index.ts'");
+    out.line("import * as messages from '../../messages.ts'");
     let expressions = Expressions::new(&context.package, samples);
-    for item in items {
-        let fields = item.fields().iter().filter(has_default);
+    for item in group.items() {
+        let fields = item.fields().iter().filter(|it| has_default(it));
         let (keys, members): (Vec<String>, Vec<_>) = fields
             .filter_map(|field| {
                 let default = Value::from(field.details().default.as_ref()?);
@@ -77,6 +72,9 @@ pub fn defaults(context: &Context<'_>, samples: &Samples<'_>) -> String {
                 Some((literal(&field.name), (&*field.name, value)))
             })
             .unzip();
+        if keys.is_empty() {
+            continue;
+        }
         let name = &item.ty.name;
         out.blank();
         out.line(format!("/** {{@link messages.{name}}} */"));

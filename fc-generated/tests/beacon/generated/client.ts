@@ -8,33 +8,23 @@
  * @module
  */
 
-import { Connection, dial, dialLater } from '../src/runtime.ts'
-import type {
-  CallOptions,
-  ClientConfig,
-  DataConnection,
-  Platform,
-  Reported,
-  Subscription,
-  UnknownReport,
-} from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import type * as messages from './messages/index.ts'
-import { Beacon } from './operations.ts'
-import * as streams from './streams.ts'
+import { Connection, addAppStreams, addCalls, dial, dialLater } from '../src/runtime.ts'
+import type { ClientConfig, DataConnection, Platform, UnknownReport } from '../src/runtime.ts'
+import type * as messages from './messages.ts'
+import { Beacon, service, streams } from './operations.ts'
 
 /** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */
-export type AnyReport =
-  /**
-   * 看到
-   * Somebody was seen
-   */
-  | Reported<'Seen', messages.Seen>
-  /** 编码不在规范中的上报。One whose code the spec does not know. */
-  | UnknownReport
+export type AnyReport = messages.PlaceReport | UnknownReport
+
+/** 每组指令的方法。The methods of each group of commands. */
+export interface Client extends messages.PlaceCalls {}
 
 /** 一个机器人，从 app 一侧看：每条指令一个方法。A robot as seen from the app: one method per command. */
 export class Client extends Connection<AnyReport> {
+  static {
+    addCalls(Client, service.methods)
+  }
+
   /**
    * 连接机器人；`config` 中没有设置的项使用规范的默认值。
    * Connects to a robot; what `config` does not set has the default of the spec.
@@ -50,67 +40,25 @@ export class Client extends Connection<AnyReport> {
   static connectLazy(platform: Platform, config: ClientConfig = {}): Client {
     return new Client(dialLater(Beacon, platform, config))
   }
-
-  /**
-   * 定位
-   * Locate
-   *
-   * Code 0x0001. Only reads.
-   *
-   * Spec: `commands.locate` in `spec/commands/place.yaml`.
-   */
-  locate(request: messages.LocateRequest = {}, options?: CallOptions): Promise<messages.LocateResponse> {
-    return this.call(commands.locate, request, options)
-  }
-
-  /**
-   * 闪烁
-   * Blink
-   *
-   * Code 0x0002. Changes the configuration. May be refused with `5`.
-   *
-   * `CallError.declared` says which {@link messages.BlinkError} it was.
-   *
-   * Spec: `commands.blink` in `spec/commands/place.yaml`.
-   */
-  blink(request: messages.BlinkRequest, options?: CallOptions): Promise<messages.BlinkResponse> {
-    return this.call(commands.blink, request, options)
-  }
-
-  /**
-   * 发声
-   * Sound
-   *
-   * Code 0x0003. Moves the robot.
-   *
-   * Spec: `commands.sound` in `spec/commands/place.yaml`.
-   */
-  sound(request: messages.SoundRequest = {}, options?: CallOptions): Promise<messages.SoundResponse> {
-    return this.call(commands.sound, request, options)
-  }
 }
+
+/** 每组数据流的方法。The methods of each group of streams. */
+export interface Streams extends messages.PlaceStreams {}
 
 /**
  * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
  * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
  */
 export class Streams {
-  private readonly data: DataConnection
+  static {
+    addAppStreams(Streams, streams)
+  }
+
+  /** 数据连接。The data connection. */
+  protected readonly data: DataConnection
 
   /** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */
   constructor(data: DataConnection) {
     this.data = data
-  }
-
-  /**
-   * 画面
-   * Sight
-   *
-   * Code 0x0010.
-   *
-   * Spec: `streams.sight` in `spec/commands/place.yaml`.
-   */
-  subscribeSight(): Subscription<Uint8Array> {
-    return this.data.subscribe(streams.sight)
   }
 }

@@ -8,11 +8,26 @@
  * @module
  */
 
-import type { ProtocolOf, ServiceOf } from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import * as reports from './reports.ts'
-import * as streams from './streams.ts'
+import type { AnyCommand, AnyReportOf, AnyStream, ProtocolOf, ServiceOf } from '../src/runtime.ts'
+import placeCommands from './groups/place/commands.ts'
+import placeReports from './groups/place/reports.ts'
+import placeStreams from './groups/place/streams.ts'
 import { wire } from './wire.ts'
+
+/** 全部指令，按方法名。All commands, by the names of their methods. */
+export const commands: Readonly<Record<string, AnyCommand>> = {
+  ...placeCommands,
+}
+
+/** 全部上报，按方法名。All reports, by the names of their methods. */
+export const reports: Readonly<Record<string, AnyReportOf>> = {
+  ...placeReports,
+}
+
+/** 全部数据流，按方法名中的名称。All streams, by what methods call them. */
+export const streams: Readonly<Record<string, AnyStream>> = {
+  ...placeStreams,
+}
 
 /**
  * 信标
@@ -26,18 +41,14 @@ import { wire } from './wire.ts'
  */
 export const Beacon: ProtocolOf = {
   wire: wire,
-  commands: [commands.locate, commands.blink, commands.sound],
-  reports: [reports.seen],
-  streams: [streams.sight],
+  commands: Object.values(commands),
+  reports: Object.values(reports),
+  streams: Object.values(streams),
 }
 
 /** 机器人的每个方法处理哪条指令。Which command each method of a robot handles. */
 export const service: ServiceOf = {
-  methods: {
-    locate: commands.locate,
-    blink: commands.blink,
-    sound: commands.sound,
-  },
+  methods: commands,
   ranges: [],
   unknown: 'unknown',
 }

@@ -8,26 +8,4 @@
  * @module
  */
 
-import type { Report } from '../src/runtime.ts'
-import * as messages from './messages/index.ts'
-import * as schemas from './schemas/index.ts'
-
-/**
- * 看到
- * Somebody was seen
- *
- * Spec: `reports.seen` in `spec/commands/place.yaml`.
- */
-export const seen: Report<messages.Seen, 'Seen'> = {
-  is: 'report',
-  name: 'seen',
-  case: 'Seen',
-  code: 0x0100,
-  title: { zh: '看到', en: 'Somebody was seen' },
-  docs: 'reference/reports/seen.md',
-  spec: 'spec/commands/place.yaml',
-  body: schemas.Seen,
-  acknowledgement: schemas.SeenAck,
-  example: () => ({ who: 'anna' }),
-  ack: { timeout: 2000, retries: 3 },
-}
+export * from './groups/place/reports.ts'

@@ -8,22 +8,10 @@
  * @module
  */
 
-import { serveRobot } from '../src/runtime.ts'
-import type {
-  Acknowledgement,
-  Answer,
-  Audience,
-  Context,
-  RawRequest,
-  Server,
-  ServerConfig,
-  ServerPlatform,
-} from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import type * as messages from './messages/index.ts'
-import { Beacon, service } from './operations.ts'
-import * as reports from './reports.ts'
-import * as streams from './streams.ts'
+import { addExamples, addReports, addRobotStreams, serveRobot } from '../src/runtime.ts'
+import type { Answer, Context, RawRequest, Server, ServerConfig, ServerPlatform } from '../src/runtime.ts'
+import type * as messages from './messages.ts'
+import { Beacon, reports, service, streams } from './operations.ts'
 
 /**
  * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
@@ -35,39 +23,7 @@ import * as streams from './streams.ts'
  * What it cannot do, it refuses by throwing a `Refusal`. `context.signal` is aborted when nobody waits for the answer any
  * more: the handler took too long, or the connection broke.
  */
-export interface Robot {
-  /**
-   * 定位
-   * Locate
-   *
-   * Code 0x0001. Only reads.
-   *
-   * Spec: `commands.locate` in `spec/commands/place.yaml`.
-   */
-  locate(request: messages.LocateRequest, context: Context): Answer<messages.LocateResponse>
-
-  /**
-   * 闪烁
-   * Blink
-   *
-   * Code 0x0002. Changes the configuration. May be refused with `5`.
-   *
-   * `Refusal.declared(commands.blink, …)` makes one of its errors.
-   *
-   * Spec: `commands.blink` in `spec/commands/place.yaml`.
-   */
-  blink(request: messages.BlinkRequest, context: Context): Answer<messages.BlinkResponse>
-
-  /**
-   * 发声
-   * Sound
-   *
-   * Code 0x0003. Moves the robot.
-   *
-   * Spec: `commands.sound` in `spec/commands/place.yaml`.
-   */
-  sound(request: messages.SoundRequest, context: Context): Answer<messages.SoundResponse>
-
+export interface Robot extends messages.PlaceRobot {
   /**
    * 功能码不在规范中的指令。
    * Commands whose code is not in the spec.
@@ -93,6 +49,9 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
   return serveRobot(Beacon, service, platform, robot, config)
 }
 
+/** 每组指令的方法。The methods of each group of commands. */
+export interface ExampleRobot extends messages.PlaceExamples {}
+
 /**
  * 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
  * Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `implements PartialRobot`.
@@ -103,6 +62,10 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
  * it is told to pretend.
  */
 export class ExampleRobot implements Robot {
+  static {
+    addExamples(ExampleRobot, service.methods)
+  }
+
   /**
    * 对会引起动作的指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
    * Whether to answer what sets something in motion with success as well, though nothing moves; only where there is no
@@ -114,68 +77,40 @@ export class ExampleRobot implements Robot {
   constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
     this.pretendMotion = pretendMotion
   }
-
-  /** {@inheritDoc Robot.locate} */
-  locate(): messages.LocateResponse {
-    return commands.locate.responseExample()
-  }
-
-  /** {@inheritDoc Robot.blink} */
-  blink(): messages.BlinkResponse {
-    return commands.blink.responseExample()
-  }
-
-  /** {@inheritDoc Robot.sound} */
-  sound(_request: messages.SoundRequest, context: Context): messages.SoundResponse {
-    if (!this.pretendMotion) throw context.notImplemented()
-    return commands.sound.responseExample()
-  }
 }
+
+/** 每组的方法。The methods of each group. */
+export interface Reporter extends messages.PlaceReporter {}
 
 /** 主动上报：每种上报一个方法。Pushes reports: one method per report. */
 export class Reporter {
-  private readonly server: Server
+  static {
+    addReports(Reporter, reports)
+  }
+
+  /** 服务端。The server. */
+  protected readonly server: Server
 
   /** 向一个服务端的各个 app 上报。Reports to the apps of a server. */
   constructor(server: Server) {
     this.server = server
   }
-
-  /**
-   * 看到
-   * Somebody was seen
-   *
-   * Code 0x0100.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.seen` in `spec/commands/place.yaml`.
-   */
-  seen(report: messages.Seen, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.seen, report)
-  }
 }
+
+/** 每组的方法。The methods of each group. */
+export interface Streamer extends messages.PlaceStreamer {}
 
 /** 机器人发送的数据流：每个数据流一个方法。Sends the robot's streams: one method per stream. */
 export class Streamer {
-  private readonly server: Server
+  static {
+    addRobotStreams(Streamer, streams)
+  }
+
+  /** 服务端。The server. */
+  protected readonly server: Server
 
   /** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */
   constructor(server: Server) {
     this.server = server
-  }
-
-  /**
-   * 画面
-   * Sight
-   *
-   * Code 0x0010.
-   *
-   * Spec: `streams.sight` in `spec/commands/place.yaml`.
-   *
-   * Resolves to the number of data connections that took it.
-   */
-  sendSight(id: number, content: Uint8Array, audience: Audience = 'all'): Promise<number> {
-    return this.server.sendStream(audience, streams.sight, id, content)
   }
 }

@@ -18,7 +18,7 @@ import type {
   Seen,
   SoundRequest,
   SoundResponse,
-} from './messages/index.ts'
+} from './messages.ts'
 import type { Robot } from './robot.ts'
 import { Reporter, Streamer, serve } from './robot.ts'
 

@@ -8,21 +8,4 @@
  * @module
  */
 
-import type { Stream } from '../src/runtime.ts'
-
-/**
- * 画面
- * Sight
- *
- * Spec: `streams.sight` in `spec/commands/place.yaml`.
- */
-export const sight: Stream<Uint8Array> = {
-  is: 'stream',
-  name: 'sight',
-  code: 0x0010,
-  title: { zh: '画面', en: 'Sight' },
-  docs: 'reference/streams/sight.md',
-  spec: 'spec/commands/place.yaml',
-  from: 'robot',
-  content: null,
-}
+export * from './groups/place/streams.ts'

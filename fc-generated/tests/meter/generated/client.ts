@@ -8,54 +8,23 @@
  * @module
  */
 
-import { Connection, dial, dialLater } from '../src/runtime.ts'
-import type {
-  CallOptions,
-  ClientConfig,
-  DataConnection,
-  FollowableCall,
-  Platform,
-  Reported,
-  Subscription,
-  UnknownReport,
-} from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import type * as messages from './messages/index.ts'
-import { Meter } from './operations.ts'
-import * as streams from './streams.ts'
+import { Connection, addAppStreams, addCalls, dial, dialLater } from '../src/runtime.ts'
+import type { ClientConfig, DataConnection, Platform, UnknownReport } from '../src/runtime.ts'
+import type * as messages from './messages.ts'
+import { Meter, service, streams } from './operations.ts'
 
 /** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */
-export type AnyReport =
-  /**
-   * 停电
-   * The power is gone
-   */
-  | Reported<'PowerLost', messages.PowerLost>
-  /**
-   * 开关动作
-   * The switch has moved
-   */
-  | Reported<'SwitchMoved', messages.SwitchMoved>
-  /**
-   * 电能读数
-   * Reading of the power
-   */
-  | Reported<'PowerRead', messages.PowerRead>
-  /**
-   * 价格变动
-   * The price has moved
-   */
-  | Reported<'PriceMoved', messages.PriceMoved>
-  /**
-   * 费率已生效
-   * The tariff is in force
-   */
-  | Reported<'TariffSet', messages.TariffSet>
-  /** 编码不在规范中的上报。One whose code the spec does not know. */
-  | UnknownReport
+export type AnyReport = messages.PowerReport | UnknownReport
+
+/** 每组指令的方法。The methods of each group of commands. */
+export interface Client extends messages.PowerCalls {}
 
 /** 一个机器人，从 app 一侧看：每条指令一个方法。A robot as seen from the app: one method per command. */
 export class Client extends Connection<AnyReport> {
+  static {
+    addCalls(Client, service.methods)
+  }
+
   /**
    * 连接机器人；`config` 中没有设置的项使用规范的默认值。
    * Connects to a robot; what `config` does not set has the default of the spec.
@@ -71,158 +40,25 @@ export class Client extends Connection<AnyReport> {
   static connectLazy(platform: Platform, config: ClientConfig = {}): Client {
     return new Client(dialLater(Meter, platform, config))
   }
-
-  /**
-   * 读取电能
-   * Read the power
-   *
-   * Code 0x1001. Only reads.
-   *
-   * Spec: `commands.read_power` in `spec/commands/power.yaml`.
-   */
-  readPower(request: messages.ReadPowerRequest = {}, options?: CallOptions): Promise<messages.ReadPowerResponse> {
-    return this.call(commands.readPower, request, options)
-  }
-
-  /**
-   * 设置费率
-   * Set the tariff
-   *
-   * Code 0x1002. Changes the configuration. Kept in `tariff_table`. May be refused with `18`, `20`.
-   *
-   * `18`：该时段没有这个价格
-   *
-   * `18`: The band does not have this price
-   *
-   * `CallError.declared` says which {@link messages.SetTariffError} it was.
-   *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link messages.TariffSet}。
-   * `.follow()` gives the response, and then each {@link messages.TariffSet} that it sets off.
-   *
-   * 没有写明哪个状态是终态：要由 app 停止。
-   *
-   * No state is said to be final: the app has to stop it.
-   *
-   * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
-   *
-   * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
-   *
-   * Spec: `commands.set_tariff` in `spec/commands/power.yaml`.
-   */
-  setTariff(
-    request: messages.SetTariffRequest,
-    options?: CallOptions,
-  ): FollowableCall<messages.SetTariffResponse, messages.TariffSet> {
-    return this.call(commands.setTariff, request, options)
-  }
-
-  /**
-   * 合闸
-   * Close the switch
-   *
-   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. To be sent first: `read_power`.
-   * May be refused with `20`. Only for `installer_app`.
-   *
-   * 先看有没有电压。
-   *
-   * Look for a voltage first.
-   *
-   * `20`：有人在现场锁定了开关
-   *
-   * `20`: Somebody has locked the switch on site
-   *
-   * `CallError.declared` says which {@link messages.CloseSwitchError} it was.
-   *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link messages.SwitchMoved}。
-   * `.follow()` gives the response, and then each {@link messages.SwitchMoved} that it sets off.
-   *
-   * `switch` 到达终态，或 `switch` 表示失败时结束。
-   *
-   * It ends with a final state in `switch`, or when `switch` says that something failed.
-   *
-   * 只收到属于这次调用的上报：`response.job` = `job`。
-   *
-   * Only reports that belong to the call come: `response.job` = `job`.
-   *
-   * Spec: `commands.close_switch` in `spec/commands/power.yaml`.
-   */
-  closeSwitch(
-    request: messages.CloseSwitchRequest = {},
-    options?: CallOptions,
-  ): FollowableCall<messages.CloseSwitchResponse, messages.SwitchMoved> {
-    return this.call(commands.closeSwitch, request, options)
-  }
-
-  /**
-   * 开始或停止发送负荷
-   * Start or stop sending the load
-   *
-   * Code 0x1004. Changes the configuration.
-   *
-   * Spec: `commands.watch_load` in `spec/commands/power.yaml`.
-   */
-  watchLoad(request: messages.WatchLoadRequest, options?: CallOptions): Promise<messages.WatchLoadResponse> {
-    return this.call(commands.watchLoad, request, options)
-  }
 }
+
+/** 每组数据流的方法。The methods of each group of streams. */
+export interface Streams extends messages.PowerStreams {}
 
 /**
  * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
  * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
  */
 export class Streams {
-  private readonly data: DataConnection
+  static {
+    addAppStreams(Streams, streams)
+  }
+
+  /** 数据连接。The data connection. */
+  protected readonly data: DataConnection
 
   /** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */
   constructor(data: DataConnection) {
     this.data = data
-  }
-
-  /**
-   * 波形
-   * Waveform
-   *
-   * Code 0x1010. Carries `application/octet-stream`.
-   *
-   * Spec: `streams.waveform` in `spec/commands/power.yaml`.
-   */
-  subscribeWaveform(): Subscription<Uint8Array> {
-    return this.data.subscribe(streams.waveform)
-  }
-
-  /**
-   * 负荷
-   * Load
-   *
-   * Code 0x1004. Carries `application/json`. Started by `watch_load`. Stopped by `watch_load`.
-   *
-   * Spec: `streams.load` in `spec/commands/power.yaml`.
-   */
-  subscribeLoad(): Subscription<messages.Load> {
-    return this.data.subscribe(streams.load)
-  }
-
-  /**
-   * 固件
-   * Firmware
-   *
-   * Code 0x1011. Carries `application/octet-stream`.
-   *
-   * Spec: `streams.firmware` in `spec/commands/power.yaml`.
-   */
-  sendFirmware(id: number, content: Uint8Array): Promise<void> {
-    return this.data.sendStream(streams.firmware, id, content)
-  }
-
-  /**
-   * 抄表记录
-   * Readings
-   *
-   * Code 0x1012. Carries `application/json`.
-   *
-   * Spec: `streams.readings` in `spec/commands/power.yaml`.
-   */
-  sendReadings(id: number, content: messages.Readings): Promise<void> {
-    return this.data.sendStream(streams.readings, id, content)
   }
 }

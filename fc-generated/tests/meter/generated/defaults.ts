@@ -8,22 +8,4 @@
  * @module
  */
 
-import type { DefaultsOf } from '../src/runtime.ts'
-import * as messages from './messages/index.ts'
-
-/** {@link messages.SetTariffRequest} */
-export const SetTariffRequest: DefaultsOf<
-  messages.SetTariffRequest,
-  'price' | 'note' | 'then' | 'keep' | 'until' | 'tariff' | 'by'
-> = {
-  price: 100,
-  note: '无',
-  then: messages.Band.Night,
-  keep: true,
-  until: messages.Band.Night,
-  tariff: 7,
-  by: 'nobody',
-}
-
-/** {@link messages.Phase} */
-export const Phase: DefaultsOf<messages.Phase, 'amp'> = { amp: 0 }
+export * from './groups/power/defaults.ts'

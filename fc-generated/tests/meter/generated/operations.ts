@@ -8,11 +8,26 @@
  * @module
  */
 
-import type { ProtocolOf, ServiceOf } from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import * as reports from './reports.ts'
-import * as streams from './streams.ts'
+import type { AnyCommand, AnyReportOf, AnyStream, ProtocolOf, ServiceOf } from '../src/runtime.ts'
+import powerCommands from './groups/power/commands.ts'
+import powerReports from './groups/power/reports.ts'
+import powerStreams from './groups/power/streams.ts'
 import { wire } from './wire.ts'
+
+/** 全部指令，按方法名。All commands, by the names of their methods. */
+export const commands: Readonly<Record<string, AnyCommand>> = {
+  ...powerCommands,
+}
+
+/** 全部上报，按方法名。All reports, by the names of their methods. */
+export const reports: Readonly<Record<string, AnyReportOf>> = {
+  ...powerReports,
+}
+
+/** 全部数据流，按方法名中的名称。All streams, by what methods call them. */
+export const streams: Readonly<Record<string, AnyStream>> = {
+  ...powerStreams,
+}
 
 /**
  * 电表
@@ -26,19 +41,14 @@ import { wire } from './wire.ts'
  */
 export const Meter: ProtocolOf = {
   wire: wire,
-  commands: [commands.readPower, commands.setTariff, commands.closeSwitch, commands.watchLoad],
-  reports: [reports.powerLost, reports.switchMoved, reports.powerRead, reports.priceMoved, reports.tariffSet],
-  streams: [streams.waveform, streams.load, streams.firmware, streams.readings],
+  commands: Object.values(commands),
+  reports: Object.values(reports),
+  streams: Object.values(streams),
 }
 
 /** 机器人的每个方法处理哪条指令。Which command each method of a robot handles. */
 export const service: ServiceOf = {
-  methods: {
-    readPower: commands.readPower,
-    setTariff: commands.setTariff,
-    closeSwitch: commands.closeSwitch,
-    watchLoad: commands.watchLoad,
-  },
+  methods: commands,
   ranges: [{ first: 0x3000, last: 0x30ff, method: 'passThrough' }],
   unknown: 'unknown',
 }

@@ -8,22 +8,10 @@
  * @module
  */
 
-import { serveRobot } from '../src/runtime.ts'
-import type {
-  Acknowledgement,
-  Answer,
-  Audience,
-  Context,
-  RawRequest,
-  Server,
-  ServerConfig,
-  ServerPlatform,
-} from '../src/runtime.ts'
-import * as commands from './commands.ts'
-import type * as messages from './messages/index.ts'
-import { Meter, service } from './operations.ts'
-import * as reports from './reports.ts'
-import * as streams from './streams.ts'
+import { addExamples, addReports, addRobotStreams, serveRobot } from '../src/runtime.ts'
+import type { Answer, Context, RawRequest, Server, ServerConfig, ServerPlatform } from '../src/runtime.ts'
+import type * as messages from './messages.ts'
+import { Meter, reports, service, streams } from './operations.ts'
 
 /**
  * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
@@ -35,64 +23,7 @@ import * as streams from './streams.ts'
  * What it cannot do, it refuses by throwing a `Refusal`. `context.signal` is aborted when nobody waits for the answer any
  * more: the handler took too long, or the connection broke.
  */
-export interface Robot {
-  /**
-   * 读取电能
-   * Read the power
-   *
-   * Code 0x1001. Only reads.
-   *
-   * Spec: `commands.read_power` in `spec/commands/power.yaml`.
-   */
-  readPower(request: messages.ReadPowerRequest, context: Context): Answer<messages.ReadPowerResponse>
-
-  /**
-   * 设置费率
-   * Set the tariff
-   *
-   * Code 0x1002. Changes the configuration. Kept in `tariff_table`. May be refused with `18`, `20`.
-   *
-   * `18`：该时段没有这个价格
-   *
-   * `18`: The band does not have this price
-   *
-   * `Refusal.declared(commands.setTariff, …)` makes one of its errors.
-   *
-   * Spec: `commands.set_tariff` in `spec/commands/power.yaml`.
-   */
-  setTariff(request: messages.SetTariffRequest, context: Context): Answer<messages.SetTariffResponse>
-
-  /**
-   * 合闸
-   * Close the switch
-   *
-   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. To be sent first: `read_power`.
-   * May be refused with `20`. Only for `installer_app`.
-   *
-   * 先看有没有电压。
-   *
-   * Look for a voltage first.
-   *
-   * `20`：有人在现场锁定了开关
-   *
-   * `20`: Somebody has locked the switch on site
-   *
-   * `Refusal.declared(commands.closeSwitch, …)` makes one of its errors.
-   *
-   * Spec: `commands.close_switch` in `spec/commands/power.yaml`.
-   */
-  closeSwitch(request: messages.CloseSwitchRequest, context: Context): Answer<messages.CloseSwitchResponse>
-
-  /**
-   * 开始或停止发送负荷
-   * Start or stop sending the load
-   *
-   * Code 0x1004. Changes the configuration.
-   *
-   * Spec: `commands.watch_load` in `spec/commands/power.yaml`.
-   */
-  watchLoad(request: messages.WatchLoadRequest, context: Context): Answer<messages.WatchLoadResponse>
-
+export interface Robot extends messages.PowerRobot {
   /**
    * 透传
    * Passed through
@@ -130,6 +61,9 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
   return serveRobot(Meter, service, platform, robot, config)
 }
 
+/** 每组指令的方法。The methods of each group of commands. */
+export interface ExampleRobot extends messages.PowerExamples {}
+
 /**
  * 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
  * Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `implements PartialRobot`.
@@ -140,6 +74,10 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
  * it is told to pretend.
  */
 export class ExampleRobot implements Robot {
+  static {
+    addExamples(ExampleRobot, service.methods)
+  }
+
   /**
    * 对会引起动作的指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
    * Whether to answer what sets something in motion with success as well, though nothing moves; only where there is no
@@ -151,143 +89,40 @@ export class ExampleRobot implements Robot {
   constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
     this.pretendMotion = pretendMotion
   }
-
-  /** {@inheritDoc Robot.readPower} */
-  readPower(): messages.ReadPowerResponse {
-    return commands.readPower.responseExample()
-  }
-
-  /** {@inheritDoc Robot.setTariff} */
-  setTariff(): messages.SetTariffResponse {
-    return commands.setTariff.responseExample()
-  }
-
-  /** {@inheritDoc Robot.closeSwitch} */
-  closeSwitch(_request: messages.CloseSwitchRequest, context: Context): messages.CloseSwitchResponse {
-    if (!this.pretendMotion) throw context.notImplemented()
-    return commands.closeSwitch.responseExample()
-  }
-
-  /** {@inheritDoc Robot.watchLoad} */
-  watchLoad(): messages.WatchLoadResponse {
-    return commands.watchLoad.responseExample()
-  }
 }
+
+/** 每组的方法。The methods of each group. */
+export interface Reporter extends messages.PowerReporter {}
 
 /** 主动上报：每种上报一个方法。Pushes reports: one method per report. */
 export class Reporter {
-  private readonly server: Server
+  static {
+    addReports(Reporter, reports)
+  }
+
+  /** 服务端。The server. */
+  protected readonly server: Server
 
   /** 向一个服务端的各个 app 上报。Reports to the apps of a server. */
   constructor(server: Server) {
     this.server = server
   }
-
-  /**
-   * 停电
-   * The power is gone
-   *
-   * Code 0x2001.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.power_lost` in `spec/commands/power.yaml`.
-   */
-  powerLost(report: messages.PowerLost, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.powerLost, report)
-  }
-
-  /**
-   * 开关动作
-   * The switch has moved
-   *
-   * Code 0x2002. Sent at each change of `switch`.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.switch_moved` in `spec/commands/power.yaml`.
-   */
-  switchMoved(report: messages.SwitchMoved, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.switchMoved, report)
-  }
-
-  /**
-   * 电能读数
-   * Reading of the power
-   *
-   * Code 0x2003. Sent every 1000 ms.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.power_read` in `spec/commands/power.yaml`.
-   */
-  powerRead(report: messages.PowerRead, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.powerRead, report)
-  }
-
-  /**
-   * 价格变动
-   * The price has moved
-   *
-   * Code 0x2004. Sent at each step of 0.5 of `data.price`.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.price_moved` in `spec/commands/power.yaml`.
-   */
-  priceMoved(report: messages.PriceMoved, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.priceMoved, report)
-  }
-
-  /**
-   * 费率已生效
-   * The tariff is in force
-   *
-   * Code 0x2005. Sent within 500 ms of a command that sets it off.
-   *
-   * Resolves to what became of it at each app.
-   *
-   * Spec: `reports.tariff_set` in `spec/commands/power.yaml`.
-   */
-  tariffSet(report: messages.TariffSet, audience: Audience = 'all'): Promise<Acknowledgement[]> {
-    return this.server.push(audience, reports.tariffSet, report)
-  }
 }
+
+/** 每组的方法。The methods of each group. */
+export interface Streamer extends messages.PowerStreamer {}
 
 /** 机器人发送的数据流：每个数据流一个方法。Sends the robot's streams: one method per stream. */
 export class Streamer {
-  private readonly server: Server
+  static {
+    addRobotStreams(Streamer, streams)
+  }
+
+  /** 服务端。The server. */
+  protected readonly server: Server
 
   /** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */
   constructor(server: Server) {
     this.server = server
-  }
-
-  /**
-   * 波形
-   * Waveform
-   *
-   * Code 0x1010. Carries `application/octet-stream`.
-   *
-   * Spec: `streams.waveform` in `spec/commands/power.yaml`.
-   *
-   * Resolves to the number of data connections that took it.
-   */
-  sendWaveform(id: number, content: Uint8Array, audience: Audience = 'all'): Promise<number> {
-    return this.server.sendStream(audience, streams.waveform, id, content)
-  }
-
-  /**
-   * 负荷
-   * Load
-   *
-   * Code 0x1004. Carries `application/json`. Started by `watch_load`. Stopped by `watch_load`.
-   *
-   * Spec: `streams.load` in `spec/commands/power.yaml`.
-   *
-   * Resolves to the number of data connections that took it.
-   */
-  sendLoad(id: number, content: messages.Load, audience: Audience = 'all'): Promise<number> {
-    return this.server.sendStream(audience, streams.load, id, content)
   }
 }

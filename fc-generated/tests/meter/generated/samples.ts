@@ -26,8 +26,8 @@ import type {
   TariffSet,
   WatchLoadRequest,
   WatchLoadResponse,
-} from './messages/index.ts'
-import { Band, Switch } from './messages/index.ts'
+} from './messages.ts'
+import { Band, Switch } from './messages.ts'
 import type { Robot } from './robot.ts'
 import { Reporter, Streamer, serve } from './robot.ts'
 

@@ -1,16 +1,22 @@
 // What is emitted as client.ts: the app's side.
 
-import { Connection, dial, dialLater } from 'fc-protocol/runtime'
-import type { CallOptions, ClientConfig, FollowableCall, Platform, Reported, UnknownReport } from 'fc-protocol/runtime'
-import * as commands from './commands.ts'
+import { Connection, addAppStreams, addCalls, dial, dialLater } from 'fc-protocol/runtime'
+import type { ClientConfig, DataConnection, Platform, UnknownReport } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
-import { toy } from './protocol_of.ts'
+import { service, streams, toy } from './protocol_of.ts'
 
 /** Any report: `case` tells which. */
-export type AnyReport = Reported<'DriveProgress', messages.DriveProgress> | UnknownReport
+export type AnyReport = messages.DriveReport | UnknownReport
+
+/** The methods of each group of commands. */
+export interface Client extends messages.DriveCalls {}
 
 /** A robot as seen from the app: one method per command. */
 export class Client extends Connection<AnyReport> {
+  static {
+    addCalls(Client, service.methods)
+  }
+
   /** Connects to a robot; what `config` does not set has the default of the spec. */
   static async connect(platform: Platform, config: ClientConfig = {}): Promise<Client> {
     return new Client(await dial(toy, platform, config))
@@ -20,17 +26,22 @@ export class Client extends Connection<AnyReport> {
   static connectLazy(platform: Platform, config: ClientConfig = {}): Client {
     return new Client(dialLater(toy, platform, config))
   }
+}
 
-  /** Asks for the name. */
-  getName(request: messages.GetNameRequest, options?: CallOptions): Promise<messages.GetNameResponse> {
-    return this.call(commands.getName, request, options)
+/** The methods of each group of streams. */
+export interface Streams extends messages.DriveStreams {}
+
+/** The streams of the data port. */
+export class Streams {
+  static {
+    addAppStreams(Streams, streams)
   }
 
-  /** Drives somewhere. */
-  startDrive(
-    request: messages.StartDriveRequest,
-    options?: CallOptions,
-  ): FollowableCall<messages.StartDriveResponse, messages.DriveProgress> {
-    return this.call(commands.startDrive, request, options)
+  /** The data connection. */
+  protected readonly data: DataConnection
+
+  /** Those of a data connection. */
+  constructor(data: DataConnection) {
+    this.data = data
   }
 }

@@ -1,6 +1,6 @@
-// What is emitted as commands.ts.
+// What is emitted as groups/GROUP/commands.ts.
 
-import type { Command, FollowedCommand } from 'fc-protocol/runtime'
+import type { AnyCommand, Command, FollowedCommand } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
 import * as reports from './reports.ts'
 import * as schemas from './schemas.ts'
@@ -47,3 +47,6 @@ export const startDrive: FollowedCommand<
     tied: [{ call: (_request, response) => response.drive, report: (report) => report.drive }],
   },
 }
+
+/** The commands of the group, by the names of their methods. */
+export default { getName, startDrive } as Readonly<Record<string, AnyCommand>>

@@ -1,6 +1,16 @@
-// What is emitted as messages/GROUP.ts: plain types, and the values of enums.
+// What is emitted as groups/GROUP/messages.ts: plain types, the values of enums, and the methods of both sides.
 
-import type { Extra } from 'fc-protocol/runtime'
+import type {
+  Acknowledgement,
+  Answer,
+  Audience,
+  CallOptions,
+  Context,
+  Extra,
+  FollowableCall,
+  Reported,
+  Subscription,
+} from 'fc-protocol/runtime'
 
 /** Where the robot is. */
 export type DriveState = 0 | 1 | 2 | 3 | (number & {})
@@ -69,4 +79,49 @@ export interface Scan {
   ranges: number[]
   /** Other keys, kept unchanged. */
   extra?: Extra
+}
+
+/** The commands of the group as an app calls them: methods of `Client`. */
+export interface DriveCalls {
+  /** Asks for the name. */
+  getName(request: GetNameRequest, options?: CallOptions): Promise<GetNameResponse>
+
+  /** Drives somewhere. */
+  startDrive(request: StartDriveRequest, options?: CallOptions): FollowableCall<StartDriveResponse, DriveProgress>
+}
+
+/** Any report of the group: `case` tells which. */
+export type DriveReport = Reported<'DriveProgress', DriveProgress>
+
+/** The streams of the group on the app's side: methods of `Streams`. */
+export interface DriveStreams {
+  /** Scans, as JSON. */
+  subscribeScans(): Subscription<Scan>
+
+  /** Pictures, as raw bytes. */
+  sendPictures(id: number, content: Uint8Array): Promise<void>
+}
+
+/** The commands of the group as a robot handles them: methods of `Robot`. */
+export interface DriveRobot {
+  /** Asks for the name. */
+  getName(request: GetNameRequest, context: Context): Answer<GetNameResponse>
+
+  /** Drives somewhere. */
+  startDrive(request: StartDriveRequest, context: Context): Answer<StartDriveResponse>
+}
+
+/** The examples of the group: methods of `ExampleRobot`. */
+export interface DriveExamples {
+  /** The example. */
+  getName(): GetNameResponse
+
+  /** The example, if it is to pretend. */
+  startDrive(request: StartDriveRequest, context: Context): StartDriveResponse
+}
+
+/** The reports of the group as a robot pushes them: methods of `Reporter`. */
+export interface DriveReporter {
+  /** How far a drive has come. Resolves to what became of it at each app. */
+  driveProgress(report: DriveProgress, audience?: Audience): Promise<Acknowledgement[]>
 }

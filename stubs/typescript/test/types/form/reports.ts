@@ -1,6 +1,6 @@
-// What is emitted as reports.ts.
+// What is emitted as groups/GROUP/reports.ts.
 
-import type { Report } from 'fc-protocol/runtime'
+import type { AnyReportOf, Report } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
 import * as schemas from './schemas.ts'
 
@@ -20,3 +20,6 @@ export const driveProgress: Report<messages.DriveProgress, 'DriveProgress'> = {
   cadence: { is: 'on_change', field: 'state' },
   state: { schema: schemas.DriveState, of: (report) => report.state },
 }
+
+/** The reports of the group, by the names of their methods. */
+export default { driveProgress } as Readonly<Record<string, AnyReportOf>>

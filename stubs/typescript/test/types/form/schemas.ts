@@ -1,4 +1,4 @@
-// What is emitted as schemas/GROUP.ts: what the runtime has to know of each type, under the type's own name.
+// What is emitted as groups/GROUP/schemas.ts: what the runtime has to know of each type, under the type's own name.
 
 import type { Enum, Struct } from 'fc-protocol/runtime'
 import * as messages from './messages.ts'

@@ -1,6 +1,6 @@
-// What is emitted as streams.ts.
+// What is emitted as groups/GROUP/streams.ts.
 
-import type { Stream } from 'fc-protocol/runtime'
+import type { AnyStream, Stream } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
 import * as schemas from './schemas.ts'
 
@@ -29,3 +29,6 @@ export const pictures: Stream<Uint8Array> = {
   content: null,
   mediaType: 'image/png',
 }
+
+/** The streams of the group, by what methods call them. */
+export default { Scans: scans, Pictures: pictures } as Readonly<Record<string, AnyStream>>

@@ -2,7 +2,7 @@
 
 import { CallError, acceptedIn } from 'fc-protocol/runtime'
 import type { Platform, ServerPlatform } from 'fc-protocol/runtime'
-import { Client } from './client.ts'
+import { Client, Streams } from './client.ts'
 import * as commands from './commands.ts'
 import * as messages from './messages.ts'
 import * as reports from './reports.ts'
@@ -31,6 +31,7 @@ export async function app(platform: Platform): Promise<void> {
     console.log(state === messages.DriveState.Arrived)
   for await (const { content } of client.data().subscribe(streams.scans)) console.log(content.ranges.length)
   await client.data().sendStream(streams.pictures, 7, new Uint8Array())
+  await new Streams(client.data()).sendPictures(7, new Uint8Array())
   console.log(acceptedIn(commands.startDrive, schemas.DriveState, messages.DriveState.Idle))
 }
 
