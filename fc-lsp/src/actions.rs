@@ -38,7 +38,7 @@ const SHOWN: usize = 40;
 
 fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     let lang = snapshot.settings.lang;
-    let old = shown(snapshot.sources.slice(fix.span));
+    let old = shown(snapshot.sources().slice(fix.span));
     let new = shown(&fix.replacement);
     let what = match (old.is_empty(), new.is_empty()) {
         (_, true) => lang.pick("删除", "delete").to_owned() + &format!(" `{old}`"),

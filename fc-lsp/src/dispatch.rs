@@ -54,6 +54,33 @@ pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
     }
 }
 
+/// Whether a request can only be answered when the snapshot has been checked, or takes a check of its own: it is then
+/// answered beside the loop.
+pub fn waits(method: &str, snapshot: &Snapshot) -> bool {
+    let is_one = |others: &[lsp::LspRequestMethod<'_>]| {
+        let mut others = others.iter();
+        others.any(|other| other.as_str() == method)
+    };
+    if is_one(&[lsp::CodeActionRequest::METHOD]) {
+        !snapshot.is_checked()
+    } else if is_one(&[lsp::CodeLensRequest::METHOD]) {
+        !snapshot.has_lenses()
+    } else if is_one(&[
+        lsp::CompletionRequest::METHOD,
+        lsp::HoverRequest::METHOD,
+        lsp::PrepareRenameRequest::METHOD,
+    ]) {
+        !snapshot.is_known()
+    } else {
+        is_one(&[lsp::RenameRequest::METHOD])
+    }
+}
+
+/// The response to a request that is not answered.
+pub fn refusal(id: RequestId, code: ErrorCode, message: &str) -> Response {
+    Response::new_err(id, code as i32, message.to_owned())
+}
+
 /// Makes the response to a request; without a snapshot, there being no project, with nothing.
 pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
     let Request { id, method, params } = request;
