@@ -34,7 +34,7 @@ mod uri;
 mod worker;
 mod workspace;
 
-pub use actions::actions;
+pub use actions::{actions, fix_all};
 pub use completion::completion;
 pub use definition::definition;
 pub use diagnostics::{diagnostics, text};
