@@ -3,7 +3,7 @@
 use crate::surface::language::Language;
 use crate::surface::package::clashes;
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Partial, load, places};
+use fc_spec::load::{Partial, Trees};
 use fc_spec::model::Model;
 use fc_spec::syntax::Sources;
 
@@ -29,7 +29,12 @@ impl Checked {
 /// Reads a spec and adds its faults to those of reading its files, all in the order of their places. Its names have to
 /// be free in each of the `languages`.
 pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) -> Checked {
-    let loaded = load(sources, faults);
+    check_trees(&Trees::new(sources), languages, faults)
+}
+
+/// The same of files that have been parsed.
+pub fn check_trees(trees: &Trees, languages: &[&Language], faults: &mut Faults) -> Checked {
+    let loaded = trees.load(faults);
     let is_whole = loaded.whole;
     let read = loaded.into_model();
     let clashes = match &read {
@@ -37,7 +42,7 @@ pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) ->
         Err(_) => Vec::new(),
     };
     if !clashes.is_empty() {
-        let places = places(sources);
+        let places = trees.places();
         faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
     }
     let is_spellable = clashes.is_empty();

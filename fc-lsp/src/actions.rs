@@ -3,10 +3,13 @@
 use crate::diagnostics::diagnostic;
 use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Fix;
+use fc_spec::fix::in_files;
 use fc_spec::model::Lang;
+use fc_spec::syntax::Span;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
-/// The changes that fix the faults in a range of a file.
+/// The changes that fix the faults in a range of a file. A fault of several places can be fixed at each of them, there or
+/// at all at once.
 #[must_use]
 pub fn actions(snapshot: &Snapshot, uri: &Uri, range: Range) -> Vec<CodeAction> {
     let Some((file, start)) = snapshot.offset(uri, range.start) else {
@@ -15,22 +18,64 @@ pub fn actions(snapshot: &Snapshot, uri: &Uri, range: Range) -> Vec<CodeAction> 
     let end = snapshot
         .offset(uri, range.end)
         .map_or(start, |(_, end)| end);
-    let faults = snapshot.analysis().faults.iter().filter(|fault| {
-        let span = fault.primary.span;
-        span.file == file && span.start <= end && start <= span.end
-    });
-    let actions = faults.flat_map(|fault| {
+    let is_here = |span: &Span| span.file == file && span.start <= end && start <= span.end;
+    let mut actions = Vec::new();
+    for fault in &snapshot.analysis().faults {
         let is_only = fault.fixes.len() == 1;
-        fault.fixes.iter().map(move |fix| CodeAction {
-            title: title(snapshot, fix),
-            kind: Some(CodeActionKind::QuickFix),
-            diagnostics: Some(vec![diagnostic(snapshot, fault)]),
-            is_preferred: Some(is_only),
-            edit: Some(snapshot.edit([(fix.span, fix.replacement.clone())])),
-            ..CodeAction::default()
-        })
-    });
-    actions.collect()
+        for fix in &fault.fixes {
+            let here = fix.places().find(is_here);
+            let here = here.or(is_here(&fault.primary.span).then_some(fix.span));
+            let Some(here) = here else { continue };
+            let change = |places: &[Span]| {
+                let changes = places.iter().map(|span| (*span, fix.replacement.clone()));
+                snapshot.edit(changes)
+            };
+            let action = CodeAction {
+                title: title(snapshot, fix),
+                kind: Some(CodeActionKind::QuickFix),
+                diagnostics: Some(vec![diagnostic(snapshot, fault)]),
+                is_preferred: Some(is_only),
+                edit: Some(change(&[here])),
+                ..CodeAction::default()
+            };
+            let places: Vec<Span> = fix.places().collect();
+            let all = (places.len() > 1).then(|| CodeAction {
+                title: everywhere(snapshot, &action.title, places.len()),
+                is_preferred: Some(false),
+                edit: Some(change(&places)),
+                ..action.clone()
+            });
+            actions.push(action);
+            actions.extend(all);
+        }
+    }
+    actions
+}
+
+/// All fixes of a file that leave no choice, as one change; `None` where there are none. Others may show behind them, for the
+/// next time.
+#[must_use]
+pub fn fix_all(snapshot: &Snapshot, uri: &Uri) -> Option<CodeAction> {
+    let file = snapshot.file(uri)?;
+    let certain = in_files(&snapshot.analysis().faults, snapshot.sources());
+    let fixes = certain.get(&file)?.iter();
+    let changes = fixes.map(|(_, fix)| (fix.span, fix.replacement.clone()));
+    let lang = snapshot.settings.lang;
+    let title = lang.pick("修复所有无需选择的错误", "fix all that leaves no choice");
+    Some(CodeAction {
+        title: title.to_owned(),
+        kind: Some(CodeActionKind::SourceFixAll),
+        edit: Some(snapshot.edit(changes)),
+        ..CodeAction::default()
+    })
+}
+
+/// The title of a change at all places of a fault.
+fn everywhere(snapshot: &Snapshot, title: &str, places: usize) -> String {
+    match snapshot.settings.lang {
+        Lang::En => format!("at all {places} places: {title}"),
+        Lang::Zh => format!("全部 {places} 处：{title}"),
+    }
 }
 
 /// Most of a text that a title shows.
@@ -38,7 +83,7 @@ const SHOWN: usize = 40;
 
 fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     let lang = snapshot.settings.lang;
-    let old = shown(snapshot.sources.slice(fix.span));
+    let old = shown(snapshot.sources().slice(fix.span));
     let new = shown(&fix.replacement);
     let what = match (old.is_empty(), new.is_empty()) {
         (_, true) => lang.pick("删除", "delete").to_owned() + &format!(" `{old}`"),

@@ -2,8 +2,8 @@
 
 use crate::snapshot::Snapshot;
 use crate::{
-    actions, completion, definition, document_symbols, formatting, hover, lenses, prepare_rename,
-    references, rename, workspace_symbols,
+    actions, completion, definition, document_symbols, fix_all, formatting, hover, lenses,
+    prepare_rename, references, rename, workspace_symbols,
 };
 use gen_lsp_types as lsp;
 use lsp::Request as _;
@@ -36,7 +36,10 @@ pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
         workspace_symbol_provider: Some(true.into()),
         code_action_provider: Some(
             lsp::CodeActionOptions {
-                code_action_kinds: Some(vec![lsp::CodeActionKind::QuickFix]),
+                code_action_kinds: Some(vec![
+                    lsp::CodeActionKind::QuickFix,
+                    lsp::CodeActionKind::SourceFixAll,
+                ]),
                 ..lsp::CodeActionOptions::default()
             }
             .into(),
@@ -52,6 +55,33 @@ pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
         ),
         ..lsp::ServerCapabilities::default()
     }
+}
+
+/// Whether a request can only be answered when the snapshot has been checked, or takes a check of its own: it is then
+/// answered beside the loop.
+pub fn waits(method: &str, snapshot: &Snapshot) -> bool {
+    let is_one = |others: &[lsp::LspRequestMethod<'_>]| {
+        let mut others = others.iter();
+        others.any(|other| other.as_str() == method)
+    };
+    if is_one(&[lsp::CodeActionRequest::METHOD]) {
+        !snapshot.is_checked()
+    } else if is_one(&[lsp::CodeLensRequest::METHOD]) {
+        !snapshot.has_lenses()
+    } else if is_one(&[
+        lsp::CompletionRequest::METHOD,
+        lsp::HoverRequest::METHOD,
+        lsp::PrepareRenameRequest::METHOD,
+    ]) {
+        !snapshot.is_known()
+    } else {
+        is_one(&[lsp::RenameRequest::METHOD])
+    }
+}
+
+/// The response to a request that is not answered.
+pub fn refusal(id: RequestId, code: ErrorCode, message: &str) -> Response {
+    Response::new_err(id, code as i32, message.to_owned())
 }
 
 /// Makes the response to a request; without a snapshot, there being no project, with nothing.
@@ -103,7 +133,17 @@ pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
             }),
         m if m == lsp::CodeActionRequest::METHOD.as_str() => {
             ask.of::<lsp::CodeActionRequest>(|snapshot, params| {
-                let found = actions(snapshot, &params.text_document.uri, params.range);
+                let uri = &params.text_document.uri;
+                let only = params.context.only;
+                let wants = |kind| only.as_ref().is_none_or(|only| is_among(kind, only));
+                let mut found = Vec::new();
+                if wants(lsp::CodeActionKind::QuickFix) {
+                    found.extend(actions(snapshot, uri, params.range));
+                }
+                // Only who asks for all gets all: it is about the file and not about the place.
+                if only.is_some() && wants(lsp::CodeActionKind::SourceFixAll) {
+                    found.extend(fix_all(snapshot, uri));
+                }
                 Some(found.into_iter().map(Into::into).collect())
             })
         }
@@ -136,6 +176,16 @@ pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
             Response::new_err(ask.id, ErrorCode::MethodNotFound as i32, message)
         }
     }
+}
+
+/// Whether a kind of action is one of these, or below one: `source.fixAll` is below `source`.
+fn is_among(kind: lsp::CodeActionKind, asked: &[lsp::CodeActionKind]) -> bool {
+    let kind = String::from(kind);
+    asked.iter().any(|asked| {
+        let asked = String::from(asked.clone());
+        let below = kind.strip_prefix(&asked);
+        below.is_some_and(|rest| asked.is_empty() || rest.is_empty() || rest.starts_with('.'))
+    })
 }
 
 /// A request on its way to its answer.

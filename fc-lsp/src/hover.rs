@@ -97,7 +97,7 @@ pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
         of_part(&mut text, snapshot, owner, item)?;
     } else {
         let place = snapshot.places().get(item)?;
-        let (title, about) = fc_spec::load::described(&snapshot.sources, place)?;
+        let (title, about) = fc_spec::load::described(snapshot.trees(), place)?;
         described(&mut text, &title, about.as_ref(), lang);
     }
     Some(text)

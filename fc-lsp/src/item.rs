@@ -29,7 +29,7 @@ pub fn of_site(snapshot: &Snapshot, site: &Site<'_>) -> Option<Meant> {
     let item = if site.role == Role::Chosen {
         said(snapshot, span, site.node.as_str().unwrap_or_default())?
     } else if site.is_code_name() {
-        let places = snapshot.places().iter();
+        let places = snapshot.places().in_file(span.file);
         let around = places.filter(|(item, place)| !item.is_type() && holds(place, span));
         let (item, _) = around.min_by_key(|(_, place)| place.whole.end - place.whole.start)?;
         item.clone()
@@ -41,7 +41,7 @@ pub fn of_site(snapshot: &Snapshot, site: &Site<'_>) -> Option<Meant> {
 
 /// The thing that this key says: the operation or field rather than the type that is made of it.
 fn said(snapshot: &Snapshot, key: Span, name: &str) -> Option<Item> {
-    let places = snapshot.places().iter();
+    let places = snapshot.places().in_file(key.file);
     let here = places.filter(|(_, place)| place.key == key);
     let (item, _) = here.min_by_key(|(item, _)| item.is_type() && item.name != name)?;
     Some(item.clone())

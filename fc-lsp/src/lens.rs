@@ -2,21 +2,42 @@
 
 use crate::snapshot::Snapshot;
 use fc_diff::Finding;
-use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place, Role, sites};
 use fc_spec::model::{Lang, RangeUse};
-use fc_spec::syntax::{FileId, Span, parse};
+use fc_spec::syntax::{FileId, Span};
 use gen_lsp_types::{CodeLens, Command, Location};
 
 /// The command of clients that show references: the file, the position of the thing, and the places that name it.
 pub const SHOW_REFERENCES: &str = "fc.showReferences";
 
+/// What lenses say that only a check tells.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    codes: [Option<u16>; 2],
+    /// What breaks, and where.
+    breaks: Vec<(Vec<String>, String)>,
+}
+
+/// The same of what is known with a snapshot.
+pub fn checked(snapshot: &Snapshot) -> Checked {
+    let known = snapshot.known();
+    let uses = [RangeUse::Commands, RangeUse::Reports];
+    let breaking = breaking(known.findings()).map(|finding| {
+        let names = finding.new.iter().map(|spot| spot.name.clone());
+        let message = snapshot.settings.lang.text(&finding.message);
+        (names.collect(), message.to_owned())
+    });
+    Checked {
+        codes: uses.map(|usage| known.analysis().next_code(usage)),
+        breaks: breaking.collect(),
+    }
+}
+
 /// All of a file.
 #[must_use]
 pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let mut lenses = free_codes(snapshot, file);
-    let places = snapshot.places().iter();
-    for (item, place) in places.filter(|(_, place)| place.key.file == file) {
+    for (item, place) in snapshot.places().in_file(file) {
         if is_declared(snapshot, item, place) {
             lenses.extend(users(snapshot, item, place));
         }
@@ -29,10 +50,7 @@ pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
 /// The code that the next operation gets, above the section that it would stand in.
 fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let mut lenses = Vec::new();
-    let Some(source) = snapshot.source(file).filter(|source| source.whole) else {
-        return lenses;
-    };
-    let Some(tree) = parse(file, &source.text, &mut Faults::new()) else {
+    let Some(tree) = snapshot.trees().tree(file) else {
         return lenses;
     };
     let lang = snapshot.settings.lang;
@@ -55,7 +73,7 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
 
 /// Whether it is there for others to name it, and not made of an operation or field.
 fn is_declared(snapshot: &Snapshot, item: &Item, place: &Place) -> bool {
-    let key = snapshot.sources.slice(place.key);
+    let key = snapshot.sources().slice(place.key);
     item.owner.is_none() && key == item.name
 }
 
@@ -95,10 +113,8 @@ fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
         return Vec::new();
     };
     let lang = snapshot.settings.lang;
-    let findings = snapshot.findings().iter();
-    let breaking = findings.filter(|finding| finding.is_break() && finding.waived.is_none());
     let mut broken: Vec<(Span, Vec<&str>)> = Vec::new();
-    for finding in breaking {
+    for finding in breaking(snapshot.known().findings()) {
         let Some(key) = shown_at(snapshot, finding).filter(|key| key.file == file) else {
             continue;
         };
@@ -116,6 +132,11 @@ fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     lenses.collect()
 }
 
+fn breaking(findings: &[Finding]) -> impl Iterator<Item = &Finding> {
+    let findings = findings.iter();
+    findings.filter(|finding| finding.is_break() && finding.waived.is_none())
+}
+
 /// The key of the operation or declared type in which a finding shows.
 fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
     let places = snapshot.places();
@@ -124,7 +145,7 @@ fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
         let found = named.find(|(item, _)| spot.kind.is_empty() || item.kind == spot.kind);
         found.map(|(_, place)| place)
     })?;
-    let around = places.iter().filter(|(item, place)| {
+    let around = places.in_file(spot.key.file).filter(|(item, place)| {
         (item.is_operation() || item.is_type()) && crate::item::holds(place, spot.key)
     });
     let largest = around.max_by_key(|(_, place)| place.whole.end - place.whole.start);

@@ -3,7 +3,8 @@
 //! ```text
 //! editor ──messages──► serve ──► Workspace: the project's files, those that are open as the editor has them
 //!                        │            └──► Snapshot: one state of them, and what has been found out about it
-//!                        └──► one file per request: pure functions from a snapshot to an answer
+//!                        ├──► one file per request: pure functions from a snapshot to an answer
+//!                        └──► Worker: a thread that checks the newest snapshot, and answers what waits for that
 //! ```
 //!
 //! **Architecture invariant.** Nothing here reads YAML or judges a spec: texts are read, checked, laid out and renamed in by
@@ -22,6 +23,7 @@ mod language;
 mod lens;
 mod position;
 mod project;
+mod queue;
 mod references;
 mod rename;
 mod serve;
@@ -29,9 +31,10 @@ mod settings;
 mod snapshot;
 mod symbols;
 mod uri;
+mod worker;
 mod workspace;
 
-pub use actions::actions;
+pub use actions::{actions, fix_all};
 pub use completion::completion;
 pub use definition::definition;
 pub use diagnostics::{diagnostics, text};

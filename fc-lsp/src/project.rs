@@ -58,6 +58,12 @@ impl Project {
         self.release.get_or_init(|| self.read_release()).as_ref()
     }
 
+    /// Whether it is known that there is none.
+    #[must_use]
+    pub fn is_unreleased(&self) -> bool {
+        matches!(self.release.get(), Some(None))
+    }
+
     fn read_release(&self) -> Option<Release> {
         let releases = Releases::beside(&self.root.join(&self.spec)).ok()?;
         let number = releases.last()?.0.to_string();

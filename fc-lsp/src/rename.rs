@@ -2,10 +2,10 @@
 
 use crate::item::meant;
 use crate::snapshot::Snapshot;
-use fc_codegen::check::check;
+use fc_codegen::check::check_trees;
 use fc_spec::diagnostic::{Faults, Severity};
 use fc_spec::model::Lang;
-use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
+use fc_spec::syntax::{FileId, SourceFile, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
 use std::collections::BTreeSet;
 
@@ -19,7 +19,7 @@ pub fn prepare_rename(
     let place = snapshot.places().get(&meant.item)?;
     let item = (&meant.item, place);
     let name = name(snapshot, &meant.item);
-    fc_spec::rename::rename(&snapshot.sources, item, snapshot.uses(), &name)?;
+    fc_spec::rename::rename(snapshot.trees(), item, snapshot.uses(), &name)?;
     Some(PrepareRenamePlaceholder {
         range: snapshot.range(meant.span),
         placeholder: name,
@@ -49,12 +49,7 @@ pub fn rename(
     let lang = snapshot.settings.lang;
     let changes = meant(snapshot, at).and_then(|meant| {
         let place = snapshot.places().get(&meant.item)?;
-        fc_spec::rename::rename(
-            &snapshot.sources,
-            (&meant.item, place),
-            snapshot.uses(),
-            new,
-        )
+        fc_spec::rename::rename(snapshot.trees(), (&meant.item, place), snapshot.uses(), new)
     });
     let changes = changes.ok_or_else(|| {
         lang.pick("这里没有可以重命名的内容", "nothing here can be renamed")
@@ -73,20 +68,22 @@ pub fn rename(
 
 /// What would be wrong after a change that is not wrong now.
 fn worse(snapshot: &Snapshot, changes: &[(Span, String)]) -> BTreeSet<String> {
-    let mut sources = Sources::new();
-    for (id, file) in snapshot.sources.iter() {
+    let mut sources = snapshot.sources().clone();
+    for (id, file) in snapshot.sources().iter() {
         let mut own: Vec<_> = changes.iter().filter(|(span, _)| span.file == id).collect();
+        if own.is_empty() {
+            continue;
+        }
         own.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
         let mut text = file.text.clone();
         for (span, new) in own {
             text.replace_range(span.start..span.end, new);
         }
-        let mut new = SourceFile::new(file.path.as_str(), text);
-        new.whole = file.whole;
-        sources.push(new);
+        sources.replace(SourceFile::new(file.path.as_str(), text));
     }
+    let trees = snapshot.trees().with(&sources);
     let mut faults = Faults::new();
-    check(&sources, &snapshot.project.targets.languages(), &mut faults);
+    check_trees(&trees, &snapshot.project.targets.languages(), &mut faults);
     let errors = |faults: &Faults| -> BTreeSet<String> {
         let errors = faults.iter().filter(|it| it.severity == Severity::Error);
         let lang = snapshot.settings.lang;

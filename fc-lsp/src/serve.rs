@@ -1,10 +1,13 @@
 //! The loop: messages in, answers and faults out.
 
 use crate::diagnostics::diagnostics;
-use crate::dispatch::{answer, capabilities};
+use crate::dispatch::{answer, capabilities, refusal, waits};
+use crate::lens;
 use crate::project::Host;
 use crate::settings::Settings;
+use crate::snapshot::Snapshot;
 use crate::uri;
+use crate::worker::Worker;
 use crate::workspace::Workspace;
 use gen_lsp_types as lsp;
 use lsp::Notification as _;
@@ -15,19 +18,11 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::time::Duration;
 
 /// Most messages that wait here; the client's further ones wait in its pipe.
 const WAITING: usize = 256;
 
-/// How long nothing may come before all is checked: a client that changes a text asks about it at once, and what it asks
-/// need not wait for the check.
-const QUIET: Duration = Duration::from_millis(15);
-
-/// How often in a row something may come in that time.
-const AT_MOST: usize = 8;
-
-/// How often in a row checking may be begun again because the client has typed on in the meantime.
+/// How often in a row what is wrong is not told because the client has typed on in the meantime.
 const SUPERSEDED: usize = 3;
 
 /// Why serving ended before the client said so.
@@ -48,8 +43,8 @@ impl std::error::Error for ServeError {}
 
 /// Serves a client until it says that it is done. Whether it has asked for that before, as it should.
 ///
-/// All messages that wait are taken at once; what is wrong is found out once behind them, when no more come for a moment, and again rather than told
-/// when the client has typed on in the meantime.
+/// The loop takes all messages that wait at once, and waits for nothing but messages: what is wrong is found out by a
+/// thread of its own, which always works on the newest state of the files, and what can only be answered then is answered there.
 ///
 /// # Errors
 /// [`ServeError`], where there is no beginning.
@@ -66,35 +61,71 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
         capabilities: capabilities(settings.encoding),
         server_info: Some(info),
     };
+    connection
+        .sender
+        .send(Response::new_ok(id, result).into())
+        .ok();
+
+    let (sender, events) = sync_channel(WAITING);
     let mut server = Server {
         connection,
         host,
+        worker: Worker::start(sender.clone()),
         workspace: None,
         settings,
         published: BTreeMap::new(),
         touched: BTreeSet::new(),
+        superseded: 0,
+        lenses: lens::Checked::default(),
+        refreshes: 0,
         is_dirty: false,
         is_shut_down: false,
     };
-    server.send(Response::new_ok(id, result));
-
     let receiver = connection.receiver.clone();
-    let (sender, waiting) = sync_channel(WAITING);
-    // It ends with the client's last message, or with this function.
-    std::thread::spawn(move || receiver.iter().try_for_each(|message| sender.send(message)));
-    Ok(server.run(&waiting))
+    // It ends with the client's last message, or when it has one for a loop that has ended.
+    std::thread::spawn(move || {
+        let messages = receiver.iter().map(Event::Message);
+        messages
+            .chain(std::iter::once(Event::End))
+            .try_for_each(|event| sender.send(event))
+    });
+    let was_asked_to_end = server.run(&events);
+    // What the worker still has to say nobody hears.
+    drop(events);
+    server.worker.end();
+    Ok(was_asked_to_end)
+}
+
+/// What comes to the loop.
+pub(crate) enum Event {
+    /// From the client.
+    Message(Message),
+    /// What is wrong with a snapshot has been found out.
+    Checked(Arc<Snapshot>),
+    /// Also how what is known with it differs from the last release.
+    Compared(Arc<Snapshot>),
+    /// A request has been answered beside the loop.
+    Answered(Response),
+    /// The client is gone, or the thread that checks.
+    End,
 }
 
 struct Server<'h> {
     connection: &'h Connection,
     host: &'h dyn Host,
+    worker: Worker,
     workspace: Option<Workspace>,
     settings: Arc<Settings>,
     /// What the client was told last of each file of which it was told something.
     published: BTreeMap<String, Vec<lsp::Diagnostic>>,
     /// Files that have changed since.
     touched: BTreeSet<String>,
-    /// Whether anything has.
+    /// How often in a row it was not told.
+    superseded: usize,
+    /// What it can have seen last in lenses of what a check tells, and how often it was asked to look again.
+    lenses: lens::Checked,
+    refreshes: usize,
+    /// Whether anything has changed that is not being checked.
     is_dirty: bool,
     is_shut_down: bool,
 }
@@ -107,72 +138,88 @@ enum Next {
 }
 
 impl Server<'_> {
-    fn run(&mut self, waiting: &Receiver<Message>) -> bool {
-        while let Ok(first) = waiting.recv() {
-            let batch = std::iter::once(first).chain(waiting.try_iter());
-            let mut next = self.handle(batch.take(WAITING).collect());
-            let (mut waited, mut superseded) = (0, 0);
-            while next == Next::GoOn && self.is_dirty {
-                if waited < AT_MOST
-                    && let Ok(first) = waiting.recv_timeout(QUIET)
-                {
-                    waited += 1;
-                    let batch = std::iter::once(first).chain(waiting.try_iter());
-                    next = self.handle(batch.take(WAITING).collect());
-                    continue;
-                }
-                if let Some(workspace) = &mut self.workspace {
-                    workspace.snapshot().analysis();
-                }
-                let more: Vec<_> = waiting.try_iter().take(WAITING).collect();
-                if superseded < SUPERSEDED && more.iter().any(is_change) {
-                    superseded += 1;
-                } else {
-                    self.publish();
-                    (waited, superseded) = (0, 0);
-                }
-                next = self.handle(more);
-            }
-            if next == Next::Exit {
+    fn run(&mut self, events: &Receiver<Event>) -> bool {
+        while let Ok(first) = events.recv() {
+            let batch = std::iter::once(first).chain(events.try_iter());
+            if self.handle(batch.take(WAITING).collect()) == Next::Exit {
                 return self.is_shut_down;
             }
+            self.check();
         }
         false
     }
 
-    fn handle(&mut self, batch: Vec<Message>) -> Next {
+    fn handle(&mut self, batch: Vec<Event>) -> Next {
         let cancelled: Vec<RequestId> = batch.iter().filter_map(cancelled).collect();
-        for message in batch {
-            match message {
-                Message::Request(request) if cancelled.contains(&request.id) => {
-                    let message = "the client no longer wants to know".to_owned();
-                    let code = ErrorCode::RequestCanceled as i32;
-                    self.send(Response::new_err(request.id, code, message));
+        for id in &cancelled {
+            if self.worker.cancel(id) {
+                self.cancel(id.clone());
+            }
+        }
+        for event in batch {
+            match event {
+                Event::Message(Message::Request(request)) if cancelled.contains(&request.id) => {
+                    self.cancel(request.id);
                 }
-                Message::Request(request) => self.request(request),
-                Message::Notification(notification) => {
+                Event::Message(Message::Request(request)) => self.request(request),
+                Event::Message(Message::Notification(notification)) => {
                     if self.notification(notification) == Next::Exit {
                         return Next::Exit;
                     }
                 }
-                Message::Response(_) => {}
+                Event::Message(Message::Response(_)) => {}
+                Event::Checked(snapshot) => self.checked(&snapshot),
+                Event::Compared(snapshot) => self.compared(&snapshot),
+                Event::Answered(response) => self.send(response),
+                Event::End => return Next::Exit,
             }
         }
         Next::GoOn
     }
 
+    /// Has what has changed checked.
+    fn check(&mut self) {
+        if let Some(workspace) = self.workspace.as_mut().filter(|_| self.is_dirty) {
+            self.worker.check(workspace.snapshot());
+            self.is_dirty = false;
+        }
+    }
+
+    fn cancel(&self, id: RequestId) {
+        let code = ErrorCode::RequestCanceled;
+        self.send(refusal(id, code, "the client no longer wants to know"));
+    }
+
     fn request(&mut self, request: Request) {
-        let response = if self.is_shut_down {
-            let code = ErrorCode::InvalidRequest as i32;
-            Response::new_err(request.id, code, "the server is shut down".to_owned())
+        if self.is_shut_down {
+            let code = ErrorCode::InvalidRequest;
+            self.send(refusal(request.id, code, "the server is shut down"));
         } else if request.method == lsp::LspRequestMethod::Shutdown.as_str() {
             self.is_shut_down = true;
-            Response::new_ok(request.id, ())
+            let waiting = self.worker.clear();
+            waiting.into_iter().for_each(|id| self.cancel(id));
+            self.send(Response::new_ok(request.id, ()));
         } else {
             let snapshot = self.workspace.as_mut().map(Workspace::snapshot);
-            answer(request, snapshot.as_deref())
-        };
-        self.send(response);
+            match snapshot.filter(|snapshot| waits(&request.method, snapshot)) {
+                Some(snapshot) => self.later(request, snapshot),
+                None => self.now(request),
+            }
+        }
+    }
+
+    fn now(&mut self, request: Request) {
+        let snapshot = self.workspace.as_mut().map(Workspace::snapshot);
+        self.send(answer(request, snapshot.as_deref()));
+    }
+
+    /// Has a request answered when its snapshot has been checked, which that waits for first.
+    fn later(&mut self, request: Request, snapshot: Arc<Snapshot>) {
+        self.check();
+        if let Err(id) = self.worker.ask(request, snapshot) {
+            let code = ErrorCode::ServerCancelled;
+            self.send(refusal(id, code, "too many requests wait"));
+        }
     }
 
     fn notification(&mut self, notification: Notification) -> Next {
@@ -284,20 +331,53 @@ impl Server<'_> {
         self.is_dirty = true;
     }
 
-    /// Tells the client what is wrong in each file, and of which nothing is any more.
-    fn publish(&mut self) {
-        self.is_dirty = false;
+    /// Tells what is wrong, unless the client has typed on in the meantime: then it is told of the newer text, or, where
+    /// that goes on and on, of this.
+    fn checked(&mut self, snapshot: &Arc<Snapshot>) {
         let Some(workspace) = &mut self.workspace else {
             return;
         };
-        let snapshot = workspace.snapshot();
+        let is_newest = !self.is_dirty && Arc::ptr_eq(snapshot, &workspace.snapshot());
+        if !is_newest {
+            workspace.learn(snapshot);
+            self.superseded += 1;
+            if self.superseded <= SUPERSEDED {
+                return;
+            }
+        }
+        self.superseded = 0;
+        self.publish(snapshot, is_newest);
+    }
+
+    /// Asks the client to ask for lenses again, where those that it has can be old.
+    fn compared(&mut self, snapshot: &Snapshot) {
+        if !self.settings.refreshes_lenses {
+            return;
+        }
+        let lenses = lens::checked(snapshot);
+        if lenses != self.lenses {
+            self.lenses = lenses;
+            self.refreshes += 1;
+            let id = RequestId::from(format!("lenses {}", self.refreshes));
+            let method = lsp::LspRequestMethod::WorkspaceCodeLensRefresh.as_str();
+            self.send(Request::new(id, method.to_owned(), ()));
+        }
+    }
+
+    /// Tells the client what is wrong in each file, and of which nothing is any more.
+    fn publish(&mut self, snapshot: &Snapshot, is_newest: bool) {
         let mut found: BTreeMap<String, Vec<lsp::Diagnostic>> = BTreeMap::new();
-        for (file, faults) in diagnostics(&snapshot) {
+        for (file, faults) in diagnostics(snapshot) {
             if let Some(uri) = snapshot.uri(file) {
                 found.insert(uri.0.clone(), faults);
             }
         }
-        let touched = std::mem::take(&mut self.touched);
+        // What has changed since is told of once more.
+        let touched = if is_newest {
+            std::mem::take(&mut self.touched)
+        } else {
+            self.touched.clone()
+        };
         let told = self.published.keys().chain(found.keys()).chain(&touched);
         let told: BTreeSet<String> = told.cloned().collect();
         for uri in told {
@@ -347,16 +427,9 @@ fn read<P: DeserializeOwned>(params: serde_json::Value) -> Option<P> {
     serde_json::from_value(params).ok()
 }
 
-fn is_change(message: &Message) -> bool {
-    let Message::Notification(notification) = message else {
-        return false;
-    };
-    notification.method == lsp::DidChangeTextDocumentNotification::METHOD.as_str()
-}
-
 /// The request that a message takes back.
-fn cancelled(message: &Message) -> Option<RequestId> {
-    let Message::Notification(notification) = message else {
+fn cancelled(event: &Event) -> Option<RequestId> {
+    let Event::Message(Message::Notification(notification)) = event else {
         return None;
     };
     if notification.method != lsp::LspNotificationMethod::CancelRequest.as_str() {

@@ -14,6 +14,8 @@ pub struct Settings {
     pub lang: Lang,
     /// Whether it has the command by which a lens shows references.
     pub shows_references: bool,
+    /// Whether it can be told that lenses have changed, so that it asks for them again.
+    pub refreshes_lenses: bool,
     /// Whether it can be asked to watch files.
     pub can_watch: bool,
     /// The directories in which it works, the first of which is where the project is looked for.
@@ -51,6 +53,7 @@ impl Settings {
                 _ => Lang::En,
             },
             shows_references: is_true("/initializationOptions/showReferences"),
+            refreshes_lenses: is_true("/capabilities/workspace/codeLens/refreshSupport"),
             can_watch: is_true("/capabilities/workspace/didChangeWatchedFiles/dynamicRegistration"),
             folders,
         }

@@ -2,12 +2,12 @@
 
 use crate::project::Project;
 use crate::settings::Settings;
-use fc_codegen::check::check;
+use fc_codegen::check::check_trees;
 use fc_diff::{Against, Finding, diff, waive};
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Partial, Place, Places, Site, Uses, described, places, site_at, uses};
+use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
 use fc_spec::model::{Model, Operation, RangeUse, Text, Types};
-use fc_spec::syntax::{FileId, SourceFile, Sources, Span, parse};
+use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{
     Location, OptionalVersionedTextDocumentIdentifier, Position, Range, TextDocumentEdit,
     TextDocumentIdentifier, TextEdit, Uri, WorkspaceEdit,
@@ -22,27 +22,25 @@ pub struct Snapshot {
     pub project: Arc<Project>,
     /// How the client wants its answers.
     pub settings: Arc<Settings>,
-    /// The files.
-    pub sources: Arc<Sources>,
     /// What the client calls each file, and the version of its text if the client has it open.
     documents: Vec<(Uri, Option<i32>)>,
-    today: String,
     state: Arc<State>,
     /// The last state before in which all files could be read.
     before: Option<Arc<State>>,
-    uses: OnceLock<Uses>,
-    findings: OnceLock<Vec<Finding>>,
 }
 
 /// What can be found out about some files.
 #[derive(Debug)]
 pub struct State {
     project: Arc<Project>,
-    sources: Arc<Sources>,
+    trees: Trees,
     /// What was wrong with files on the disk.
     unread: Faults,
+    today: String,
     analysis: OnceLock<Analysis>,
     places: OnceLock<Places>,
+    uses: OnceLock<Uses>,
+    findings: OnceLock<Vec<Finding>>,
 }
 
 /// What checking a spec comes to.
@@ -62,7 +60,7 @@ impl State {
         self.analysis.get_or_init(|| {
             let mut faults = self.unread.clone();
             let languages = self.project.targets.languages();
-            let checked = check(&self.sources, &languages, &mut faults);
+            let checked = check_trees(&self.trees, &languages, &mut faults);
             Analysis {
                 faults,
                 read: checked.read,
@@ -73,7 +71,7 @@ impl State {
 
     /// Where each thing is written.
     pub fn places(&self) -> &Places {
-        self.places.get_or_init(|| places(&self.sources))
+        self.places.get_or_init(|| self.trees.places())
     }
 
     /// The title of an operation or type; of what else the spec declares, what its file says.
@@ -86,14 +84,25 @@ impl State {
         if item.is_type() {
             return Some(self.analysis().types().named(&item.name)?.title.clone());
         }
-        described(&self.sources, place).map(|(title, _)| title)
+        described(&self.trees, place).map(|(title, _)| title)
     }
 
-    /// Whether it has been checked, and all files could be read.
-    fn is_whole(&self) -> bool {
-        self.analysis
-            .get()
-            .is_some_and(|analysis| analysis.is_whole)
+    /// What differs from the last release; nothing where there is none, or while the spec has errors.
+    pub fn findings(&self) -> &[Finding] {
+        self.findings.get_or_init(|| {
+            let (Some(model), Some(release)) = (self.analysis().model(), self.project.release())
+            else {
+                return Vec::new();
+            };
+            let mut findings = diff(&release.model, model);
+            waive(&mut findings, &model.waivers, &self.today, Against::Release);
+            findings
+        })
+    }
+
+    /// Whether all files could be read; `None` while it has not been checked.
+    fn is_whole(&self) -> Option<bool> {
+        Some(self.analysis.get()?.is_whole)
     }
 }
 
@@ -101,30 +110,38 @@ impl Snapshot {
     pub(crate) fn new(
         project: Arc<Project>,
         settings: Arc<Settings>,
-        (sources, unread): (Sources, Faults),
+        (trees, unread): (Trees, Faults),
         documents: Vec<(Uri, Option<i32>)>,
         today: String,
         before: Option<Arc<State>>,
     ) -> Self {
-        let sources = Arc::new(sources);
         let state = State {
             project: Arc::clone(&project),
-            sources: Arc::clone(&sources),
+            trees,
             unread,
+            today,
             analysis: OnceLock::new(),
             places: OnceLock::new(),
+            uses: OnceLock::new(),
+            findings: OnceLock::new(),
         };
         Self {
             project,
             settings,
-            sources,
             documents,
-            today,
             state: Arc::new(state),
             before,
-            uses: OnceLock::new(),
-            findings: OnceLock::new(),
         }
+    }
+
+    /// The files.
+    pub fn sources(&self) -> &Sources {
+        self.state.trees.sources()
+    }
+
+    /// The files as trees.
+    pub fn trees(&self) -> &Trees {
+        &self.state.trees
     }
 
     /// What checking it comes to.
@@ -132,44 +149,48 @@ impl Snapshot {
         self.state.analysis()
     }
 
+    /// Whether that has been found out.
+    pub fn is_checked(&self) -> bool {
+        self.state.is_whole().is_some()
+    }
+
     /// Where each thing is written.
     pub fn places(&self) -> &Places {
         self.state.places()
+    }
+
+    /// Where each thing is named.
+    pub fn uses(&self) -> &Uses {
+        let uses = &self.state.uses;
+        uses.get_or_init(|| self.state.trees.uses())
     }
 
     /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for
     /// which nobody waits until all is checked, and which do not go while a file is half written.
     pub fn known(&self) -> &State {
         match &self.before {
-            Some(before) if !self.state.is_whole() => before,
+            Some(before) if self.state.is_whole() != Some(true) => before,
             _ => &self.state,
         }
     }
 
-    /// What the next snapshot knows.
-    pub(crate) fn last_whole(&self) -> Option<Arc<State>> {
-        if self.state.is_whole() {
-            Some(Arc::clone(&self.state))
-        } else {
-            self.before.clone()
-        }
+    /// Whether that has been checked, so that nobody waits who asks for it.
+    pub fn is_known(&self) -> bool {
+        self.known().is_whole().is_some()
     }
 
-    /// Where each thing is named.
-    pub fn uses(&self) -> &Uses {
-        self.uses.get_or_init(|| uses(&self.sources))
+    /// Whether lenses can be shown without a check: with what is known, where there is nothing to compare with, or the
+    /// client will ask again.
+    pub fn has_lenses(&self) -> bool {
+        let may_be_old = self.settings.refreshes_lenses || self.project.is_unreleased();
+        let is_compared = self.project.is_unreleased() || self.known().findings.get().is_some();
+        self.is_known() && is_compared && (may_be_old || self.is_checked())
     }
 
-    /// What differs from the last release; nothing where there is none, or while the spec has errors.
-    pub fn findings(&self) -> &[Finding] {
-        self.findings.get_or_init(|| {
-            let (Ok(model), Some(release)) = (&self.analysis().read, self.project.release()) else {
-                return Vec::new();
-            };
-            let mut findings = diff(&release.model, model);
-            waive(&mut findings, &model.waivers, &self.today, Against::Release);
-            findings
-        })
+    /// What later snapshots may know of it: nothing while it has not been checked, or where a file could not be read.
+    pub(crate) fn whole(&self) -> Option<Arc<State>> {
+        let is_whole = self.state.is_whole() == Some(true);
+        is_whole.then(|| Arc::clone(&self.state))
     }
 
     /// The file that the client calls so.
@@ -180,7 +201,7 @@ impl Snapshot {
 
     /// The text of a file.
     pub fn source(&self, file: FileId) -> Option<&SourceFile> {
-        self.sources.get(file)
+        self.sources().get(file)
     }
 
     /// What the client calls a file.
@@ -226,8 +247,7 @@ impl Snapshot {
         (file, offset): (FileId, usize),
         then: impl FnOnce(&Site<'_>) -> Option<T>,
     ) -> Option<T> {
-        let source = self.source(file).filter(|source| source.whole)?;
-        let tree = parse(file, &source.text, &mut Faults::new())?;
+        let tree = self.trees().tree(file)?;
         then(&site_at(tree.root(), offset)?)
     }
 

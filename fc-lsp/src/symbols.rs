@@ -14,15 +14,12 @@ const FOUND: usize = 200;
 pub fn document_symbols(snapshot: &Snapshot, file: FileId) -> Vec<DocumentSymbol> {
     // Of the things that one key says, the operation or field rather than the type that is made of it.
     let mut own: BTreeMap<(usize, usize), (&Item, &Place)> = BTreeMap::new();
-    for (item, place) in snapshot.places().iter() {
-        let whole = place.whole;
-        if whole.file == file {
-            // Around what is in it.
-            let key = (place.key.start, usize::MAX - whole.end);
-            let known = own.entry(key).or_insert((item, place));
-            if known.0.is_type() && !item.is_type() {
-                *known = (item, place);
-            }
+    for (item, place) in snapshot.places().in_file(file) {
+        // Around what is in it.
+        let key = (place.key.start, usize::MAX - place.whole.end);
+        let known = own.entry(key).or_insert((item, place));
+        if known.0.is_type() && !item.is_type() {
+            *known = (item, place);
         }
     }
     let mut open: Vec<(usize, DocumentSymbol)> = Vec::new();
@@ -65,7 +62,7 @@ fn symbol(snapshot: &Snapshot, item: &Item, place: &Place) -> DocumentSymbol {
 /// What names it; of a list item, which has no key, its first line.
 fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
     let key = place.key;
-    let text = snapshot.sources.slice(key);
+    let text = snapshot.sources().slice(key);
     let line = text.lines().next().map_or(0, str::len);
     Span::new(key.file, key.start, key.start + line)
 }

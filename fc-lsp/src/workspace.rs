@@ -5,6 +5,7 @@ use crate::settings::Settings;
 use crate::snapshot::{Snapshot, State};
 use crate::uri;
 use fc_spec::diagnostic::Faults;
+use fc_spec::load::Trees;
 use fc_spec::syntax::{SourceFile, Sources, is_spec_file, read_dir};
 use gen_lsp_types::{TextDocumentContentChangeEvent, Uri};
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub struct Workspace {
     disk: (Sources, Faults),
     /// Those that the client has open, by their paths in the project.
     open: BTreeMap<String, Document>,
+    /// Of the last snapshot: of the next one, all but what has changed is parsed.
+    trees: Trees,
     snapshot: Option<Arc<Snapshot>>,
     before: Option<Arc<State>>,
 }
@@ -30,7 +33,7 @@ pub struct Workspace {
 struct Document {
     uri: Uri,
     version: i32,
-    file: SourceFile,
+    file: Arc<SourceFile>,
 }
 
 impl Workspace {
@@ -43,6 +46,7 @@ impl Workspace {
             today,
             disk: (Sources::new(), Faults::new()),
             open: BTreeMap::new(),
+            trees: Trees::default(),
             snapshot: None,
             before: None,
         };
@@ -75,7 +79,7 @@ impl Workspace {
         let Some(path) = self.path(&uri) else {
             return false;
         };
-        let file = SourceFile::new(path.as_str(), text);
+        let file = Arc::new(SourceFile::new(path.as_str(), text));
         let document = Document { uri, version, file };
         self.open.insert(path, document);
         self.forget();
@@ -93,7 +97,7 @@ impl Workspace {
             return false;
         };
         for change in changes {
-            document.file = self.settings.encoding.changed(&document.file, change);
+            document.file = Arc::new(self.settings.encoding.changed(&document.file, change));
         }
         document.version = version;
         self.forget();
@@ -120,9 +124,9 @@ impl Workspace {
         let mut sources = sources.clone();
         for (path, document) in &self.open {
             if sources.iter().any(|(_, file)| file.path == *path) {
-                sources.replace(document.file.clone());
+                sources.replace(Arc::clone(&document.file));
             } else {
-                sources.push(document.file.clone());
+                sources.push(Arc::clone(&document.file));
             }
         }
         // What cannot be read on the disk is no matter where the client has it.
@@ -133,11 +137,13 @@ impl Workspace {
         let mut unread = Faults::new();
         unread.extend(faults.iter().filter(|fault| !is_open(fault)).cloned());
         let documents = sources.iter().map(|(_, file)| self.document(&file.path));
+        let documents = documents.collect();
+        self.trees = self.trees.with(&sources);
         let snapshot = Arc::new(Snapshot::new(
             Arc::clone(&self.project),
             Arc::clone(&self.settings),
-            (sources.clone(), unread),
-            documents.collect(),
+            (self.trees.clone(), unread),
+            documents,
             self.today.clone(),
             self.before.clone(),
         ));
@@ -173,9 +179,16 @@ impl Workspace {
         Some(parts.join("/"))
     }
 
+    /// Takes what checking a snapshot has come to for what is known from now on, although the files have changed since.
+    pub(crate) fn learn(&mut self, checked: &Snapshot) {
+        if let Some(whole) = checked.whole() {
+            self.before = Some(whole);
+        }
+    }
+
     fn forget(&mut self) {
         if let Some(snapshot) = self.snapshot.take() {
-            self.before = snapshot.last_whole();
+            self.learn(&snapshot);
         }
     }
 }

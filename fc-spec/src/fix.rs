@@ -114,8 +114,9 @@ pub fn fix_all(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<
     Some(Fixed { sources, done })
 }
 
-/// The certain fixes of each file, in the order of their places; of two that overlap, the first.
-fn in_files<'f>(
+/// The [`certain`] fixes of each file with their faults, in the order of their places; of two that overlap, the first.
+#[must_use]
+pub fn in_files<'f>(
     faults: &'f Faults,
     sources: &Sources,
 ) -> BTreeMap<FileId, Vec<(&'f Diagnostic, &'f Fix)>> {

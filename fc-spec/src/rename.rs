@@ -2,12 +2,11 @@
 //!
 //! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
 
-use crate::diagnostic::Faults;
 use crate::load::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
-use crate::load::{Item, Place, Uses, entry_at, load, written};
-use crate::syntax::{Entry, Node, SourceFile, Sources, Span, parse};
+use crate::load::{Item, Place, Trees, Uses, described, entry_at, written};
+use crate::syntax::{Entry, Node, SourceFile, Span};
 
 /// What is replaced by what, so that a thing is called `new`; `None` of what has no name of its own, such as a type that
 /// is named after its operation.
@@ -15,17 +14,16 @@ use crate::syntax::{Entry, Node, SourceFile, Sources, Span, parse};
 /// Whether the name is free, and one that a thing can have, shows when the result is loaded.
 #[must_use]
 pub fn rename(
-    sources: &Sources,
+    trees: &Trees,
     (item, place): (&Item, &Place),
     uses: &Uses,
     new: &str,
 ) -> Option<Vec<(Span, String)>> {
-    let file = sources.get(place.key.file)?;
-    let tree = parse(place.key.file, &file.text, &mut Faults::new())?;
+    let tree = trees.tree(place.key.file)?;
     let entry = entry_at(tree.root(), place.key)?;
     let mut changes: Vec<(Span, String)> = Vec::new();
     if let Some(table) = sent(item) {
-        changes.push(code_name(sources, file, (table, entry), new)?);
+        changes.push(code_name(trees, (table, entry), new)?);
     } else if entry.key.as_str() == Some(&item.name) {
         changes.push((entry.key.span(), new.to_owned()));
     }
@@ -47,18 +45,18 @@ fn sent(item: &Item) -> Option<&'static Table> {
 
 /// Sets the name in code of what has a wire key.
 fn code_name(
-    sources: &Sources,
-    file: &SourceFile,
+    trees: &Trees,
     (table, entry): (&'static Table, Entry<'_>),
     new: &str,
 ) -> Option<(Span, String)> {
     let (node, name) = (entry.value, COMMON.name.name);
+    let file = trees.sources().get(entry.key.span().file)?;
     if let Some(old) = COMMON.name.of(node) {
         return Some((old.span(), new.to_owned()));
     }
     let pair = format!("{name}: {new}");
     if node.as_mapping().is_none() {
-        let long = longhand(sources, file, node, &pair)?;
+        let long = longhand(trees, file, node, &pair)?;
         return Some((node.span(), long));
     }
     let mut forms = FIELD_FORMS.iter();
@@ -98,12 +96,14 @@ fn code_name(
 }
 
 /// A field in its short form has no room for a name, and takes its text from its type.
-fn longhand(sources: &Sources, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
+fn longhand(trees: &Trees, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
     let span = node.span();
     let short = file.text.get(span.start..span.end)?;
     let named = short.trim_matches(['[', ']', '?', ' ', '"', '\'']);
-    let read = load(sources, &mut Faults::new());
-    let title = &read.partial.types.named(named)?.title;
+    let places = trees.places();
+    let mut named = places.named(named);
+    let (_, place) = named.find(|(item, _)| item.is_type())?;
+    let (title, _) = described(trees, place)?;
     let in_quotes = short.contains(['?', '[']) && !short.starts_with(['"', '\'', '[']);
     let ty = if in_quotes {
         format!("\"{short}\"")

@@ -1,12 +1,12 @@
 //! Where a spec names its things: every name leads to what it names, and every thing that has to be named is.
 
-#![allow(clippy::expect_used, reason = "tests")]
+#![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
 mod good_spec;
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{places, site_at, uses};
-use fc_spec::syntax::{FileId, Sources, parse};
+use fc_spec::load::{Trees, places, site_at, uses};
+use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
 use std::path::Path;
 
 /// The small spec, and the one that uses every corner of the language.
@@ -64,4 +64,40 @@ fn no_offset_of_a_file_is_too_odd() {
     }
     let empty = parse(FileId(0), "", &mut Faults::new());
     assert!(empty.is_none());
+}
+
+/// A file that has changed, that has become no YAML, and that is as it was again: each time it is as if all were read anew.
+#[test]
+fn trees_that_stay_say_what_new_ones_do() {
+    for sources in specs() {
+        let mut trees = Trees::new(&sources);
+        let files: Vec<_> = sources.iter().map(|(_, file)| file.clone()).collect();
+        for file in files {
+            let broken = file.text.replacen(": ", ": [", 1);
+            let moved = format!("# 在前\n{}", file.text.replacen("u16", "u61", 1));
+            for text in [moved, broken, file.text.clone()] {
+                let mut changed = sources.clone();
+                changed.replace(SourceFile::new(file.path.as_str(), text));
+                trees = trees.with(&changed);
+                let new = Trees::new(&changed);
+                let faults = [&trees, &new].map(|trees| {
+                    let mut faults = Faults::new();
+                    let _ = trees.load(&mut faults);
+                    faults.iter().cloned().collect::<Vec<_>>()
+                });
+                assert_eq!(faults[0], faults[1], "{}", file.path);
+                let (kept, read) = (trees.places(), new.places());
+                assert!(kept.iter().eq(read.iter()), "{}", file.path);
+                for (id, _) in changed.iter() {
+                    let own = read.iter().filter(|(_, place)| place.key.file == id);
+                    let own: Vec<_> = own.collect();
+                    let mut found: Vec<_> = kept.in_file(id).collect();
+                    found.retain(|(item, place)| read.get(item) == Some(place));
+                    found.sort_by_key(|(item, _)| *item);
+                    assert_eq!(found, own);
+                }
+                assert!(trees.uses().iter().eq(new.uses().iter()));
+            }
+        }
+    }
 }

@@ -41,6 +41,15 @@ pub struct Fix {
     pub replacement: String,
     /// What the change does, such as "a type with a similar name exists".
     pub message: Text,
+    /// Other places of the same fault, at which the same is replaced.
+    pub elsewhere: Vec<Span>,
+}
+
+impl Fix {
+    /// All places of the fault, its first one first.
+    pub fn places(&self) -> impl Iterator<Item = Span> {
+        std::iter::once(self.span).chain(self.elsewhere.iter().copied())
+    }
 }
 
 /// A fault of the spec.
@@ -117,7 +126,17 @@ impl Diagnostic {
             span,
             replacement: replacement.into(),
             message,
+            elsewhere: Vec::new(),
         });
+        self
+    }
+
+    /// Another place at which each fix so far replaces the same.
+    #[must_use]
+    pub fn fix_also(mut self, span: Span) -> Self {
+        for fix in &mut self.fixes {
+            fix.elsewhere.push(span);
+        }
         self
     }
 }

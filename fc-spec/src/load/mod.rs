@@ -31,17 +31,18 @@ mod settle;
 mod shape;
 mod site;
 pub(crate) mod texts;
+mod trees;
 mod uses;
 
 use crate::diagnostic::Faults;
-use crate::syntax::{Sources, parse_parts};
+use crate::syntax::Sources;
 use draft::Draft;
-use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 pub use partial::{Loaded, Partial};
 pub use places::{Item, Place, Places};
 pub use settle::{Said, SettleError, Settled, settle};
 pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
+pub use trees::Trees;
 pub use uses::{Uses, uses};
 
 pub(crate) use edit::text as written;
@@ -53,60 +54,28 @@ pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 /// Reads a spec: what it says, as far as it can be read, and all of its faults.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
-    read(sources, faults, |draft, whole, faults| {
-        check::check(&draft, sources, whole, faults);
-        partial::build(draft, whole, !faults.has_errors())
-    })
+    Trees::new(sources).load(faults)
 }
 
 /// Where each thing is written that [`load`] reads. It is asked for apart: few ask, and to remember every place takes as
 /// much room as the model itself.
 #[must_use]
 pub fn places(sources: &Sources) -> Places {
-    read(sources, &mut Faults::new(), |draft, _, _| {
-        places::places(&draft)
-    })
+    Trees::new(sources).places()
 }
 
 /// Reads a spec as a draft, whose places lie in its trees; and whether all of it could be read.
 fn read<T>(
-    sources: &Sources,
+    trees: &Trees,
     faults: &mut Faults,
     then: impl FnOnce(Draft<'_>, bool, &mut Faults) -> T,
 ) -> T {
-    let files: Vec<_> = sources.iter().collect();
-    let parsed: Vec<_> = files
-        .par_iter()
-        .map(|&(file, source)| {
-            let mut faults = Faults::new();
-            let (tree, is_whole) = if source.whole {
-                parse_parts(file, &source.text, &mut faults)
-            } else {
-                (None, false)
-            };
-            (tree, is_whole, faults)
-        })
-        .collect();
-    let mut trees = Vec::new();
-    let mut whole = true;
-    for ((_, source), (tree, is_whole, found)) in files.into_iter().zip(parsed) {
-        let gaps = found.gaps().to_vec();
-        faults.append(found);
-        match tree {
-            Some(tree) => trees.push(section::Parsed {
-                path: source.path.clone(),
-                tree,
-                gaps,
-                is_whole,
-            }),
-            None => whole = false,
-        }
-    }
-    let sections = section::collect(&trees, &mut whole, faults);
+    let (parsed, mut whole) = trees.parsed(faults);
+    let sections = section::collect(&parsed, &mut whole, faults);
     whole &= !faults.has_lost();
-    let mut draft = lower::lower(&sections, sources);
+    let mut draft = lower::lower(&sections, trees.sources());
     draft.note_doubtful(faults);
     resolve::resolve(&mut draft);
-    draft.questions = questions::questions(&draft, sources);
+    draft.questions = questions::questions(&draft, trees.sources());
     then(draft, whole, faults)
 }

@@ -4,9 +4,10 @@ use super::draft::{Draft, Place as Written, Placed};
 use super::grammar::{self as language, TRANSPORT, Table};
 use crate::diagnostic::nearest;
 use crate::model::{Direction, Kind, TypeShape};
-use crate::syntax::{Entry, Node, Span};
+use crate::syntax::{Entry, FileId, Node, Span};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::{Arc, OnceLock};
 
 /// A thing that a spec says.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -44,23 +45,106 @@ pub struct Place {
 
 /// Where each thing is written that could be read. Of two of one name, the first.
 #[derive(Clone, Debug, Default)]
-pub struct Places(BTreeMap<Item, Place>);
+pub struct Places {
+    files: Vec<Arc<Own>>,
+    /// The answers, which are counted through all files.
+    answers: Own,
+    /// All of them in order, as the number of their file and their own in it.
+    order: OnceLock<Vec<(usize, usize)>>,
+}
+
+/// What one file says.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Own {
+    /// In the order of [`Item`].
+    all: Vec<(Item, Place)>,
+    answers: Vec<Place>,
+}
+
+impl Own {
+    fn get(&self, item: &Item) -> Option<&Place> {
+        let at = self
+            .all
+            .binary_search_by(|(known, _)| known.cmp(item))
+            .ok()?;
+        self.all.get(at).map(|(_, place)| place)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
+        self.all.iter().map(|(item, place)| (item, place))
+    }
+}
 
 impl Places {
+    pub(super) fn of_files(files: Vec<Arc<Own>>) -> Self {
+        let answers = files.iter().flat_map(|file| &file.answers);
+        let answers = (1_usize..).zip(answers).map(|(at, place)| {
+            let item = Item {
+                kind: language::Answer::TABLE.name,
+                owner: None,
+                name: at.to_string(),
+            };
+            (item, place.clone())
+        });
+        let mut answers = Own {
+            all: answers.collect(),
+            answers: Vec::new(),
+        };
+        answers.all.sort_by(|(a, _), (b, _)| a.cmp(b));
+        Self {
+            files,
+            answers,
+            order: OnceLock::new(),
+        }
+    }
+
+    fn parts(&self) -> impl Iterator<Item = &Own> {
+        let files = self.files.iter().map(Arc::as_ref);
+        files.chain(std::iter::once(&self.answers))
+    }
+
     /// Where it is written.
     #[must_use]
     pub fn get(&self, item: &Item) -> Option<&Place> {
-        self.0.get(item)
+        self.parts().find_map(|part| part.get(item))
     }
 
     /// All of them, in the order of [`Item`].
     pub fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
-        self.0.iter()
+        let order = self.order.get_or_init(|| self.ordered());
+        let parts: Vec<&Own> = self.parts().collect();
+        order.iter().filter_map(move |&(part, at)| {
+            let (item, place) = parts.get(part)?.all.get(at)?;
+            Some((item, place))
+        })
+    }
+
+    fn ordered(&self) -> Vec<(usize, usize)> {
+        let mut all: Vec<_> = self
+            .parts()
+            .enumerate()
+            .flat_map(|(part, own)| {
+                let items = own.all.iter().enumerate();
+                items.map(move |(at, (item, _))| (item, (part, at)))
+            })
+            .collect();
+        all.sort_by(|(a, _), (b, _)| a.cmp(b));
+        all.dedup_by(|(later, _), (first, _)| later == first);
+        all.into_iter().map(|(_, at)| at).collect()
+    }
+
+    /// Those of one file, those of a name that an earlier file has included.
+    pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&Item, &Place)> {
+        let own = usize::try_from(file.0).ok();
+        let own = own.and_then(|at| self.files.get(at));
+        let own = own.into_iter().flat_map(|own| own.iter());
+        let answers = self.answers.iter();
+        own.chain(answers.filter(move |(_, place)| place.key.file == file))
     }
 
     /// All of this name, with or without that of what it is part of: `Station.name`, `name`.
     pub fn named(&self, name: &str) -> impl Iterator<Item = (&Item, &Place)> {
-        self.0.iter().filter(move |(item, _)| {
+        self.iter().filter(move |(item, _)| {
             let own = match &item.owner {
                 Some(owner) => name
                     .strip_prefix(owner)
@@ -74,20 +158,22 @@ impl Places {
     /// The name that this one is most likely a slip of.
     #[must_use]
     pub fn nearest(&self, name: &str) -> Option<&str> {
-        nearest(name, self.0.keys().map(|item| item.name.as_str()))
+        nearest(name, self.iter().map(|(item, _)| item.name.as_str()))
     }
+}
 
+/// On the way to what one file says.
+#[derive(Default)]
+struct Said(BTreeMap<Item, Place>);
+
+impl Said {
     fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, place: Written<'_>) {
         let item = Item {
             kind: kind.name,
             owner: owner.map(str::to_owned),
             name: name.to_owned(),
         };
-        self.0.entry(item).or_insert_with(|| Place {
-            key: place.key.span(),
-            whole: place.key.span().to(place.node.span()),
-            comments: place.key.comments().collect(),
-        });
+        self.0.entry(item).or_insert_with(|| written(place));
     }
 
     /// What stands once, and is called what it is.
@@ -122,9 +208,17 @@ impl Places {
     }
 }
 
-/// Of a whole draft.
-pub(super) fn places(draft: &Draft<'_>) -> Places {
-    let mut places = Places::default();
+fn written(place: Written<'_>) -> Place {
+    Place {
+        key: place.key.span(),
+        whole: place.key.span().to(place.node.span()),
+        comments: place.key.comments().collect(),
+    }
+}
+
+/// Of the draft of one file.
+pub(super) fn own(draft: &Draft<'_>) -> Own {
+    let mut places = Said::default();
     places.if_there(language::Protocol::TABLE, draft.protocol.as_ref());
     places.if_there(language::Transport::TABLE, draft.transport.as_ref());
     places.if_there(language::Calls::TABLE, draft.calls.as_ref());
@@ -187,22 +281,17 @@ pub(super) fn places(draft: &Draft<'_>) -> Places {
         it.section.to_string()
     });
     places.keyed(language::Conflict::TABLE, None, &draft.conflicts);
-    for (at, answer) in (1..).zip(&draft.answers) {
-        let name: usize = at;
-        places.add(
-            language::Answer::TABLE,
-            None,
-            &name.to_string(),
-            answer.place,
-        );
-    }
     places.named_by(language::Change::TABLE, &draft.changes, |at, _| {
         at.to_string()
     });
-    places
+    let answers = draft.answers.iter();
+    Own {
+        all: places.0.into_iter().collect(),
+        answers: answers.map(|answer| written(answer.place)).collect(),
+    }
 }
 
-fn types(places: &mut Places, draft: &Draft<'_>) {
+fn types(places: &mut Said, draft: &Draft<'_>) {
     for ty in &draft.types {
         let name = ty.def.name.as_str();
         let (kind, inside, names): (_, _, Vec<&str>) = match &ty.def.shape {

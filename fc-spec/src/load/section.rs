@@ -13,11 +13,11 @@ use std::collections::HashMap;
 /// A parsed file.
 pub(super) struct Parsed<'s> {
     /// Path from the project's root.
-    pub path: String,
+    pub path: &'s str,
     /// Its text as a tree.
     pub tree: syntax::Tree<'s>,
     /// Its texts that are not in the tree.
-    pub gaps: Vec<Span>,
+    pub gaps: &'s [Span],
     /// Whether all of its text is in the tree.
     pub is_whole: bool,
 }
@@ -51,7 +51,7 @@ pub(super) fn collect<'a>(
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
-    let shaped: Vec<_> = trees.par_iter().map(of_file).collect();
+    let shaped: Vec<_> = trees.par_iter().map(shaped).collect();
     for (found, own) in shaped {
         sections.extend(found);
         faults.append(own);
@@ -67,8 +67,15 @@ pub(super) fn collect<'a>(
     sections
 }
 
+/// The sections of one file by itself.
+pub(super) fn of_file<'a>(tree: &'a Parsed<'_>) -> Vec<Section<'a>> {
+    let (mut sections, mut faults) = shaped(tree);
+    drop_repeated(&mut sections, &mut faults);
+    sections
+}
+
 /// The sections of one file, and what is wrong with their shape.
-fn of_file<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
+fn shaped<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
     tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
@@ -88,7 +95,7 @@ fn of_file<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
                 },
                 group: group.and_then(Node::as_str),
                 clean: (faults.errors(), faults.hidden().len()) == before
-                    && !entry.value.lacks(&tree.gaps, entry.key.span()),
+                    && !entry.value.lacks(tree.gaps, entry.key.span()),
             });
         }
     }

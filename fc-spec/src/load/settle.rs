@@ -152,9 +152,11 @@ impl std::error::Error for SettleError {}
 ///
 /// [`SettleError`] if there is no such question, or what is said does not answer it.
 pub fn settle(sources: &Sources, said: &Said) -> Result<Settled, SettleError> {
-    super::read(sources, &mut Faults::new(), |draft, _, _| {
-        settle_in(&draft, sources, said)
-    })
+    super::read(
+        &super::Trees::new(sources),
+        &mut Faults::new(),
+        |draft, _, _| settle_in(&draft, sources, said),
+    )
 }
 
 fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settled, SettleError> {

@@ -9,10 +9,10 @@ use super::grammar::{
 };
 use super::places::{Item, Place};
 use super::shape;
-use crate::diagnostic::Faults;
+use super::trees::Trees;
 use crate::model::{RangeUse, Text, Type};
 use crate::schema::{self, Word};
-use crate::syntax::{Entry, Node, Sources, Span, Style, parse};
+use crate::syntax::{Entry, Node, Span, Style};
 
 /// A key or a scalar value of a file.
 #[derive(Clone, Copy, Debug)]
@@ -471,9 +471,8 @@ pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
 
 /// What a thing says of itself: its title, and more about it if there is more. Empty where the spec does not say it.
 #[must_use]
-pub fn described(sources: &Sources, place: &Place) -> Option<(Text, Option<Text>)> {
-    let file = sources.get(place.key.file)?;
-    let tree = parse(place.key.file, &file.text, &mut Faults::new())?;
+pub fn described(trees: &Trees, place: &Place) -> Option<(Text, Option<Text>)> {
+    let tree = trees.tree(place.key.file)?;
     let node = entry_at(tree.root(), place.key)?.value;
     Some((both_languages(node), COMMON.about.read(node)))
 }

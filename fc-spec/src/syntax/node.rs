@@ -5,6 +5,7 @@ use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
 use crate::model::Text;
 use crate::text;
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
@@ -15,6 +16,12 @@ use std::ops::Range;
 pub struct Tree<'s> {
     file: FileId,
     source: &'s str,
+    parts: Cow<'s, Parts>,
+}
+
+/// A tree without its text.
+#[derive(Clone)]
+struct Parts {
     nodes: Vec<Raw>,
     /// Texts with escapes, folded lines or indentation.
     texts: Vec<Box<str>>,
@@ -112,9 +119,11 @@ const BYTES_PER_NODE: usize = 8;
 static EMPTY: Tree<'static> = Tree {
     file: FileId(0),
     source: "",
-    nodes: Vec::new(),
-    texts: Vec::new(),
-    comments: Vec::new(),
+    parts: Cow::Owned(Parts {
+        nodes: Vec::new(),
+        texts: Vec::new(),
+        comments: Vec::new(),
+    }),
 };
 
 impl<'s> Tree<'s> {
@@ -123,9 +132,11 @@ impl<'s> Tree<'s> {
         Self {
             file,
             source,
-            nodes: Vec::with_capacity(bytes / BYTES_PER_NODE),
-            texts: Vec::new(),
-            comments: Vec::new(),
+            parts: Cow::Owned(Parts {
+                nodes: Vec::with_capacity(bytes / BYTES_PER_NODE),
+                texts: Vec::new(),
+                comments: Vec::new(),
+            }),
         }
     }
 
@@ -137,11 +148,11 @@ impl<'s> Tree<'s> {
 
     /// Every comment, from its `#` to its end, in the order in which they stand.
     pub fn comments(&self) -> impl Iterator<Item = Span> {
-        self.spans(&self.comments)
+        self.spans(&self.parts.comments)
     }
 
     pub(super) fn push_comment(&mut self, span: Span) {
-        self.comments.push(span.start..span.end);
+        self.parts.to_mut().comments.push(span.start..span.end);
     }
 
     fn spans(&self, ranges: &[Range<usize>]) -> impl Iterator<Item = Span> {
@@ -155,12 +166,12 @@ impl<'s> Tree<'s> {
 
     /// Number of nodes, which is the place of the next one.
     pub(super) fn len(&self) -> usize {
-        self.nodes.len()
+        self.parts.nodes.len()
     }
 
     /// Every node, in the order in which they begin.
     pub(super) fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
-        (0..self.nodes.len()).map(|at| self.node(at))
+        (0..self.parts.nodes.len()).map(|at| self.node(at))
     }
 
     pub(super) fn push_null(&mut self, span: Span) {
@@ -177,15 +188,15 @@ impl<'s> Tree<'s> {
         let form = if style != Style::Block && self.source.get(start..end) == Some(text) {
             form
         } else {
-            self.texts.push(text.into());
-            Form::Kept(style, narrow(self.texts.len() - 1))
+            self.parts.to_mut().texts.push(text.into());
+            Form::Kept(style, narrow(self.parts.texts.len() - 1))
         };
         self.push(span, form);
     }
 
     /// A mapping or list that begins here and whose end is not known yet.
     pub(super) fn open(&mut self) {
-        self.nodes.push(Raw {
+        self.parts.to_mut().nodes.push(Raw {
             start: 0,
             end: 0,
             form: Form::Null,
@@ -195,8 +206,8 @@ impl<'s> Tree<'s> {
     /// Says of the node at `at`, which was opened, where it lies and what it is. All nodes behind
     /// it are in it.
     pub(super) fn close(&mut self, at: usize, span: Span, is_mapping: bool) {
-        let size = narrow(self.nodes.len().saturating_sub(at));
-        if let Some(node) = self.nodes.get_mut(at) {
+        let size = narrow(self.parts.nodes.len().saturating_sub(at));
+        if let Some(node) = self.parts.to_mut().nodes.get_mut(at) {
             *node = Raw {
                 start: narrow(span.start),
                 end: narrow(span.end),
@@ -213,7 +224,7 @@ impl<'s> Tree<'s> {
     pub(super) fn open_entries(&self, at: usize) -> Entries<'_> {
         Entries(Items {
             next: self.node(at + 1),
-            end: self.nodes.len(),
+            end: self.parts.nodes.len(),
         })
     }
 
@@ -229,10 +240,10 @@ impl<'s> Tree<'s> {
         let mut end = at + 1;
         for range in kept {
             let length = range.len();
-            self.nodes.copy_within(range, end);
+            self.parts.to_mut().nodes.copy_within(range, end);
             end += length;
         }
-        self.nodes.truncate(end);
+        self.parts.to_mut().nodes.truncate(end);
     }
 
     /// The same tree over a text that says the same wherever it has a node.
@@ -240,21 +251,34 @@ impl<'s> Tree<'s> {
         Tree {
             source,
             file: self.file,
-            nodes: self.nodes,
-            texts: self.texts,
-            comments: self.comments,
+            parts: Cow::Owned(self.parts.into_owned()),
         }
+    }
+
+    /// The same for the text that it was made of, which lies elsewhere now.
+    pub(crate) fn over<'a>(&'a self, source: &'a str) -> Tree<'a> {
+        Tree {
+            source,
+            file: self.file,
+            parts: Cow::Borrowed(&self.parts),
+        }
+    }
+
+    /// Without its text, so that it can be kept beside that.
+    pub(crate) fn bare(self) -> Tree<'static> {
+        self.of_source("")
     }
 
     /// Gives back the room that further nodes would have had.
     pub(super) fn finish(mut self) -> Self {
-        self.nodes.shrink_to_fit();
-        self.comments.shrink_to_fit();
+        let parts = self.parts.to_mut();
+        parts.nodes.shrink_to_fit();
+        parts.comments.shrink_to_fit();
         self
     }
 
     fn push(&mut self, span: Span, form: Form) {
-        self.nodes.push(Raw {
+        self.parts.to_mut().nodes.push(Raw {
             start: narrow(span.start),
             end: narrow(span.end),
             form,
@@ -293,7 +317,7 @@ impl<'t> Node<'t> {
     }
 
     fn raw(self) -> Raw {
-        self.tree.nodes.get(self.at).copied().unwrap_or(Raw {
+        self.tree.parts.nodes.get(self.at).copied().unwrap_or(Raw {
             start: 0,
             end: 0,
             form: Form::Null,
@@ -347,7 +371,7 @@ impl<'t> Node<'t> {
                 (self.tree.source.get(inside), Style::Quoted)
             }
             Form::Kept(style, index) => {
-                let text = self.tree.texts.get(widen(index));
+                let text = self.tree.parts.texts.get(widen(index));
                 (text.map(AsRef::as_ref), style)
             }
         };
@@ -372,10 +396,8 @@ impl<'t> Node<'t> {
     /// The comments that are about it: those right above its line and the one behind it, if nothing else begins before
     /// it on its line.
     pub fn comments(self) -> impl Iterator<Item = Span> {
-        let Tree {
-            comments, source, ..
-        } = self.tree;
-        let about = comment::about(comments, source, self.span().start);
+        let comments = &self.tree.parts.comments;
+        let about = comment::about(comments, self.tree.source, self.span().start);
         self.tree.spans(comments.get(about).unwrap_or_default())
     }
 

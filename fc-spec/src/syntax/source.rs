@@ -1,6 +1,7 @@
 //! The files of a spec, in memory.
 
 use super::span::{FileId, LineCol, Span};
+use std::sync::Arc;
 
 /// A file of the spec.
 #[derive(Clone, Debug)]
@@ -80,10 +81,10 @@ impl SourceFile {
     }
 }
 
-/// The files of a spec, sorted by path.
+/// The files of a spec, sorted by path. A copy shares their texts.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    files: Vec<SourceFile>,
+    files: Vec<Arc<SourceFile>>,
 }
 
 impl Sources {
@@ -99,7 +100,7 @@ impl Sources {
     ) -> Self {
         let mut files: Vec<_> = texts
             .into_iter()
-            .map(|(path, text)| SourceFile::new(path, text))
+            .map(|(path, text)| Arc::new(SourceFile::new(path, text)))
             .collect();
         files.sort_by(|a, b| a.path.cmp(&b.path));
         Self { files }
@@ -111,6 +112,7 @@ impl Sources {
         let mut files = self.files.clone();
         if !prefix.is_empty() {
             for file in &mut files {
+                let file = Arc::make_mut(file);
                 file.path = format!("{prefix}/{}", file.path);
             }
         }
@@ -118,14 +120,15 @@ impl Sources {
     }
 
     /// Adds a file. Ids count up from 0.
-    pub fn push(&mut self, file: SourceFile) -> FileId {
+    pub fn push(&mut self, file: impl Into<Arc<SourceFile>>) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
-        self.files.push(file);
+        self.files.push(file.into());
         id
     }
 
     /// Puts a file in the place of the one with its path.
-    pub fn replace(&mut self, file: SourceFile) {
+    pub fn replace(&mut self, file: impl Into<Arc<SourceFile>>) {
+        let file = file.into();
         let mut files = self.files.iter_mut();
         if let Some(old) = files.find(|old| old.path == file.path) {
             *old = file;
@@ -135,12 +138,17 @@ impl Sources {
     /// A file.
     #[must_use]
     pub fn get(&self, file: FileId) -> Option<&SourceFile> {
+        self.shared(file).map(Arc::as_ref)
+    }
+
+    /// The same, for those who keep it.
+    pub(crate) fn shared(&self, file: FileId) -> Option<&Arc<SourceFile>> {
         self.files.get(usize::try_from(file.0).ok()?)
     }
 
     /// Every file, also those that are not whole.
     pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
-        (0..).map(FileId).zip(&self.files)
+        (0..).map(FileId).zip(self.files.iter().map(Arc::as_ref))
     }
 
     /// Path of the file of a span; empty for a file that is not of this list.

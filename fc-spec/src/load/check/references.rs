@@ -40,7 +40,11 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         let Some(first) = nodes.next() else { continue };
         let fault = unknown_type(draft, &name, first, faults);
         faults.push(nodes.fold(fault, |fault, node| {
-            fault.also(node.span(), text!("这里也用到", "also used here"))
+            let fault = fault.also(node.span(), text!("这里也用到", "also used here"));
+            match spelled(node, &name) {
+                Some(span) => fault.fix_also(span),
+                None => fault,
+            }
         }));
     }
 }
@@ -84,14 +88,16 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
         return fault.note(text!("在 `types:` 下声明", "declare it under `types:`"));
     };
     let message = text!("是否想写 `{near}`？", "did you mean `{near}`?");
-    match at_start(node, name) {
-        Some(start) => fault.fix(
-            Span::new(span.file, start, start + name.len()),
-            near,
-            message,
-        ),
+    match spelled(node, name) {
+        Some(span) => fault.fix(span, near, message),
         None => fault.note(message),
     }
+}
+
+/// Where a scalar that starts with this name spells it, unless with escapes.
+fn spelled(node: Node<'_>, name: &str) -> Option<Span> {
+    let start = at_start(node, name)?;
+    Some(Span::new(node.span().file, start, start + name.len()))
 }
 
 /// Byte at which a scalar that starts with this name has it, unless it is written with escapes.

@@ -1,24 +1,10 @@
-//! `fc lsp`, driven by an editor: what it says of texts while they change.
+//! What is said of texts while they change.
 
-#![allow(
-    clippy::expect_used,
-    clippy::indexing_slicing,
-    clippy::needless_pass_by_value,
-    clippy::panic,
-    clippy::single_match_else,
-    clippy::too_many_lines,
-    reason = "tests"
-)]
-
-mod editor;
-mod support;
-
-use editor::Editor;
 use serde_json::{Value, json};
-use support::Project;
 
-const TYPES: &str = "spec/types.yaml";
-const LAMP: &str = "spec/commands/lamp.yaml";
+use crate::editor::Editor;
+use crate::support::Project;
+use crate::{LAMP, TYPES};
 
 #[test]
 fn faults_come_and_go_with_the_text() {
@@ -222,107 +208,69 @@ fn every_fix_mends_its_fault() {
 }
 
 #[test]
-fn what_no_client_should_say_ends_nothing() {
+fn a_fault_of_several_places_is_fixed_at_each_or_at_all() {
     let project = Project::new();
     let mut editor = Editor::start(&project);
-    editor.open(TYPES);
-    let uri = editor.uri(TYPES);
-    let document = json!({ "uri": uri });
-    let far = json!({ "line": 4_000_000_000_u32, "character": 4_000_000_000_u32 });
-    for method in [
-        "textDocument/completion",
-        "textDocument/hover",
-        "textDocument/definition",
-        "textDocument/references",
-        "textDocument/documentSymbol",
-        "textDocument/codeAction",
-        "textDocument/codeLens",
-        "textDocument/formatting",
-        "textDocument/prepareRename",
-        "textDocument/rename",
-        "workspace/symbol",
-    ] {
-        for params in [
-            Value::Null,
-            json!([1]),
-            json!({}),
-            json!({ "textDocument": 7, "position": "here" }),
-            json!({ "textDocument": { "uri": "nothing" }, "position": far, "newName": "", "query": "x",
-                "range": { "start": far, "end": far }, "context": { "diagnostics": [], "includeDeclaration": true },
-                "options": { "tabSize": 2, "insertSpaces": true } }),
-            json!({ "textDocument": document, "position": far, "newName": ": [\n", "query": "",
-                "range": { "start": far, "end": { "line": 0, "character": 0 } },
-                "context": { "diagnostics": [], "includeDeclaration": true },
-                "options": { "tabSize": 2, "insertSpaces": true } }),
-        ] {
-            // Answered or refused: either will do.
-            let _ = editor.try_ask(method, params);
-        }
+    editor.open(LAMP);
+    let before = editor.text(LAMP).to_owned();
+    let misspelt = before.replace("type: Phase", "type: Phas");
+    let places: Vec<usize> = misspelt.match_indices("Phas,").map(|(at, _)| at).collect();
+    assert_eq!(places.len(), 3);
+    editor.write(LAMP, &misspelt);
+    let codes = editor.codes(LAMP);
+    let unknown = codes.iter().filter(|code| *code == "FC0203");
+    assert_eq!(unknown.count(), 1, "{codes:?}");
+    let mut whole = Value::Null;
+    for at in places {
+        let position = editor.position_of(LAMP, at);
+        let params = json!({
+            "textDocument": { "uri": editor.uri(LAMP) },
+            "range": { "start": position, "end": position },
+            "context": { "diagnostics": [] },
+        });
+        let actions = editor.ask("textDocument/codeAction", params);
+        let [here, all] = actions.as_array().expect("actions").as_slice() else {
+            panic!("{actions:#}");
+        };
+        let edits = &here["edit"]["documentChanges"][0]["edits"];
+        assert_eq!(edits.as_array().map(Vec::len), Some(1), "{edits:#}");
+        assert_eq!(edits[0]["range"]["start"], position);
+        let title = all["title"].as_str().expect("a text");
+        assert!(title.starts_with("at all 3 places: "), "{title}");
+        whole = all["edit"].clone();
     }
-    let error = editor
-        .try_ask("textDocument/nonsense", json!({}))
-        .expect_err("not known");
-    assert!(error.starts_with("-32601"), "{error}");
-    for (method, params) in [
-        ("textDocument/didOpen", json!({})),
-        (
-            "textDocument/didChange",
-            json!({ "textDocument": { "uri": uri }, "contentChanges": 7 }),
-        ),
-        (
-            "textDocument/didChange",
-            json!({ "textDocument": { "uri": "x", "version": 1 }, "contentChanges": [] }),
-        ),
-        ("textDocument/didClose", Value::Null),
-        ("$/cancelRequest", json!({ "id": [] })),
-        ("$/unheard", json!(1)),
-    ] {
-        editor.tell(method, params);
-    }
-    // Ends before starts, and beyond the end.
-    let backwards = json!({ "range": { "start": far, "end": { "line": 0, "character": 3 } }, "text": "# 末尾\n" });
-    let version = 2;
-    let params = json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": [backwards] });
-    editor.tell("textDocument/didChange", params);
-    let place = editor.ask_at("textDocument/definition", TYPES, "  Sp|ot:\n");
-    assert_eq!(editor.slice(TYPES, &place["range"]), "Spot");
-    assert_eq!(editor.end(), 0);
+    editor.apply(&whole);
+    assert_eq!(editor.text(LAMP), before);
+    assert_eq!(editor.codes(LAMP), [""; 0]);
 }
 
 #[test]
-fn many_changes_at_once_end_in_what_is_wrong_with_the_last() {
+fn what_leaves_no_choice_is_fixed_at_once() {
     let project = Project::new();
     let mut editor = Editor::start(&project);
-    editor.open(TYPES);
-    let text = editor.text(TYPES).to_owned();
-    for n in 0..200 {
-        editor.write(
-            TYPES,
-            &text.replace("type: u16, unit", &format!("type: u{n}, unit")),
-        );
+    editor.open(LAMP);
+    let before = editor.text(LAMP).to_owned();
+    editor.replace(LAMP, "effect: motion", "efect: moton");
+    assert_eq!(editor.codes(LAMP).len(), 1);
+    let asked = |editor: &Editor<'_>, only: Value| {
+        let end = json!({ "line": 0, "character": 0 });
+        json!({
+            "textDocument": { "uri": editor.uri(LAMP) },
+            "range": { "start": end, "end": end },
+            "context": { "diagnostics": [], "only": only },
+        })
+    };
+    // One letter of the key, and behind that one of the word.
+    for _ in 0..2 {
+        let params = asked(&editor, json!(["source.fixAll"]));
+        let actions = editor.ask("textDocument/codeAction", params);
+        assert_eq!(actions[0]["kind"], "source.fixAll", "{actions:#}");
+        editor.apply(&actions[0]["edit"]);
+        editor.faults(LAMP);
     }
-    editor.write(TYPES, &text);
-    assert_eq!(editor.codes(TYPES), [""; 0]);
-    assert_eq!(editor.end(), 0);
-}
-
-#[test]
-fn without_a_project_there_is_nothing_to_say() {
-    let project = Project::empty();
-    project.write("notes.yaml", "a: 1\n");
-    let mut editor = Editor::start(&project);
-    editor.open("notes.yaml");
-    assert_eq!(
-        editor.ask_at("textDocument/hover", "notes.yaml", "|a: 1"),
-        Value::Null
-    );
-    // A project below the directory that is open is found by the first file in it.
-    let inner = Project::new();
-    support::copy(&inner.path("spec"), &project.path("robot/spec"));
-    let path = "robot/spec/types.yaml";
-    editor.open(path);
-    assert_eq!(editor.codes(path), [""; 0]);
-    editor.replace(path, "unit: mm", "unti: mm");
-    assert_eq!(editor.codes(path).len(), 1);
-    assert_eq!(editor.end(), 0);
+    assert_eq!(editor.text(LAMP), before);
+    for only in [json!(["source"]), json!(["refactor"]), json!(["quickfix"])] {
+        let params = asked(&editor, only);
+        assert_eq!(editor.ask("textDocument/codeAction", params), json!([]));
+    }
 }

@@ -1,8 +1,6 @@
 //! An editor without a window: a client of the Language Server Protocol that has the command as its server, keeps the
 //! texts of open files, and makes the edits it is told.
 
-#![allow(dead_code, reason = "each test file uses a part of it")]
-
 use std::collections::{BTreeMap, VecDeque};
 use std::io::BufReader;
 use std::process::{Child, ChildStdin, Stdio};
@@ -13,9 +11,25 @@ use lsp_server::{Message, Notification, Request, Response};
 use serde_json::{Value, json};
 
 use crate::support::{Project, command};
+use crate::{LAMP, PROTOCOL, TYPES};
 
 /// After that a server that says nothing has failed; one that works answers in milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// An editor with the files of the spec open, and nothing wrong with them.
+pub fn editor(project: &Project) -> Editor<'_> {
+    editor_in(project, "en")
+}
+
+/// The same in another language.
+pub fn editor_in<'p>(project: &'p Project, locale: &str) -> Editor<'p> {
+    let mut editor = Editor::with(project, json!({ "locale": locale }));
+    for path in [TYPES, LAMP, PROTOCOL] {
+        editor.open(path);
+        assert_eq!(editor.codes(path), [""; 0]);
+    }
+    editor
+}
 
 pub struct Editor<'p> {
     project: &'p Project,
@@ -243,7 +257,8 @@ impl<'p> Editor<'p> {
         self.position_of(path, at + before.len())
     }
 
-    fn position_of(&self, path: &str, offset: usize) -> Value {
+    /// The position of an offset in an open file.
+    pub fn position_of(&self, path: &str, offset: usize) -> Value {
         let before = &self.text(path)[..offset];
         let line = before.matches('\n').count();
         let start = before.rfind('\n').map_or(0, |at| at + 1);

@@ -1,0 +1,25 @@
+//! `fc lsp`, driven by an editor.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::needless_pass_by_value,
+    clippy::panic,
+    clippy::single_match_else,
+    clippy::too_many_lines,
+    reason = "tests"
+)]
+
+mod answers;
+mod completion;
+mod editor;
+mod faults;
+mod lens;
+mod rename;
+mod session;
+#[path = "../support/mod.rs"]
+mod support;
+
+const TYPES: &str = "spec/types.yaml";
+const LAMP: &str = "spec/commands/lamp.yaml";
+const PROTOCOL: &str = "spec/protocol.yaml";

@@ -1,0 +1,195 @@
+//! The files of a spec as trees, which stay while other files change.
+
+use super::places::{Own, Places};
+use super::section::Parsed;
+use super::uses::{Named, Uses};
+use super::{Loaded, check, lower, partial, places, read, section, uses};
+use crate::diagnostic::Faults;
+use crate::syntax::{FileId, SourceFile, Sources, Tree, parse_parts};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// The files of a spec as trees: what reads a spec again and again, such as an editor's server, reads of the files that have
+/// not changed what it has read before.
+#[derive(Clone, Debug, Default)]
+pub struct Trees {
+    sources: Sources,
+    files: Vec<Arc<File>>,
+}
+
+/// A file, and what has been found out about it by itself.
+struct File {
+    source: Arc<SourceFile>,
+    /// Without its text.
+    tree: Option<Tree<'static>>,
+    is_whole: bool,
+    faults: Faults,
+    own: OnceLock<Arc<Own>>,
+    named: OnceLock<Arc<Named>>,
+}
+
+impl fmt::Debug for File {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.source.path)
+    }
+}
+
+impl Trees {
+    /// Of these files.
+    #[must_use]
+    pub fn new(sources: &Sources) -> Self {
+        Self::default().with(sources)
+    }
+
+    /// Of these files, of which those that are the same as here are not parsed again.
+    #[must_use]
+    pub fn with(&self, sources: &Sources) -> Self {
+        let all = sources.iter().filter_map(|(id, _)| {
+            let source = sources.shared(id)?;
+            let known = self.file(id).filter(|file| file.is_of(source));
+            Some((id, source, known))
+        });
+        let all: Vec<_> = all.collect();
+        let new: Vec<_> = all.iter().filter(|(.., known)| known.is_none()).collect();
+        let new = together(&new, |(id, source, _)| Arc::new(File::new(*id, source)));
+        let mut new = new.into_iter();
+        let known = all.iter().map(|(.., known)| known.map(Arc::clone));
+        Self {
+            sources: sources.clone(),
+            files: known
+                .filter_map(|known| known.or_else(|| new.next()))
+                .collect(),
+        }
+    }
+
+    /// The files.
+    #[must_use]
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    fn file(&self, id: FileId) -> Option<&Arc<File>> {
+        self.files.get(usize::try_from(id.0).ok()?)
+    }
+
+    /// The tree of a file; `None` of one that [`parse`](crate::syntax::parse) makes none of.
+    #[must_use]
+    pub fn tree(&self, file: FileId) -> Option<Tree<'_>> {
+        let file = self.file(file).filter(|file| file.is_whole)?;
+        Some(file.tree.as_ref()?.over(&file.source.text))
+    }
+
+    /// What the spec says, as far as it can be read, and all of its faults.
+    #[must_use]
+    pub fn load(&self, faults: &mut Faults) -> Loaded {
+        read(self, faults, |draft, whole, faults| {
+            check::check(&draft, &self.sources, whole, faults);
+            partial::build(draft, whole, !faults.has_errors())
+        })
+    }
+
+    /// Where each thing is written.
+    #[must_use]
+    pub fn places(&self) -> Places {
+        let new: Vec<_> = self
+            .files
+            .iter()
+            .filter(|it| it.own.get().is_none())
+            .collect();
+        together(&new, |file| file.own(&self.sources));
+        let own = self.files.iter().map(|file| file.own(&self.sources));
+        Places::of_files(own.collect())
+    }
+
+    /// Every place at which a thing is named.
+    #[must_use]
+    pub fn uses(&self) -> Uses {
+        let new: Vec<_> = self
+            .files
+            .iter()
+            .filter(|it| it.named.get().is_none())
+            .collect();
+        together(&new, |file| file.named());
+        let named = self.files.iter().map(|file| file.named());
+        Uses::of_files(named.collect())
+    }
+
+    /// Those files of which there are trees, and what is wrong with each and with the others; and whether there are no
+    /// others.
+    pub(super) fn parsed(&self, faults: &mut Faults) -> (Vec<Parsed<'_>>, bool) {
+        let mut whole = true;
+        let mut parsed = Vec::new();
+        for file in &self.files {
+            faults.append(file.faults.clone());
+            match file.parsed() {
+                Some(file) => parsed.push(file),
+                None => whole = false,
+            }
+        }
+        (parsed, whole)
+    }
+}
+
+/// Makes something of each file, on all processors. What is to be made of one alone is not handed to other threads, which
+/// may be busy with something longer.
+fn together<F: Sync, T: Send>(files: &[F], make: impl Fn(&F) -> T + Send + Sync) -> Vec<T> {
+    if files.len() > 1 {
+        files.par_iter().map(make).collect()
+    } else {
+        files.iter().map(make).collect()
+    }
+}
+
+impl File {
+    fn new(id: FileId, source: &Arc<SourceFile>) -> Self {
+        let mut faults = Faults::new();
+        let (tree, is_whole) = if source.whole {
+            parse_parts(id, &source.text, &mut faults)
+        } else {
+            (None, false)
+        };
+        Self {
+            source: Arc::clone(source),
+            tree: tree.map(Tree::bare),
+            is_whole,
+            faults,
+            own: OnceLock::new(),
+            named: OnceLock::new(),
+        }
+    }
+
+    /// Whether it is this file with this text.
+    fn is_of(&self, source: &Arc<SourceFile>) -> bool {
+        let own = &self.source;
+        Arc::ptr_eq(own, source)
+            || own.path == source.path && own.whole == source.whole && own.text == source.text
+    }
+
+    fn parsed(&self) -> Option<Parsed<'_>> {
+        Some(Parsed {
+            path: &self.source.path,
+            tree: self.tree.as_ref()?.over(&self.source.text),
+            gaps: self.faults.gaps(),
+            is_whole: self.is_whole,
+        })
+    }
+
+    fn own(&self, sources: &Sources) -> Arc<Own> {
+        let own = self.own.get_or_init(|| {
+            let parsed = self.parsed();
+            let sections = parsed.as_ref().map(section::of_file).unwrap_or_default();
+            Arc::new(places::own(&lower::lower(&sections, sources)))
+        });
+        Arc::clone(own)
+    }
+
+    fn named(&self) -> Arc<Named> {
+        let named = self.named.get_or_init(|| {
+            let tree = self.tree.as_ref().filter(|_| self.is_whole);
+            let tree = tree.map(|tree| tree.over(&self.source.text));
+            Arc::new(tree.as_ref().map(uses::named).unwrap_or_default())
+        });
+        Arc::clone(named)
+    }
+}
