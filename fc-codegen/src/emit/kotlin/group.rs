@@ -11,7 +11,7 @@ use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::language::{KOTLIN, Role};
 use crate::surface::package::{Call, Module, Spelled};
-use fc_spec::model::{self, Operation, Side};
+use fc_spec::model::{self, Operation};
 
 /// A group with what of it has a code.
 pub struct Group<'p> {
@@ -63,11 +63,6 @@ impl<'p> Group<'p> {
         docs.paragraph(format!("{}：`{whole}` 中的一部分。", title.zh));
         docs.paragraph(format!("{}: its part of `{whole}`.", title.en));
         docs
-    }
-
-    /// Whether the robot sends one of its streams.
-    pub fn has_robot_streams(&self) -> bool {
-        self.streams.iter().any(|it| it.sender == Side::Robot)
     }
 }
 

@@ -80,7 +80,7 @@ fn list(out: &mut Source, name: &str, ty: &str, calls: &[Call<'_>]) {
     let methods: Vec<&str> = calls.iter().map(|it| it.method).collect();
     out.blank();
     out.enclose(&format!("internal fun {name}(): List<{ty}> ="), "", |out| {
-        out.lines("listOf(", &methods, ")")
+        out.lines("listOf(", &methods, ")");
     });
 }
 

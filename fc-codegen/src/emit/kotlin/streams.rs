@@ -27,7 +27,7 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_>]) {
 
 /// The robot's side, if it sends any.
 pub fn for_robot(out: &mut Source, groups: &[Group<'_>]) {
-    let parts = parts(groups, "Streamer", |it| it.has_robot_streams());
+    let parts = parts(groups, "Streamer", has_robot_streams);
     if parts.is_empty() {
         return;
     }
@@ -38,6 +38,11 @@ pub fn for_robot(out: &mut Source, groups: &[Group<'_>]) {
     ));
     wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
+}
+
+/// Whether the robot sends one of a group's streams.
+fn has_robot_streams(group: &Group<'_>) -> bool {
+    group.streams.iter().any(|it| it.sender == Side::Robot)
 }
 
 const DATA: &str = "data: DataConnection";
@@ -68,7 +73,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
             }
         },
     );
-    if !group.has_robot_streams() {
+    if !has_robot_streams(group) {
         return;
     }
     out.blank();
