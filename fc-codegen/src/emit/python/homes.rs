@@ -125,7 +125,7 @@ pub struct Homes<'p> {
     package: &'p Package<'p>,
     parts: Vec<Part<'p>>,
     /// The part whose file holds a part, by their ids.
-    homes: HashMap<&'p str, &'p str>,
+    of_part: HashMap<&'p str, &'p str>,
     ids: String,
 }
 
@@ -161,7 +161,7 @@ impl<'p> Homes<'p> {
         });
         Self {
             package: &context.package,
-            homes: homes.collect(),
+            of_part: homes.collect(),
             ids: free(&["ids", "entity_ids"], |name| {
                 parts.iter().any(|it| it.name == name)
             }),
@@ -176,13 +176,13 @@ impl<'p> Homes<'p> {
 
     /// The parts that have a file, by the names of the files.
     pub fn files(&self) -> impl Iterator<Item = &Part<'p>> {
-        let is_home = |part: &&Part<'_>| self.homes.get(part.id) == Some(&part.id);
+        let is_home = |part: &&Part<'_>| self.of_part.get(part.id) == Some(&part.id);
         self.parts.iter().filter(is_home)
     }
 
     /// The parts that stand in the file of this one.
     pub fn members(&self, home: &Part<'_>) -> Vec<&Part<'p>> {
-        let is_in = |part: &&Part<'_>| self.homes.get(part.id) == Some(&home.id);
+        let is_in = |part: &&Part<'_>| self.of_part.get(part.id) == Some(&home.id);
         self.parts.iter().filter(is_in).collect()
     }
 
@@ -220,7 +220,7 @@ impl<'p> Homes<'p> {
 
     /// The module whose file holds a part.
     fn module(&self, part: &str) -> &str {
-        let home = self.homes.get(part).and_then(|id| self.part(id));
+        let home = self.of_part.get(part).and_then(|id| self.part(id));
         home.map_or(&self.ids, |home| &home.name)
     }
 }

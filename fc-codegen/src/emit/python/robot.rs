@@ -103,8 +103,8 @@ pub fn streamer(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
         for stream in group.streams.iter().filter(|it| it.sender == Side::Robot) {
             let mut docs = stream_docs(context, stream);
             docs.paragraph("Returns how many data connections took it.");
-            let content = content(context, stream);
-            let parameters = ["self", "message_id: int", &content, "to: int | None = None"];
+            let held = content(context, stream);
+            let parameters = ["self", "message_id: int", &held, "to: int | None = None"];
             let parameters = parameters.map(Code::from).to_vec();
             let open = format!("async def send_{}(", stream.name);
             out.blank();
