@@ -220,11 +220,24 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
             &group.reports,
         ),
     ] {
-        if !calls.is_empty() {
-            out.line(format!("/// {zh}{en}"));
-            let types = calls.iter().map(|call| call.request.ty.name.to_string());
-            let types: Vec<String> = types.collect();
-            out.alias(&group.name(part), "fc_runtime::Types", &types);
+        if calls.is_empty() {
+            continue;
+        }
+        let types = calls.iter().map(|call| call.request.ty.name.to_string());
+        let types: Vec<String> = types.collect();
+        let (docs, name) = (format!("/// {zh}{en}"), group.name(part));
+        let using = format!("using {name} = fc_runtime::Types<");
+        let joined = types.join(", ");
+        if out.has_room([&using, &joined, ">;"]) {
+            out.line(docs);
+            out.line([&using, &*joined, ">;"].concat());
+        } else {
+            // The formatter would fill the lines: so each has one that another does not move.
+            out.line("// clang-format off");
+            out.line(docs);
+            out.line(using);
+            out.line(format!("    {}>;", types.join(",\n    ")));
+            out.line("// clang-format on");
         }
     }
 }

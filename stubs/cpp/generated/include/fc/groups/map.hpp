@@ -1154,10 +1154,17 @@ class MapReporter {
   }
 };
 
+// clang-format off
 /// 这一组指令的请求。The requests of the group.
-using MapCommands =
-    fc_runtime::Types<GetMapImageRequest, ListMapsRequest, GetMapInfoRequest, SaveMapRequest,
-                      DownloadMapsRequest, UploadMapsRequest, GetMapSyncProgressRequest>;
+using MapCommands = fc_runtime::Types<
+    GetMapImageRequest,
+    ListMapsRequest,
+    GetMapInfoRequest,
+    SaveMapRequest,
+    DownloadMapsRequest,
+    UploadMapsRequest,
+    GetMapSyncProgressRequest>;
+// clang-format on
 /// 这一组的主动上报。The reports of the group.
 using MapReports = fc_runtime::Types<MapSyncProgress>;
 /// 由机器人处理这一组的指令；其他指令没有结果。

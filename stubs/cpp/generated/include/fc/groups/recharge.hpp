@@ -557,9 +557,13 @@ class RechargeReporter {
   }
 };
 
+// clang-format off
 /// 这一组指令的请求。The requests of the group.
-using RechargeCommands =
-    fc_runtime::Types<StartRechargeRequest, CancelRechargeRequest, GetRechargeStatusRequest>;
+using RechargeCommands = fc_runtime::Types<
+    StartRechargeRequest,
+    CancelRechargeRequest,
+    GetRechargeStatusRequest>;
+// clang-format on
 /// 这一组的主动上报。The reports of the group.
 using RechargeReports = fc_runtime::Types<RechargeProgress>;
 /// 由机器人处理这一组的指令；其他指令没有结果。

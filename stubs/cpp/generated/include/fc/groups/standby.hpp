@@ -422,9 +422,14 @@ class StandbyDefaults : public Base {
   }
 };
 
+// clang-format off
 /// 这一组指令的请求。The requests of the group.
-using StandbyCommands = fc_runtime::Types<SetStandbyPositionRequest, GetStandbyPositionRequest,
-                                          SetPositions0313Request, GetPositions0314Request>;
+using StandbyCommands = fc_runtime::Types<
+    SetStandbyPositionRequest,
+    GetStandbyPositionRequest,
+    SetPositions0313Request,
+    GetPositions0314Request>;
+// clang-format on
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_standby(StandbyRobot& robot,

@@ -856,10 +856,15 @@ class StationDefaults : public Base {
   }
 };
 
+// clang-format off
 /// 这一组指令的请求。The requests of the group.
-using StationCommands =
-    fc_runtime::Types<GetStationRequest, UploadMapStationsRequest, AddStationRequest,
-                      DeleteStationRequest, RenameStationRequest>;
+using StationCommands = fc_runtime::Types<
+    GetStationRequest,
+    UploadMapStationsRequest,
+    AddStationRequest,
+    DeleteStationRequest,
+    RenameStationRequest>;
+// clang-format on
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_station(StationRobot& robot,
