@@ -196,8 +196,9 @@ impl Server<'_> {
             self.send(refusal(request.id, code, "the server is shut down"));
         } else if request.method == lsp::LspRequestMethod::Shutdown.as_str() {
             self.is_shut_down = true;
-            let waiting = self.worker.clear();
-            waiting.into_iter().for_each(|id| self.cancel(id));
+            for id in self.worker.clear() {
+                self.cancel(id);
+            }
             self.send(Response::new_ok(request.id, ()));
         } else {
             let snapshot = self.workspace.as_mut().map(Workspace::snapshot);

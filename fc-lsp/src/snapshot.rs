@@ -135,31 +135,37 @@ impl Snapshot {
     }
 
     /// The files.
+    #[must_use]
     pub fn sources(&self) -> &Sources {
         self.state.trees.sources()
     }
 
     /// The files as trees.
+    #[must_use]
     pub fn trees(&self) -> &Trees {
         &self.state.trees
     }
 
     /// What checking it comes to.
+    #[must_use]
     pub fn analysis(&self) -> &Analysis {
         self.state.analysis()
     }
 
     /// Whether that has been found out.
+    #[must_use]
     pub fn is_checked(&self) -> bool {
         self.state.is_whole().is_some()
     }
 
     /// Where each thing is written.
+    #[must_use]
     pub fn places(&self) -> &Places {
         self.state.places()
     }
 
     /// Where each thing is named.
+    #[must_use]
     pub fn uses(&self) -> &Uses {
         let uses = &self.state.uses;
         uses.get_or_init(|| self.state.trees.uses())
@@ -167,6 +173,7 @@ impl Snapshot {
 
     /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for
     /// which nobody waits until all is checked, and which do not go while a file is half written.
+    #[must_use]
     pub fn known(&self) -> &State {
         match &self.before {
             Some(before) if self.state.is_whole() != Some(true) => before,
@@ -175,12 +182,14 @@ impl Snapshot {
     }
 
     /// Whether that has been checked, so that nobody waits who asks for it.
+    #[must_use]
     pub fn is_known(&self) -> bool {
         self.known().is_whole().is_some()
     }
 
     /// Whether lenses can be shown without a check: with what is known, where there is nothing to compare with, or the
     /// client will ask again.
+    #[must_use]
     pub fn has_lenses(&self) -> bool {
         let may_be_old = self.settings.refreshes_lenses || self.project.is_unreleased();
         let is_compared = self.project.is_unreleased() || self.known().findings.get().is_some();
@@ -194,22 +203,26 @@ impl Snapshot {
     }
 
     /// The file that the client calls so.
+    #[must_use]
     pub fn file(&self, uri: &Uri) -> Option<FileId> {
         let at = self.documents.iter().position(|(known, _)| known == uri)?;
         Some(FileId(u32::try_from(at).ok()?))
     }
 
     /// The text of a file.
+    #[must_use]
     pub fn source(&self, file: FileId) -> Option<&SourceFile> {
         self.sources().get(file)
     }
 
     /// What the client calls a file.
+    #[must_use]
     pub fn uri(&self, file: FileId) -> Option<&Uri> {
         self.document(file).map(|(uri, _)| uri)
     }
 
     /// The version of the text of a file that the client has open.
+    #[must_use]
     pub fn version(&self, file: FileId) -> Option<i32> {
         self.document(file)?.1
     }
@@ -219,6 +232,7 @@ impl Snapshot {
     }
 
     /// A span as the client counts it.
+    #[must_use]
     pub fn range(&self, span: Span) -> Range {
         match self.source(span.file) {
             Some(file) => self.settings.encoding.range(file, span),
@@ -227,6 +241,7 @@ impl Snapshot {
     }
 
     /// A span in its file.
+    #[must_use]
     pub fn location(&self, span: Span) -> Option<Location> {
         Some(Location {
             uri: self.uri(span.file)?.clone(),
@@ -235,6 +250,7 @@ impl Snapshot {
     }
 
     /// The file and byte offset of a position.
+    #[must_use]
     pub fn offset(&self, uri: &Uri, position: Position) -> Option<(FileId, usize)> {
         let file = self.file(uri)?;
         let source = self.source(file)?;

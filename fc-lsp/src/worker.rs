@@ -26,8 +26,8 @@ impl Drop for Leaving {
     }
 }
 
-/// What waits: snapshots, and requests with those that they are about.
-type Waiting = Queue<Arc<Snapshot>, (Request, Arc<Snapshot>)>;
+/// A request and the snapshot that it is about.
+type Asked = (Request, Arc<Snapshot>);
 
 #[derive(Default)]
 struct Shared {
@@ -37,7 +37,7 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    queue: Waiting,
+    queue: Queue<Arc<Snapshot>, Asked>,
     is_over: bool,
 }
 
@@ -48,7 +48,7 @@ impl Shared {
     }
 
     /// Waits for what is to be done next; `None` when it is over.
-    fn next(&self) -> Option<Work<Arc<Snapshot>, (Request, Arc<Snapshot>)>> {
+    fn next(&self) -> Option<Work<Arc<Snapshot>, Asked>> {
         let mut state = self.state();
         loop {
             if state.is_over {
@@ -114,18 +114,15 @@ impl Worker {
 }
 
 /// Whether there is still a loop that hears of it.
-fn work_on(
-    work: Work<Arc<Snapshot>, (Request, Arc<Snapshot>)>,
-    events: &SyncSender<Event>,
-) -> bool {
+fn work_on(work: Work<Arc<Snapshot>, Asked>, events: &SyncSender<Event>) -> bool {
     let event = match work {
         Work::Check(snapshot) => {
-            snapshot.analysis();
+            let _ = snapshot.analysis();
             if events.send(Event::Checked(Arc::clone(&snapshot))).is_err() {
                 return false;
             }
             // Lenses show what differs from the last release; the loop need not wait for that either.
-            snapshot.known().findings();
+            let _ = snapshot.known().findings();
             Event::Compared(snapshot)
         }
         Work::Answer(_, (request, snapshot)) if snapshot.is_checked() => {

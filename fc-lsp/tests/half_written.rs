@@ -22,7 +22,7 @@ fn workspace(path: &str) -> (Workspace, Uri, String) {
     let settings = Arc::new(Settings::read(&json!({})));
     let mut workspace = Workspace::new(project, settings, "2026-01-01".to_owned());
     // The state that is known while the text is half written.
-    workspace.snapshot().analysis();
+    let _ = workspace.snapshot().analysis();
     (workspace, uri, text)
 }
 

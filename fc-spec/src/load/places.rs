@@ -128,7 +128,7 @@ impl Places {
                 items.map(move |(at, (item, _))| (item, (part, at)))
             })
             .collect();
-        all.sort_by(|(a, _), (b, _)| a.cmp(b));
+        all.sort_by_key(|(item, _)| *item);
         all.dedup_by(|(later, _), (first, _)| later == first);
         all.into_iter().map(|(_, at)| at).collect()
     }
