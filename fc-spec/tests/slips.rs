@@ -12,6 +12,7 @@
 )]
 
 mod both_languages;
+mod declared_faults;
 mod syntax_support;
 
 use std::fmt::Write as _;
@@ -166,6 +167,24 @@ fn every_slip_is_named_in_both_languages() {
         }
     });
     assert!(objections.is_empty(), "{}", objections.join("\n"));
+}
+
+#[test]
+fn every_slip_lies_at_a_key_that_says_so() {
+    let mut wrong = Vec::new();
+    each_file(|_, text| {
+        for slip in Slip::all(text) {
+            let sources = slip.sources();
+            let (faults, mut raised) = (faults(&sources), declared_faults::Raised::new());
+            wrong.extend(declared_faults::undeclared(
+                &slip.title,
+                &sources,
+                &faults,
+                &mut raised,
+            ));
+        }
+    });
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// The first of its fixes is the likeliest: with it the fault is gone, and no other has come in its place.

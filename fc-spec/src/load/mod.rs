@@ -14,6 +14,8 @@ mod check;
 mod consequence;
 mod draft;
 mod edit;
+#[cfg(test)]
+mod examples;
 mod govern;
 pub(crate) mod grammar;
 mod inside;

@@ -6,12 +6,16 @@
 //! alone, not on any spec.
 
 mod convert;
+mod example;
+mod faults;
 mod reference;
 
 use crate::model::Dump;
 
 pub use reference::{Key, Part, Takes, Word, reference};
 
+#[cfg(test)]
+pub(crate) use reference::tables;
 pub(crate) use reference::words;
 
 /// The schema of the language, indented, with a newline at its end.

@@ -1,5 +1,7 @@
 //! From grammar tables to the reference of the language, in both languages.
 
+use super::{example, faults};
+use crate::diagnostic::FaultCode;
 use crate::load::grammar::unit::UNITS;
 use crate::load::grammar::{AnyKey, Doc, FIELD_KIND, File, Kind, Table};
 use crate::model::Text;
@@ -14,6 +16,10 @@ pub struct Part {
     pub name: Text,
     /// What it describes.
     pub text: Text,
+    /// A small one, as YAML. None of a set of words.
+    pub example: Option<&'static str>,
+    /// What can be wrong with a mapping of it as a whole.
+    pub faults: Vec<FaultCode>,
     /// Its keys, in the order in which they are best written.
     pub keys: Vec<Key>,
     /// Its words.
@@ -31,6 +37,12 @@ pub struct Key {
     pub text: Text,
     /// What may stand under it; where there are several, one of them.
     pub takes: Vec<Takes>,
+    /// What it is taken for where it is not there.
+    pub default: Option<&'static str>,
+    /// What may stand under it, as YAML. None where it is a mapping of another part, which has one.
+    pub example: Option<String>,
+    /// What can be wrong with what stands under it.
+    pub faults: Vec<FaultCode>,
 }
 
 /// What may stand under a key.
@@ -56,6 +68,20 @@ pub struct Word {
 /// The whole language, from a file of the spec to the last detail.
 #[must_use]
 pub fn reference() -> Vec<Part> {
+    let parts = tables().into_iter().map(|table| Part {
+        id: table.name,
+        name: both(Doc::new(table.name, table.name_zh)),
+        text: both(table.doc),
+        example: Some(table.example),
+        faults: faults::of_table(table),
+        keys: table.keys.iter().map(|one| key(table, one)).collect(),
+        words: Vec::new(),
+    });
+    parts.chain([types(), units()]).collect()
+}
+
+/// All mappings of the language.
+pub(crate) fn tables() -> Vec<&'static Table> {
     let mut tables: Vec<&Table> = vec![File::TABLE];
     let mut at = 0;
     while let Some(table) = tables.get(at).copied() {
@@ -71,14 +97,7 @@ pub fn reference() -> Vec<Part> {
             }
         }
     }
-    let parts = tables.into_iter().map(|table| Part {
-        id: table.name,
-        name: both(Doc::new(table.name, table.name_zh)),
-        text: both(table.doc),
-        keys: table.keys.iter().map(key).collect(),
-        words: Vec::new(),
-    });
-    parts.chain([types(), units()]).collect()
+    tables
 }
 
 /// The words of which one may stand where a value of this kind does.
@@ -103,6 +122,8 @@ fn types() -> Part {
             "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
             "内置类型或已声明的类型名；`[T]` 是它的列表；后面加 `?` 表示字段可选。",
         )),
+        example: None,
+        faults: Vec::new(),
         keys: Vec::new(),
         words: PLAIN.iter().chain(numbers).map(word).collect(),
     }
@@ -142,17 +163,22 @@ fn units() -> Part {
             "A unit of measurement, as it is printed.",
             "计量单位，按印出的样子书写。",
         )),
+        example: None,
+        faults: Vec::new(),
         keys: Vec::new(),
         words: UNITS.iter().map(word).collect(),
     }
 }
 
-fn key(key: &AnyKey) -> Key {
+fn key(table: &Table, key: &AnyKey) -> Key {
     Key {
         name: key.name,
         required: key.required,
         text: both(key.doc),
         takes: takes(&key.kind),
+        default: key.said.default,
+        example: example::of(key),
+        faults: faults::of_key(table, key),
     }
 }
 

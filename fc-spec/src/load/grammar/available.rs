@@ -9,13 +9,13 @@ grammar! {
     AVAILABILITY: Availability = "availability" "适用范围" {
         /// For whom something may be: kinds of app, by name.
         /// 可以面向谁：各种 app，以名称为键。
-        optional audiences: Entries<Name, Audience, 1>;
+        optional audiences: Entries<Name, Audience, 1>, faults [UnusedAvailability];
         /// Lines of machines, by name.
         /// 机型，以名称为键。
-        optional hardware: Entries<Name, Machine, 1>;
+        optional hardware: Entries<Name, Machine, 1>, faults [UnusedAvailability];
         /// What is counted in releases, such as a firmware, by name.
         /// 有版本号的东西，例如某种固件，以名称为键。
-        optional releases: Entries<Name, Series, 1>;
+        optional releases: Entries<Name, Series, 1>, faults [UnusedAvailability];
     }
 
     /// A kind of app for which some things are and others are not.
@@ -41,15 +41,19 @@ grammar! {
     AVAILABLE: Available = "limit" "适用限制" {
         /// Only these audiences have it; `fc generate --for` leaves it out for others.
         /// 只面向这些受众；用 `fc generate --for` 为其他受众生成时不包含它。
-        optional r#for: List<Name, 1>;
+        optional r#for: List<Name, 1>,
+            example "[product_app]",
+            faults [UnknownAvailability, LimitsNothing, LimitBeyondOperation];
         /// Only these lines of machines have it.
         /// 只有这些机型才有。
-        optional hardware: List<Name, 1>;
+        optional hardware: List<Name, 1>, example "[second_generation]", faults [UnknownAvailability];
         /// The first release that has it, by series: `{ adp: "3.8" }`.
         /// 从哪个版本开始有，以版本系列为键：`{ adp: "3.8" }`。
-        optional from: Entries<Name, Str, 1>;
+        optional from: Entries<Name, Str, 1>, example r#"{ adp: "3.8" }"#, faults [UnknownAvailability, BadRelease];
         /// The last release that has it, by series.
         /// 到哪个版本为止还有，以版本系列为键。
-        optional until: Entries<Name, Str, 1>;
+        optional until: Entries<Name, Str, 1>,
+            example r#"{ adp: "4.2" }"#,
+            faults [UnknownAvailability, BadRelease, ReleasesOutOfOrder];
     }
 }

@@ -13,10 +13,10 @@ grammar! {
     TEXT: Text = "text" "文本" {
         /// In Chinese.
         /// 中文。
-        required zh: Str;
+        required zh: Str, example "电池电量", faults [EmptyText, TextSpacing, NotChinese, Placeholder];
         /// In English.
         /// 英文。
-        required en: Str;
+        required en: Str, example "Battery level", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
     }
 
     /// Keys that stand in many places.
@@ -30,22 +30,22 @@ grammar! {
         optional since: Date;
         /// For whom it is, on which machines and in which releases; everyone and everywhere if it is not said.
         /// 面向谁、哪些机型、哪些版本；不写时不作限制。
-        optional available: Available;
+        optional available: Available, faults [LimitsNothing, LimitedButRequired];
         /// Its dated changes.
         /// 历次变更，各有日期。
         optional changes: List<Change>;
         /// The spec's answers to gaps and mistakes of the source document.
         /// 对源文档中缺失和错误之处的答复。
-        optional answers: List<Answer>;
+        optional answers: List<Answer>, faults [AnswerToNothing];
         /// Other words that readers know it by; shown on its page and found by the search.
         /// 别的叫法：显示在它的页面上，也能用来搜索。
         optional aliases: Aliases;
         /// Name in code, if the one derived from the wire key is not suitable.
         /// 代码中的名称；由键名得出的名称不合适时才写。
-        optional name: Name;
+        optional name: Name, example "battery_level";
         /// Where it is kept; of an operation, what it reads and sets. Declared under `stores`.
         /// 内容保存在哪里；接口则指它读写的内容。存储位置在 `stores` 中声明。
-        optional kept: Name;
+        optional kept: Name, example "config_file", faults [UnknownStore];
     }
 
     /// Other words for it, in both languages.
@@ -53,10 +53,10 @@ grammar! {
     ALIASES: Aliases = "list of aliases" "别名" {
         /// In Chinese.
         /// 中文。
-        required zh: List<Str, 1>;
+        required zh: List<Str, 1>, example "[电量, 剩余电量]", faults [EmptyText, TextSpacing];
         /// In English.
         /// 英文。
-        required en: List<Str, 1>;
+        required en: List<Str, 1>, example "[charge, state of charge]", faults [EmptyText, TextSpacing];
     }
 
     /// A dated change.
@@ -73,19 +73,19 @@ grammar! {
     ANSWER: Answer = "answer" "答复" {
         /// Ids of the conflicts it answers; an answer without any says in `about` what it answers.
         /// 所答复的疑问的编号；没有编号的答复用 `about` 说明所答复的内容。
-        optional ids: List<ConflictId, 1>;
+        optional ids: List<ConflictId, 1>, faults [UnknownConflict];
         /// What kind of answer it is.
         /// 答复的种类。
         required r#as: AnswerKind;
         /// The facts it governs, and what the spec says of each until the owner has answered: `code: open`, `request: inferred`, or keys from here on and a value, such as `response.data.x.unit: absent`.
         /// 它约束的内容，以及负责人答复之前规范中的写法：`code: open`、`request: inferred`，或从此处起的键路径和值，例如 `response.data.x.unit: absent`。
-        optional about: Entries<Str, Scalar, 1>;
+        optional about: Entries<Str, Scalar, 1>, example "{ code: open }", faults [GovernsNothing, GovernedFact];
         /// Whether it says what the runtime does, which no value of the spec changes.
         /// 说的是不是运行库的做法：规范中没有可改的值。
-        optional runtime: Bool;
+        optional runtime: Bool, default "false";
         /// The owner's word, which settles it.
         /// 负责人的确认；有了它，疑问即告解决。
-        optional confirmed: Confirmed;
+        optional confirmed: Confirmed, faults [SettledButUntouched];
         use TEXT.zh, TEXT.en;
     }
 
@@ -94,14 +94,14 @@ grammar! {
     CONFIRMED: Confirmed = "confirmation" "确认" {
         /// Who said it.
         /// 确认人。
-        required by: Str;
+        required by: Str, example "Li Wei";
         use CHANGE.date;
         /// Where it can be looked up, such as a mail or a ticket.
         /// 凭据，例如邮件、工单。
-        optional reference: Str;
+        optional reference: Str, example "mail of 2024-05-06";
         /// In their own words, in the language they were said.
         /// 原话，照录。
-        optional reply: Str;
+        optional reply: Str, example "单位是毫米";
     }
 
     /// A gap or slip of the source document.
@@ -109,7 +109,7 @@ grammar! {
     CONFLICT: Conflict = "conflict" "疑问" {
         /// What it concerns, such as `frame`, `codes`, `fields`.
         /// 涉及什么，例如 `frame`、`codes`、`fields`。
-        required category: Str;
+        required category: Str, example "fields";
         /// How serious it is.
         /// 影响有多大。
         required severity: Severity;
@@ -121,7 +121,7 @@ grammar! {
     FIELD_DEPRECATED: FieldDeprecated = "field deprecation" "字段停用" {
         /// Since when.
         /// 从什么时候起。
-        optional since: Date;
+        optional since: Date, faults [DatesOutOfOrder];
         /// Last day or month in which it is there.
         /// 保留到哪一天或哪个月为止。
         optional sunset: Date;
@@ -134,7 +134,7 @@ grammar! {
         use FIELD_DEPRECATED.since, FIELD_DEPRECATED.sunset, TEXT.zh, TEXT.en;
         /// Operation to use instead.
         /// 改用的接口。
-        optional replaced_by: Name;
+        optional replaced_by: Name, example "get_battery", faults [UnknownOperation];
     }
 }
 

@@ -38,61 +38,69 @@ grammar! {
     FIELD: Field = "field" "字段" {
         /// Its type, followed by `?` if the field is optional.
         /// 类型；可选字段在后面加 `?`。
-        required r#type: Type;
+        required r#type: Type, example "u16?";
         /// Whether it may be absent.
         /// 是否可以没有。
-        optional optional: Bool;
+        optional optional: Bool, default "false";
         /// Fields beside it and the values, as they are sent, under which it is there; all must fit. A required field is always there, but valid only then.
         /// 旁边的字段取哪些值时（按发送的形式书写）才有这个字段，须全部符合；必填字段总是有，但只在这时有效。
-        optional when: Condition;
+        optional when: Condition,
+            example "{ mode: 1 }",
+            faults [UnknownSibling, OwnCondition, ConditionOnOptional, ConditionOnWrongType, ConditionValue, ConditionTwice];
         /// The opposite of `when`: it is there, or valid, unless all of these fit.
         /// 与 `when` 相反：全部符合时没有这个字段，或者无效。
-        optional unless: Condition;
+        optional unless: Condition,
+            example "{ mode: [0, 2] }",
+            faults [UnknownSibling, OwnCondition, ConditionOnOptional, ConditionOnWrongType, ConditionValue, ConditionTwice, WhenAndUnless];
         /// Values of an enum that this field takes, as they are sent. Any other is refused, also where the enum is open.
         /// 这个字段只取枚举的哪些值，按发送的形式书写；其他的值一律拒收，开放的枚举也不例外。
-        optional only: List<Scalar, 1>;
+        optional only: List<Scalar, 1>, example "[0, 1]", faults [OnlyOnWrongType, OnlyValue, OnlyTwice, NothingLeft];
         use COMMON.available;
         /// The entity of which its value is the id, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
-        optional refers: Name;
+        optional refers: Name, example "station", faults [UnknownEntity, RefersOnWrongType];
         use COMMON.kept, COMMON.name;
         /// Other wire keys that the decoder accepts for it.
         /// 解析时还接受哪些键名。
-        optional also: List<Str, 1>;
+        optional also: List<Str, 1>, example "[id]", faults [DuplicateWireKey];
         /// How it is sent, if that differs from its type.
         /// 发送的形式；与类型不同时才写。
-        optional wire: OtherForm;
+        optional wire: OtherForm, faults [WireOnWrongType];
         /// The coordinate system in which its positions are given; declared under `coordinates`.
         /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
-        optional coordinates: Name;
+        optional coordinates: Name,
+            example "map",
+            faults [UnknownCoordinates, CoordinatesOnWrongType, CoordinatesWithoutLength, CoordinatesTwice];
         use COMMON.since;
         /// Smallest value of a number.
         /// 数值的最小值。
-        optional min: Number;
+        optional min: Number, example "0", faults [MinAboveMax, BoundsOnWrongType, BoundsBeyondType];
         /// Largest value of a number.
         /// 数值的最大值。
-        optional max: Number;
+        optional max: Number, example "100", faults [BoundsOnWrongType, BoundsBeyondType];
         /// Characters of a string, bytes of a base64 value or items of a list: an exact number, or minimum and maximum.
         /// 字符串的字符数、base64 的字节数或列表的项数：写一个数，或写最小值和最大值。
-        optional length: Length;
+        optional length: Length, example "[1, 20]", faults [LengthOnWrongType, LengthInverted];
         /// Regular expression that the whole string must match.
         /// 正则表达式，整个字符串都要匹配。
-        optional pattern: Str;
+        optional pattern: Str, example r#""[A-Z]{2}[0-9]+""#, faults [PatternOnWrongType, BadPattern];
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
-        optional unit: Unit;
+        optional unit: Unit, example "mm";
         /// Where the decoder is lenient; the encoder is not.
         /// 在哪一点上放宽解析；发送时不放宽。
-        optional quirk: List<Quirk, 1>;
+        optional quirk: List<Quirk, 1>, faults [QuirkOnWrongType];
         /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
         /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
-        optional default: Scalar;
+        optional default: Scalar, example "0", faults [DefaultOnRequired, DefaultType, DefaultConstraint];
         /// Never shown in logs.
         /// 不写进日志。
-        optional sensitive: Bool;
+        optional sensitive: Bool, default "false";
         /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
         /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
-        optional example: Json;
+        optional example: Json,
+            example "7",
+            faults [ExampleType, ExampleRange, ExampleLength, ExamplePattern, ExampleValue, AbsentRequired];
         use TEXT.zh, TEXT.en;
         /// Additional notes, such as special values and origin.
         /// 补充说明，例如特殊取值、出处。
@@ -109,15 +117,15 @@ grammar! {
         use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also;
         /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
         /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
-        optional type_name: TypeName;
+        optional type_name: TypeName, example "MapHeader";
         use FIELD.coordinates, COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example;
         // The key `data` has a default text, so that the table cannot ask for one; a check does.
         /// In Chinese; only `data` goes without.
         /// 中文；只有 `data` 可以不写。
-        optional zh: Str;
+        optional zh: Str, example "地图信息", faults [EmptyText, TextSpacing, NotChinese, Placeholder];
         /// In English; only `data` goes without.
         /// 英文；只有 `data` 可以不写。
-        optional en: Str;
+        optional en: Str, example "About the map", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
         use FIELD.note, FIELD.deprecated;
         /// Its keys, in the order sent.
         /// 它的键，按发送的顺序书写。
@@ -144,7 +152,7 @@ grammar! {
             COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example, OBJECT.zh, OBJECT.en, FIELD.note, FIELD.deprecated;
         /// The objects, in the order in which they are tried.
         /// 各种对象，按尝试的顺序书写。
-        required one_of: Entries<Name, Variant>;
+        required one_of: Entries<Name, Variant>, faults [EmptyEnum, SameVariants];
         use COMMON.answers;
     }
 
@@ -153,7 +161,7 @@ grammar! {
     NAMED_VARIANT: NamedVariant = "variant" "选项" {
         /// Its struct.
         /// 它的结构。
-        required r#type: TypeName;
+        required r#type: TypeName, example "Station", faults [UnknownType, RecursiveType, NotAStruct];
         use COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated;
     }
 
@@ -177,14 +185,14 @@ grammar! {
         required r#enum: EnumType;
         /// `true`: an unknown value is an error instead of being kept.
         /// 写 `true` 时，未知的值算错误，不予保留。
-        optional closed: Bool;
+        optional closed: Bool, default "false";
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.since;
         /// The values are the states of a process; what their `then` claims: the normal order, or every change there is.
         /// 取值是一个过程的各个状态；这里说明 `then` 写的是正常顺序，还是全部的切换。
-        optional order: StateOrder;
+        optional order: StateOrder, faults [OrderWithoutStates];
         /// Its values, each under the value that is sent.
         /// 各个取值，以发送的值为键。
-        required values: Entries<Scalar, EnumValue>;
+        required values: Entries<Scalar, EnumValue>, faults [EnumValueType, EmptyEnum, UnreachedState];
         use COMMON.changes, COMMON.answers;
     }
 
@@ -193,19 +201,21 @@ grammar! {
     ENUM_VALUE: EnumValue = "enum value" "枚举值" {
         /// Name in code.
         /// 代码中的名称。
-        required name: Name;
+        required name: Name, example "moving", faults [DuplicateName];
         /// Where the process begins.
         /// 过程从这里开始。
-        optional start: Bool;
+        optional start: Bool, default "false";
         /// Names of the values that follow it; the enum's `order` says whether normally or exclusively.
         /// 接在它后面的取值的名称；是正常情况下的还是全部的，由枚举的 `order` 说明。
-        optional then: List<Name, 1>;
+        optional then: List<Name, 1>,
+            example "[arrived, failed]",
+            faults [UnknownValue, OrderWithoutStates, FollowedFinal];
         /// Where the process ends: nothing follows.
         /// 过程到此结束，其后没有别的取值。
-        optional r#final: Bool;
+        optional r#final: Bool, default "false";
         /// It means that something failed.
         /// 表示失败或异常。
-        optional error: Bool;
+        optional error: Bool, default "false";
         use COMMON.available, COMMON.since, TEXT.zh, TEXT.en;
     }
 
@@ -221,10 +231,10 @@ grammar! {
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.kept;
         /// Struct of a row.
         /// 一行的结构。
-        required row: TypeName;
+        required row: TypeName, example "Station", faults [NotAStruct];
         /// Rows, in wire form.
         /// 各行，按发送的形式书写。
-        required rows: List<Json>;
+        required rows: List<Json>, example "[{ id: 1, name: dock }]", faults [RowMismatch];
         use COMMON.answers;
     }
 }

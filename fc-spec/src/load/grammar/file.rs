@@ -22,19 +22,22 @@ grammar! {
         optional group: Group;
         /// Commands of the app, by name.
         /// app 的指令，以名称为键。
-        optional commands: Entries<Name, Command>;
+        optional commands: Entries<Name, Command>,
+            faults [MisplacedEntry, DuplicateOperation, DuplicateType, ReservedName];
         /// Reports of the robot, by name.
         /// 机器人的主动上报，以名称为键。
-        optional reports: Entries<Name, Report>;
+        optional reports: Entries<Name, Report>,
+            faults [MisplacedEntry, DuplicateOperation, DuplicateType, ReservedName, AmbiguousState];
         /// Streams, by name.
         /// 数据流，以名称为键。
-        optional streams: Entries<Name, Stream>;
+        optional streams: Entries<Name, Stream>,
+            faults [MisplacedEntry, DuplicateOperation, DuplicateType, ReservedName];
         /// Structs, enums and choices, by name.
         /// 结构、枚举和多选一，以名称为键。
-        optional types: Entries<TypeName, TypeDef>;
+        optional types: Entries<TypeName, TypeDef>, faults [MisplacedEntry, DuplicateType, UnusedType, NothingLeft];
         /// Published tables of constants, by id.
         /// 公布的常量表，以 id 为键。
-        optional tables: Entries<Name, Constants>;
+        optional tables: Entries<Name, Constants>, faults [DuplicateTable];
         /// Name and description of the protocol.
         /// 协议的名称和说明。
         optional protocol: Protocol;
@@ -52,7 +55,7 @@ grammar! {
         optional envelope: Envelope;
         /// Result codes, by number.
         /// 结果码，以数值为键。
-        optional results: Entries<ResultNumber, ResultCode>;
+        optional results: Entries<ResultNumber, ResultCode>, faults [RoleMissing];
         /// How long the two sides wait.
         /// 双方各等多久。
         optional calls: Calls;
@@ -67,7 +70,7 @@ grammar! {
         optional codes: Codes;
         /// Numbers of the sections missing from the source document.
         /// 源文档中缺失的各节的节号。
-        optional sections: Entries<Int<u16, 1>, Section>;
+        optional sections: Entries<Int<u16, 1>, Section>, faults [SectionRetained, SectionGap];
         /// For whom things may be, and where. At most one in a spec.
         /// 可以面向谁、用于哪里。整个规范最多一份。
         optional availability: Availability;
@@ -76,22 +79,22 @@ grammar! {
         optional changes: List<Change>;
         /// What ids stand for, by name. At most one list in a spec.
         /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
-        optional entities: Entries<Name, Entity, 1>;
+        optional entities: Entries<Name, Entity, 1>, faults [UnusedEntity];
         /// Coordinate systems, by name. At most one list in a spec.
         /// 坐标系，以名称为键。整个规范最多一份。
-        optional coordinates: Entries<Name, CoordinateSystem, 1>;
+        optional coordinates: Entries<Name, CoordinateSystem, 1>, faults [UnusedCoordinates];
         /// Where things are kept, by name. At most one list in a spec.
         /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
-        optional stores: Entries<Name, Store, 1>;
+        optional stores: Entries<Name, Store, 1>, faults [UnusedStore];
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
         /// Findings that are accepted for a time, by rule and fingerprint as `fc diff` prints them. At most one list in a spec.
         /// 暂时接受的提示，以 `fc diff` 给出的规则号加指纹为键。整个规范最多一份。
-        optional waivers: Entries<Str, Waiver>;
+        optional waivers: Entries<Str, Waiver>, faults [BadWaiver];
         /// Gaps and mistakes in the source document that the spec has to answer.
         /// 源文档中需要规范答复的缺失和错误。
-        optional conflicts: Entries<ConflictId, Conflict>;
+        optional conflicts: Entries<ConflictId, Conflict>, faults [UnansweredConflict];
     }
 }
 

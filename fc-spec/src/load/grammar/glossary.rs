@@ -1,13 +1,18 @@
 //! `glossary:`: the words of the protocol.
 
-use super::common::{BothLanguages, TEXT};
+use super::common::BothLanguages;
 use super::form::{List, Str};
 
 grammar! {
     /// A word of the protocol, in both languages. The pages link its first use to what it means.
     /// 一条术语，中英文都写。各页中第一次出现时链接到它的解释。
     TERM: Term = "term" "术语" {
-        use TEXT.zh, TEXT.en;
+        /// In Chinese.
+        /// 中文。
+        required zh: Str, example "充电桩", faults [SharedWord, EmptyText, TextSpacing, NotChinese, Placeholder];
+        /// In English.
+        /// 英文。
+        required en: Str, example "dock", faults [SharedWord, EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
         /// Other forms of it, which are linked as well: synonyms, plurals.
         /// 别的写法，出现时同样链接：同义词、英文复数。
         optional also: OtherForms;
@@ -21,9 +26,9 @@ grammar! {
     OTHER_FORMS: OtherForms = "other forms" "别的写法" {
         /// In Chinese.
         /// 中文。
-        optional zh: List<Str, 1>;
+        optional zh: List<Str, 1>, example "[充电座]", faults [SharedWord, EmptyText, TextSpacing];
         /// In English.
         /// 英文。
-        optional en: List<Str, 1>;
+        optional en: List<Str, 1>, example "[docks, docking stations]", faults [SharedWord, EmptyText, TextSpacing];
     }
 }

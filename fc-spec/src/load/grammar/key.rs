@@ -1,7 +1,7 @@
 //! A key of the language, and how what stands under it is read.
 
 use super::form::Form;
-use super::kind::{AnyKey, Doc};
+use super::kind::{AnyKey, Doc, Said};
 use crate::syntax::{Entry, Items, Node};
 use std::marker::PhantomData;
 
@@ -12,6 +12,7 @@ pub(crate) struct Key<F> {
     pub name: &'static str,
     required: bool,
     doc: Doc,
+    said: Said,
     form: PhantomData<fn() -> F>,
 }
 
@@ -25,7 +26,7 @@ impl<F> Copy for Key<F> {}
 
 impl<F: Form> Key<F> {
     /// A key by the name of its field, which for a word of Rust is a raw one.
-    pub(super) const fn new(field: &'static str, required: bool, doc: Doc) -> Self {
+    pub(super) const fn new(field: &'static str, required: bool, doc: Doc, said: Said) -> Self {
         let name = match field.as_bytes() {
             [b'r', b'#', ..] => field.split_at(2).1,
             _ => field,
@@ -34,6 +35,7 @@ impl<F: Form> Key<F> {
             name,
             required,
             doc,
+            said,
             form: PhantomData,
         }
     }
@@ -44,6 +46,7 @@ impl<F: Form> Key<F> {
             required: self.required,
             kind: F::KIND,
             doc: self.doc,
+            said: self.said,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a declaration says, as data: what may stand where, and one sentence about it.
 
+use crate::diagnostic::FaultCode;
 use crate::vocabulary::Meaning;
 
 /// What a value may be.
@@ -101,6 +102,8 @@ pub(crate) struct Table {
     pub name_zh: &'static str,
     /// What it describes.
     pub doc: Doc,
+    /// A small one, as YAML.
+    pub example: &'static str,
     /// Its keys, in the order in which they are best written.
     pub keys: &'static [AnyKey],
 }
@@ -123,4 +126,26 @@ pub(crate) struct AnyKey {
     pub kind: Kind,
     /// One sentence.
     pub doc: Doc,
+    /// What else is said of it.
+    pub said: Said,
+}
+
+/// What a declaration may say of a key beside its kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Said {
+    /// What the loader takes it for where it is not there.
+    pub default: Option<&'static str>,
+    /// A value, as YAML.
+    pub example: Option<&'static str>,
+    /// Faults of its value that do not follow from its kind.
+    pub faults: &'static [FaultCode],
+}
+
+impl Said {
+    /// What needs no words.
+    pub const NOTHING: Self = Self {
+        default: None,
+        example: None,
+        faults: &[],
+    };
 }

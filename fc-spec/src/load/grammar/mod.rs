@@ -8,16 +8,22 @@
 /// Declares mappings with known keys. The first line of each comment is English, the second Chinese; `use` puts
 /// keys here that are declared elsewhere. Each makes a constant by whose fields the keys are read, and the
 /// [`Table`] of them all, in the order in which they are best written.
+///
+/// Behind the form of a key may stand what the loader takes it for where it is not there (`default`), an example in YAML,
+/// which a kind of which any value is as good has of itself, and the faults that more than its kind can raise.
 macro_rules! grammar {
     (@must required) => { true };
     (@must optional) => { false };
+    (@maybe) => { None };
+    (@maybe $said:expr) => { Some($said) };
     ($(
         #[doc = $en:literal] #[doc = $zh:literal]
         $KEYS:tt: $Keys:ident = $name:literal $name_zh:literal {
             $(use $($first:expr),+;)?
             $(
                 #[doc = $key_en:literal] #[doc = $key_zh:literal]
-                $must:ident $key:ident: $Form:ty;
+                $must:ident $key:ident: $Form:ty
+                    $(, default $default:expr)? $(, example $example:literal)? $(, faults [$($fault:ident),+])?;
                 $(use $($next:expr),+;)?
             )*
         }
@@ -37,6 +43,11 @@ macro_rules! grammar {
                 stringify!($key),
                 grammar!(@must $must),
                 $crate::load::grammar::kind::Doc::new($key_en, $key_zh),
+                $crate::load::grammar::kind::Said {
+                    default: grammar!(@maybe $($default)?),
+                    example: grammar!(@maybe $($example)?),
+                    faults: &[$($($crate::diagnostic::FaultCode::$fault),+)?],
+                },
             ),)*
         };
 
@@ -46,6 +57,7 @@ macro_rules! grammar {
                 name: $name,
                 name_zh: $name_zh,
                 doc: $crate::load::grammar::kind::Doc::new($en, $zh),
+                example: include_str!(concat!("examples/", stringify!($Keys), ".yaml")),
                 keys: &[$($($first.any(),)+)? $($KEYS.$key.any(), $($($next.any(),)+)?)*],
             };
         }

@@ -7,6 +7,7 @@ use super::form::{
 };
 use super::key::Key;
 use super::wire::Ack;
+use crate::model;
 use crate::vocabulary::{Effect, Side};
 
 /// The key of a body.
@@ -14,13 +15,16 @@ pub(crate) type BodyKey = Key<Body>;
 /// The key of how sure a body is.
 pub(crate) type StateKey = Key<(State, BodyState)>;
 
+/// How sure a body or a fact is of which nothing is said.
+pub(crate) const STATED: model::BodyState = model::BodyState::Stated;
+
 grammar! {
     /// A group of operations that belong together.
     /// 一组相关的接口。
     GROUP: Group = "group" "分组" {
         /// Short name; the name of the Rust module.
         /// 短名，也是 Rust 模块的名称。
-        required id: Name;
+        required id: Name, example "navigation", faults [DuplicateGroup];
         use TEXT.zh, TEXT.en, COMMON.about;
     }
 
@@ -29,22 +33,23 @@ grammar! {
     OPERATION: Operation = "operation" "接口" {
         /// Code in the frame header, such as `0x0A01`; `unassigned` until there is one.
         /// 包头里的功能码，例如 `0x0A01`；还没有时写 `unassigned`。
-        required code: (Code, Unassigned, InferredCode);
+        required code: (Code, Unassigned, InferredCode),
+            faults [DuplicateCode, RetiredCode, CodeOutsideRanges, CodeInWrongRange];
         /// Where it comes from in the source document.
         /// 出自源文档的哪里。
         required source: Source;
         /// Result text that the source prints with it; composed examples show it.
         /// 源文档中随它印出的结果说明；生成的示例会显示。
-        optional result_text: Str;
-        /// Confidence in the request; `stated` by default.
-        /// 请求有多可靠；不写时为 `stated`。
-        optional request_state: (State, BodyState);
-        /// Confidence in the response; `stated` by default.
-        /// 响应有多可靠；不写时为 `stated`。
-        optional response_state: (State, BodyState);
+        optional result_text: Str, example "操作成功";
+        /// Confidence in the request.
+        /// 请求有多可靠。
+        optional request_state: (State, BodyState), default STATED.name();
+        /// Confidence in the response.
+        /// 响应有多可靠。
+        optional response_state: (State, BodyState), default STATED.name();
         /// Result codes it may return besides success; with what one means here, where that is known.
         /// 除成功以外可能返回的结果码；知道在这里是什么意思时一并写明。
-        optional errors: List<(ResultNumber, DeclaredError)>;
+        optional errors: List<(ResultNumber, DeclaredError)>, example "[2, 3]", faults [UnknownResult, SuccessAsError];
         /// Withdrawn.
         /// 已停用。
         optional deprecated: Deprecated;
@@ -59,18 +64,20 @@ grammar! {
         required effect: (Effect, InferredEffect);
         /// Reports that the robot sends because of it, beside the response: those of which the source says so. Each by its name, or with the keys that tie it to the command.
         /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。写名称；上报与指令有字段相对应时，连同字段一起写。
-        optional sets_off: List<(Name, SetOff), 1>;
+        optional sets_off: List<(Name, SetOff), 1>,
+            example "[task_finished]",
+            faults [UnknownOperation, NotAReport, DuplicateItem];
         /// What has to hold before the robot accepts it, as far as the source says so.
         /// 机器人受理它的条件；只写源文档写明的。
-        optional accepted: Precondition;
+        optional accepted: Precondition, faults [NoPrecondition];
         use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source, OPERATION.result_text, OPERATION.errors, OPERATION.request_state;
         /// Keys of the request besides the envelope, in the order sent.
         /// 请求中公共字段以外的键，按发送的顺序书写。
-        optional request: Body;
+        optional request: Body, faults [EnvelopeKey, BodyTooLarge, OpenBodyFields];
         use OPERATION.response_state;
         /// Keys of the response besides the envelope, in the order sent.
         /// 响应中公共字段以外的键，按发送的顺序书写。
-        optional response: Body;
+        optional response: Body, faults [EnvelopeKey, BodyTooLarge, OpenBodyFields];
         use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
@@ -79,10 +86,12 @@ grammar! {
     SET_OFF: SetOff = "report set off" "引起的上报" {
         /// Name of the report.
         /// 上报的名称。
-        required report: Name;
+        required report: Name, example "task_finished", faults [UnknownOperation, NotAReport, DuplicateItem];
         /// Keys of the command, each with the key of the report that has the same value, such as `response.data.taskId: data.taskId`; an integer or a string, of the same type.
         /// 指令的字段与上报中取值相同的字段，例如 `response.data.taskId: data.taskId`；为整数或字符串，类型相同。
-        required tied: Entries<Str, Str, 1>;
+        required tied: Entries<Str, Str, 1>,
+            example "{ response.data.taskId: data.taskId }",
+            faults [UnknownBodyKey, TieType];
     }
 
     /// A report: the robot sends it by itself, the app acknowledges.
@@ -92,21 +101,21 @@ grammar! {
             OPERATION.result_text, OPERATION.errors;
         /// When the robot sends it, as far as the source says so.
         /// 机器人在什么时候上报；只写源文档写明的。
-        optional cadence: ReportCadence;
+        optional cadence: ReportCadence, faults [CadenceRules];
         /// How often it is resent until it is acknowledged.
         /// 没有应答时重发几次。
         optional ack: Ack;
         use OPERATION.request_state;
         /// Keys of the report besides the envelope, in the order sent.
         /// 上报中公共字段以外的键，按发送的顺序书写。
-        optional body: Body;
+        optional body: Body, faults [EnvelopeKey, BodyTooLarge, OpenBodyFields];
         /// The key that says how far a process has come, such as `data.status`; needed only where several have states.
         /// 哪个字段表示过程进行到哪一步，例如 `data.status`；只有一个字段有状态时不必写。
-        optional state_in: Str;
+        optional state_in: Str, example "data.status", faults [UnknownBodyKey, NotAState];
         use OPERATION.response_state;
         /// Keys of the acknowledgement besides the envelope, in the order sent.
         /// 应答中公共字段以外的键，按发送的顺序书写。
-        optional response: Body;
+        optional response: Body, faults [EnvelopeKey, BodyTooLarge, OpenBodyFields];
         use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
@@ -119,17 +128,17 @@ grammar! {
         required from: Side;
         /// Command after which it is sent. The stream may have the code of this command: the data type tells their frames apart.
         /// 收到哪条指令之后开始发送。数据流可以与这条指令共用功能码，两者的帧靠数据类型区分。
-        optional started_by: Name;
+        optional started_by: Name, example "start_mapping", faults [UnknownOperation, NotACommand];
         /// Command after which it is no longer sent; it may be the same one.
         /// 收到哪条指令之后停止发送，可以就是开始它的那一条。
-        optional stopped_by: Name;
+        optional stopped_by: Name, example "stop_mapping", faults [UnknownOperation, NotACommand];
         /// Media type of the bytes in a frame, such as `image/png`. What is JSON has a `body` instead.
         /// 每帧所装字节的媒体类型，例如 `image/png`；内容是 JSON 时改写 `body`。
-        optional content: MediaType;
+        optional content: MediaType, faults [StreamContent];
         use COMMON.kept, COMMON.since, COMMON.available, OPERATION.source;
         /// Keys of the JSON object in each frame, in the order sent. There is no envelope beside them.
         /// 每帧是一个 JSON 对象：列出它的键，按发送的顺序书写；旁边没有公共字段。
-        optional body: Body;
+        optional body: Body, faults [BodyTooLarge];
         use OPERATION.deprecated, COMMON.changes, COMMON.answers;
     }
 
@@ -138,7 +147,7 @@ grammar! {
     CODE: InferredCode = "inferred code" "推断的功能码" {
         /// The code.
         /// 功能码。
-        required value: Code;
+        required value: Code, faults [DuplicateCode, RetiredCode, CodeOutsideRanges, CodeInWrongRange];
         /// Its confidence.
         /// 有多可靠。
         required state: FactState;
@@ -158,10 +167,14 @@ grammar! {
     ACCEPTED: Precondition = "precondition" "受理条件" {
         /// `any`, or enums with the values that each must have, as they are sent. The enums are those that reports and responses carry.
         /// `any`，或若干枚举和各自须为的取值，按发送的形式书写。枚举须在上报或响应中出现。
-        optional r#in: (AnyState, Entries<TypeName, List<Scalar, 1>, 1>);
+        optional r#in: (AnyState, Entries<TypeName, List<Scalar, 1>, 1>),
+            example "{ RobotState: [1, 2] }",
+            faults [UnknownType, NotAnEnum, UnseenState, StateValue, DuplicateItem];
         /// Commands to be sent first.
         /// 须先发送的指令。
-        optional after: List<Name, 1>;
+        optional after: List<Name, 1>,
+            example "[start_mapping]",
+            faults [UnknownOperation, NotACommand, ComesBeforeItself];
         /// Additional notes.
         /// 补充说明。
         optional note: BothLanguages;
@@ -172,16 +185,16 @@ grammar! {
     CADENCE: ReportCadence = "cadence" "上报时机" {
         /// At each change of this field, named by its wire keys from the body on, such as `data.status`; through lists into their items.
         /// 该字段每变化一次上报一次；字段从正文起按键名书写，例如 `data.status`，遇到列表则指其中的每一项。
-        optional on_change: Str;
+        optional on_change: Str, example "data.status", faults [UnknownField];
         /// At each step of a number.
         /// 数值每变化一定的量上报一次。
-        optional step: ReportStep;
+        optional step: ReportStep, faults [CadenceRules];
         /// At intervals of this many milliseconds. An app counts as late what comes more than one and a half intervals after the last.
         /// 每隔多少毫秒上报一次。与上一次相隔超过一个半间隔的，app 计为迟到。
-        optional every_ms: Int<u32, 1>;
+        optional every_ms: Int<u32, 1>, example "1000", faults [CadenceRules];
         /// At the latest this many milliseconds after a command that sets it off (`sets_off`).
         /// 最晚在引起它的指令（见 `sets_off`）之后多少毫秒上报。
-        optional within_ms: Int<u32, 1>;
+        optional within_ms: Int<u32, 1>, example "500", faults [CadenceRules, DeadlineOfNothing];
     }
 
     /// A number of a report, and how far it moves from one report to the next.
@@ -189,10 +202,10 @@ grammar! {
     STEP: ReportStep = "step" "步长" {
         /// The field, named as in `on_change`.
         /// 字段，写法与 `on_change` 相同。
-        required field: Str;
+        required field: Str, example "data.battery", faults [UnknownField, StepOnWrongType];
         /// How far, greater than 0.
         /// 每次变化的量，大于 0。
-        required by: Number;
+        required by: Number, example "5", faults [StepOfNothing];
     }
 
     /// The confidence of a body, and the reason.
@@ -209,7 +222,7 @@ grammar! {
     ERROR: DeclaredError = "error" "错误" {
         /// The result code.
         /// 结果码。
-        required code: ResultNumber;
+        required code: ResultNumber, example "2", faults [UnknownResult, SuccessAsError, DuplicateItem];
         use TEXT.zh, TEXT.en;
     }
 
@@ -218,9 +231,9 @@ grammar! {
     SOURCE: Source = "source" "出处" {
         /// Section numbers; empty if it is not in the source document.
         /// 节号；源文档中没有时留空。
-        required sections: List<Int<u16, 1>>;
+        required sections: List<Int<u16, 1>>, example "[12]", faults [SectionGap];
         /// What is missing from the section.
         /// 这一节缺了什么。
-        optional lost: List<SourceFact>;
+        optional lost: List<SourceFact>, faults [LostButStated];
     }
 }

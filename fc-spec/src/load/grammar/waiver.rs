@@ -10,7 +10,7 @@ grammar! {
         use TEXT.zh, TEXT.en;
         /// Who has accepted it.
         /// 由谁接受。
-        required by: Str;
+        required by: Str, example "Li Wei";
         /// Last day or month for which it holds.
         /// 有效期的最后一天或一个月。
         required until: Date;

@@ -4,12 +4,15 @@ use super::common::{BothLanguages, COMMON, TEXT};
 use super::form::{
     Code, Entries, Form, HeaderWidth, Int, List, Name, Never, Scalar, Str, Type, WireKey,
 };
-use super::kind::{AnyKey, Doc, Kind, Table};
+use super::kind::{AnyKey, Doc, Kind, Said, Table};
 use crate::syntax::Node;
 use crate::vocabulary::{
     ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule,
     KindRole, PortRole, RangeUse, ResultRole,
 };
+
+/// How a digest is computed of which that is not said.
+pub(crate) const DIGEST: DigestAlgorithm = DigestAlgorithm::Md5;
 
 /// A duration in milliseconds.
 type Milliseconds = Int<u32>;
@@ -20,10 +23,10 @@ grammar! {
     PROTOCOL: Protocol = "protocol" "协议" {
         /// Short name; the Rust protocol type is its Pascal case.
         /// 短名；改写为大驼峰就是 Rust 中协议类型的名称。
-        required id: Name;
+        required id: Name, example "demo";
         /// Version of the spec, quoted.
         /// 规范的版本，要加引号。
-        required version: Str;
+        required version: Str, example r#""1.0""#;
         use TEXT.zh, TEXT.en;
         /// What it is for.
         /// 用途。
@@ -51,7 +54,7 @@ grammar! {
     TRANSPORT: Transport = "transport" "传输" {
         /// Address of the robot.
         /// 机器人的地址。
-        required host: Str;
+        required host: Str, example "10.0.0.2";
         /// Its TCP ports.
         /// 机器人的 TCP 端口。
         required ports: Ports;
@@ -63,7 +66,7 @@ grammar! {
     PORT: Port = "port" "端口" {
         /// Its number.
         /// 端口号。
-        required number: Int<u16, 1>;
+        required number: Int<u16, 1>, example "7001", faults [SamePort];
         use TEXT.zh, TEXT.en;
     }
 
@@ -79,13 +82,14 @@ grammar! {
         required heads: Heads;
         /// Header fields in the order in which they are sent.
         /// 包头的字段，按发送的顺序书写。
-        required header: Entries<WireKey, HeaderField, 1>;
+        required header: Entries<WireKey, HeaderField, 1>,
+            faults [RoleMissing, HeadNotFirst, DuplicateFieldName, UnusableName];
         /// Values of the header's kind field.
         /// 包头中数据类型字段的取值。
-        required kinds: Entries<Int<u8>, FrameKind>;
+        required kinds: Entries<Int<u8>, FrameKind>, faults [RoleMissing];
         /// Values of the header's encoding field; `{}` if it has none.
         /// 包头中压缩方式字段的取值；没有这个字段时写 `{}`。
-        required encodings: Entries<Int<u8>, Encoding>;
+        required encodings: Entries<Int<u8>, Encoding>, faults [RoleMissing];
         use COMMON.answers;
     }
 
@@ -94,10 +98,10 @@ grammar! {
     HEADS: Heads = "heads" "帧头" {
         /// Of a command or a report.
         /// 指令和上报的帧头。
-        required request: List<Int<u8>, 1>;
+        required request: List<Int<u8>, 1>, example "[0x01, 0x02]", faults [HeadLength];
         /// Of a response or an acknowledgement.
         /// 响应和应答的帧头。
-        required response: List<Int<u8>, 1>;
+        required response: List<Int<u8>, 1>, example "[0x03, 0x04]", faults [HeadsEqual];
     }
 
     /// A field of the header.
@@ -105,20 +109,20 @@ grammar! {
     HEADER_FIELD: HeaderField = "header field" "包头字段" {
         /// Its width: `u8`, `u16`, `u32`, `u64` or `bytes(16)`.
         /// 宽度：`u8`、`u16`、`u32`、`u64` 或 `bytes(16)`。
-        required r#type: HeaderWidth;
+        required r#type: HeaderWidth, faults [HeaderWidth, BadHeaderType];
         /// What it is used for; a field without a role is only sent.
         /// 作用；没有作用的字段只发送，不解释。
-        optional role: HeaderRole;
-        /// How a digest is computed; `md5` unless given.
-        /// 摘要的算法，默认为 `md5`。
-        optional algorithm: DigestAlgorithm;
+        optional role: HeaderRole, faults [RoleTwice];
+        /// How a digest is computed.
+        /// 摘要的算法。
+        optional algorithm: DigestAlgorithm, default DIGEST.name(), faults [AlgorithmWithoutDigest];
         use COMMON.name;
         /// What is sent if nothing else determines it.
         /// 没有别的规定时发送的值。
-        optional value: Int<u64>;
+        optional value: Int<u64>, example "0", faults [HeaderValue];
         /// Where the decoder is lenient.
         /// 在哪一点上放宽解析。
-        optional quirk: List<HeaderQuirk, 1>;
+        optional quirk: List<HeaderQuirk, 1>, faults [HeaderQuirk];
         use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
     }
 
@@ -127,13 +131,13 @@ grammar! {
     FRAME_KIND: FrameKind = "frame kind" "数据类型" {
         /// Its name.
         /// 名称。
-        required name: Name;
+        required name: Name, example "command", faults [DuplicateName];
         /// What it carries.
         /// 装的是什么。
         required role: KindRole;
         /// Port it is sent on.
         /// 在哪个端口上发送。
-        required port: PortRole;
+        required port: PortRole, faults [KindPort];
         use TEXT.zh, TEXT.en;
     }
 
@@ -142,7 +146,7 @@ grammar! {
     ENCODING: Encoding = "encoding" "压缩方式" {
         /// Its name.
         /// 名称。
-        required name: Name;
+        required name: Name, example "gzip", faults [DuplicateName];
         /// How the data is packed.
         /// 数据如何压缩。
         required role: EncodingRole;
@@ -154,10 +158,10 @@ grammar! {
     ENVELOPE: Envelope = "envelope" "公共字段" {
         /// Of every command and report. Without a time, no message is too old.
         /// 指令和上报的公共字段。没有时间时，任何消息都不会过期。
-        required request: Entries<WireKey, EnvelopeField>;
+        required request: Entries<WireKey, EnvelopeField>, faults [DuplicateFieldName];
         /// Of every response and acknowledgement. Without a result code, what is refused is not answered.
         /// 响应和应答的公共字段。没有结果码时，被拒绝的消息得不到响应。
-        required response: Entries<WireKey, EnvelopeField>;
+        required response: Entries<WireKey, EnvelopeField>, faults [RoleMissing, DuplicateFieldName];
         use COMMON.answers;
     }
 
@@ -166,14 +170,14 @@ grammar! {
     ENVELOPE_FIELD: EnvelopeField = "envelope field" "公共字段的键" {
         /// Its type, followed by `?` if it may be missing in received messages.
         /// 类型；收到的消息里可以没有它时，在后面加 `?`。
-        required r#type: Type;
+        required r#type: Type, example "string?", faults [EnvelopeType];
         /// What it is used for.
         /// 作用。
-        required role: EnvelopeRole;
+        required role: EnvelopeRole, faults [RoleTwice, ResultInRequest];
         use COMMON.name;
         /// What composed examples show.
         /// 生成的示例中的值。
-        required example: Scalar;
+        required example: Scalar, example "7", faults [ExampleType];
         use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
     }
 
@@ -182,10 +186,10 @@ grammar! {
     RESULT: ResultCode = "result code" "结果码" {
         /// Name in code.
         /// 代码中的名称。
-        required name: Name;
+        required name: Name, example "busy", faults [DuplicateName];
         /// When the runtime returns it by itself.
         /// 运行库在什么情况下自行返回它。
-        optional role: ResultRole;
+        optional role: ResultRole, faults [RoleTwice];
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.answers;
     }
 
@@ -194,13 +198,13 @@ grammar! {
     CALLS: Calls = "calls" "超时" {
         /// How long an app waits for a response.
         /// app 等待响应的时间。
-        required timeout_ms: Milliseconds;
+        required timeout_ms: Milliseconds, example "3000";
         /// How long the robot waits for a handler.
         /// 机器人等待处理程序的时间。
-        required handler_timeout_ms: Milliseconds;
+        required handler_timeout_ms: Milliseconds, example "2500";
         /// Age past which a message is refused as expired.
         /// 消息超过这个时间就按过期拒绝。
-        required max_age_ms: (Milliseconds, Never);
+        required max_age_ms: (Milliseconds, Never), example "60000", faults [AgeWithoutTime];
         use COMMON.answers;
     }
 
@@ -209,10 +213,10 @@ grammar! {
     ACK: Ack = "acknowledgement" "应答" {
         /// Wait before it is sent again.
         /// 重发前等待的时间。
-        required timeout_ms: Milliseconds;
+        required timeout_ms: Milliseconds, example "2000";
         /// How often it is resent; 0 to send it only once.
         /// 重发几次；0 表示只发送一次。
-        required retries: Int<u32>;
+        required retries: Int<u32>, example "3";
         use COMMON.answers;
     }
 
@@ -221,22 +225,22 @@ grammar! {
     LIMITS: Limits = "limits" "上限" {
         /// Maximum frame length, including the header.
         /// 一帧的最大长度，包括包头。
-        required frame_bytes: Int<u32, 1>;
+        required frame_bytes: Int<u32, 1>, example "65536", faults [LimitTooSmall];
         /// Maximum length of the data after decompression.
         /// 数据解压后的最大长度。
-        required inflated_bytes: Int<u32, 1>;
+        required inflated_bytes: Int<u32, 1>, example "1048576";
         /// Maximum nesting depth of a JSON body.
         /// JSON 的最大嵌套层数。
-        required json_depth: Int<u32, 1>;
+        required json_depth: Int<u32, 1>, example "32";
         /// Calls in flight on one connection.
         /// 一个连接上同时进行的调用数。
-        required in_flight: Int<u32, 1>;
+        required in_flight: Int<u32, 1>, example "16";
         /// Reports waiting for one app.
         /// 等待发给一个 app 的上报数。
-        required queued_reports: Int<u32, 1>;
+        required queued_reports: Int<u32, 1>, example "64";
         /// Connections at one server.
         /// 一个服务端的连接数。
-        required connections: Int<u32, 1>;
+        required connections: Int<u32, 1>, example "4";
     }
 
     /// Ranges of codes with a purpose, and codes not to be used again.
@@ -256,10 +260,10 @@ grammar! {
     RANGE: Range = "range" "号段" {
         /// First code.
         /// 第一个功能码。
-        required from: Code;
+        required from: Code, example "0x0A00", faults [RangesOverlap];
         /// Last code.
         /// 最后一个功能码。
-        required to: Code;
+        required to: Code, example "0x0AFF", faults [RangeInverted];
         /// Its purpose.
         /// 用途。
         required r#use: RangeUse;
@@ -271,7 +275,7 @@ grammar! {
     RETIRED: Retired = "retired code" "停用的功能码" {
         /// The code.
         /// 功能码。
-        required code: Code;
+        required code: Code, faults [DuplicateRetired];
         use TEXT.zh, TEXT.en;
     }
 
@@ -291,6 +295,7 @@ impl Form for Ports {
         name: "ports",
         name_zh: "端口",
         doc: Doc::new("The TCP ports of the robot.", "机器人的 TCP 端口。"),
+        example: include_str!("examples/Ports.yaml"),
         keys: &[
             port(
                 PortRole::Command,
@@ -312,6 +317,7 @@ const fn port(role: PortRole, doc: Doc) -> AnyKey {
         required: true,
         kind: Port::KIND,
         doc,
+        said: Said::NOTHING,
     }
 }
 
@@ -327,6 +333,7 @@ impl Form for Json {
             "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
             "JSON 没有规定含义的地方怎么处理。各个协议都一样；文本加以说明。",
         ),
+        example: include_str!("examples/Json.yaml"),
         keys: &[
             rule(JsonRule::Text),
             rule(JsonRule::KnownKeys),
@@ -350,5 +357,6 @@ const fn rule(rule: JsonRule) -> AnyKey {
         required: true,
         kind: BothLanguages::KIND,
         doc: Doc::new(en, zh),
+        said: Said::NOTHING,
     }
 }

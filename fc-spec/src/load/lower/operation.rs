@@ -7,7 +7,7 @@ use super::{Lowering, needs, wire};
 use crate::load::draft::{Place, Placed};
 use crate::load::grammar::{
     BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
-    STREAM, StateKey, both_languages as text,
+    STATED, STREAM, StateKey, both_languages as text,
 };
 use crate::load::names;
 use crate::load::process;
@@ -246,12 +246,9 @@ fn sets_off(node: Node<'_>) -> Vec<SetOff> {
 /// State and reason of `request_state:` or `response_state:`.
 fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     let Some(node) = node else {
-        return (BodyState::Stated, None);
+        return (STATED, None);
     };
-    let state = BODY_STATE
-        .state
-        .read_in_or_at(node)
-        .unwrap_or(BodyState::Stated);
+    let state = BODY_STATE.state.read_in_or_at(node).unwrap_or(STATED);
     (state, node.as_mapping().map(|_| text(node)))
 }
 
@@ -275,7 +272,7 @@ fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
 
 /// The `state` beside a `value`; what stands alone is stated.
 fn fact_state(node: Node<'_>) -> BodyState {
-    CODE.state.read(node).unwrap_or(BodyState::Stated)
+    CODE.state.read(node).unwrap_or(STATED)
 }
 
 /// `unassigned` for what is no code, which has been reported.

@@ -4,16 +4,16 @@ use super::Lowering;
 use super::text::aliases;
 use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
 use crate::load::grammar::{
-    ACK, CALLS, CODES, COMMON, CONFLICT, ENCODING, ENVELOPE, ENVELOPE_FIELD, FRAME, FRAME_KIND,
-    HEADER_FIELD, HEADS, LIMITS, PARTY, PORT, PROTOCOL, RANGE, RESULT, RETIRED, TRANSPORT,
-    both_languages as text,
+    ACK, CALLS, CODES, COMMON, CONFLICT, DIGEST, ENCODING, ENVELOPE, ENVELOPE_FIELD, FRAME,
+    FRAME_KIND, HEADER_FIELD, HEADS, LIMITS, PARTY, PORT, PROTOCOL, RANGE, RESULT, RETIRED,
+    TRANSPORT, both_languages as text,
 };
 use crate::load::{names, scalar};
 use crate::model::{
-    Ack, ByteOrder, CallDefaults, CodeRange, Conflict, DigestAlgorithm, Encoding, EncodingRole,
-    EnvelopeField, EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule,
-    KindRole, Limits, Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode,
-    RetainedSection, RetiredCode, Severity, Subject, Transport, Type,
+    Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
+    EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
+    Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode, RetainedSection, RetiredCode,
+    Severity, Subject, Transport, Type,
 };
 use crate::syntax::{Entries, Node};
 use crate::vocabulary::Word as _;
@@ -127,12 +127,8 @@ impl<'a> Lowering<'a, '_> {
                 ty: (HEADER_FIELD.r#type.read(node)).unwrap_or(HeaderType::Bytes(0)),
                 offset,
                 role,
-                algorithm: (role == Some(HeaderRole::Digest)).then(|| {
-                    HEADER_FIELD
-                        .algorithm
-                        .read(node)
-                        .unwrap_or(DigestAlgorithm::Md5)
-                }),
+                algorithm: (role == Some(HeaderRole::Digest))
+                    .then(|| HEADER_FIELD.algorithm.read(node).unwrap_or(DIGEST)),
                 value: HEADER_FIELD.value.get(node),
                 quirks: HEADER_FIELD.quirk.get(node),
                 text: text(node),

@@ -1,6 +1,7 @@
 //! The language that the spec is written in: its keys, as the grammar declares them.
 
 use super::shared::Desk;
+use fc_spec::diagnostic::FaultCode;
 use fc_spec::schema::{self, Key, Part, Takes, Word};
 use serde::Serialize;
 
@@ -16,6 +17,9 @@ struct PartView {
     /// What faults call it, where that is another word.
     id: Option<&'static str>,
     text: String,
+    example: Option<&'static str>,
+    /// What can be wrong with it as a whole.
+    faults: Vec<&'static str>,
     keys: Vec<KeyView>,
     words: Vec<WordView>,
 }
@@ -31,8 +35,11 @@ struct KeyView {
     anchor: String,
     name: &'static str,
     required: bool,
+    default: Option<&'static str>,
     text: String,
     takes: Vec<TakesView>,
+    example: Option<String>,
+    faults: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -72,19 +79,29 @@ pub(in crate::emit::markdown) fn language(desk: Desk<'_, '_>) -> LanguageView {
         anchor: format!("{}-{}", anchor(part.id), key.name),
         name: key.name,
         required: key.required,
+        default: key.default,
         text: desk.lang.text(&key.text).to_owned(),
         takes: key.takes.iter().map(takes).collect(),
+        example: key.example.clone(),
+        faults: numbers(&key.faults),
     };
     let part = |part: &Part| PartView {
         link: link(part),
         id: desk.lang.pick(Some(part.id), None),
         text: desk.lang.text(&part.text).to_owned(),
+        example: part.example,
+        faults: numbers(&part.faults),
         keys: part.keys.iter().map(|one| key(part, one)).collect(),
         words: words(&part.words),
     };
     LanguageView {
         parts: all.iter().map(part).collect(),
     }
+}
+
+/// The numbers of faults, which are their anchors on the page of the faults.
+fn numbers(faults: &[FaultCode]) -> Vec<&'static str> {
+    faults.iter().map(|fault| fault.as_str()).collect()
 }
 
 fn anchor(id: &str) -> String {
