@@ -28,8 +28,8 @@ fn a_project_checks_and_is_generated_at_once() {
     let new = ["new", "get_battery", "--group", "light"];
     place.fc_in("lamp", &new).expect(0);
     place.fc_in("lamp", &["generate"]).expect(0);
-    let client = place.read("lamp/src/client.rs");
-    assert!(client.contains("fn get_battery("), "{client}");
+    let group = place.read("lamp/src/messages/light.rs");
+    assert!(group.contains("pub async fn get_battery("), "{group}");
 }
 
 #[test]

@@ -42,7 +42,7 @@ struct State {
 }
 
 impl Shared {
-    /// Nothing is left half done under the lock, so it may be taken whoever has had it.
+    /// Nothing is left half done under the lock, so it may be taken after any fault of who had it.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -12,12 +12,12 @@ fn check(what: &str, kind: &Kind, value: &str) -> Option<String> {
     let value = value.trim_end().replace('\n', "\n  ");
     let goes_over_lines = value.contains('\n') || !value.starts_with('{') && value.contains(": ");
     let between = if goes_over_lines { "\n  " } else { " " };
-    let text = format!("example:{between}{value}\n");
+    let text = format!("shown:{between}{value}\n");
     let sources = Sources::from_texts([(what.to_owned(), text)]);
     let mut faults = Faults::new();
     for (id, file) in sources.iter() {
         if let Some(tree) = parse(id, &file.text, &mut faults)
-            && let Some(entry) = tree.root().entry("example")
+            && let Some(entry) = tree.root().entry("shown")
         {
             shape::check_kind(kind, entry.value, entry.key.span(), &mut faults);
         }

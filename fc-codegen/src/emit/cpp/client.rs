@@ -223,22 +223,19 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
         if calls.is_empty() {
             continue;
         }
-        let types = calls.iter().map(|call| call.request.ty.name.to_string());
-        let types: Vec<String> = types.collect();
-        let (docs, name) = (format!("/// {zh}{en}"), group.name(part));
-        let using = format!("using {name} = fc_runtime::Types<");
-        let joined = types.join(", ");
-        if out.has_room([&using, &joined, ">;"]) {
-            out.line(docs);
-            out.line([&using, &*joined, ">;"].concat());
-        } else {
-            // The formatter would fill the lines: so each has one that another does not move.
-            out.line("// clang-format off");
-            out.line(docs);
-            out.line(using);
-            out.line(format!("    {}>;", types.join(",\n    ")));
-            out.line("// clang-format on");
+        out.line(format!("/// {zh}{en}"));
+        out.line(format!(
+            "using {} = fc_runtime::Types<",
+            group.name(part)
+        ));
+        // A comment on each keeps it on a line of its own, and with an end behind the last a type more changes no line of
+        // another.
+        for call in calls {
+            out.line(format!("    // {}", call.operation.code.spelling));
+            out.line(format!("    {},", call.request.ty.name));
         }
+        out.line("    // No more.");
+        out.line("    fc_runtime::End>;");
     }
 }
 

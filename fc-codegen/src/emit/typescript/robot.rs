@@ -49,7 +49,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     robot_interface(
         &mut out,
         context,
-        &parts(context, groups, "robot", What::Commands),
+        &parts(context, groups, Side::Robot.name(), What::Commands),
     );
     out.blank();
     out.line(format!(
@@ -223,7 +223,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.has(What::Commands) {
         out.blank();
         out.line("/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */");
-        let robot = group.part(context, "robot");
+        let robot = group.part(context, Side::Robot.name());
         out.block(format!("export interface {robot}"), |out| {
             for command in &group.commands {
                 handler(out, context, command);

@@ -146,7 +146,7 @@ grammar! {
     ENCODING: Encoding = "encoding" "压缩方式" {
         /// Its name.
         /// 名称。
-        required name: Name, example "gzip", faults [DuplicateName];
+        required name: Name, example "packed", faults [DuplicateName];
         /// How the data is packed.
         /// 数据如何压缩。
         required role: EncodingRole;

@@ -38,7 +38,7 @@ std::variant<Each...> any_report(const Protocol& protocol, RawReport raw,
 }  // namespace detail
 
 /// A report as the one of the types of `Any` that has its code; where none has, or it does not read as
-/// that type says, as it came. `Any` is a `std::variant` over reports and `RawReport`.
+/// that type says, kept unchanged. `Any` is a `std::variant` over reports and `RawReport`.
 template <class Any>
 [[nodiscard]] Any any_report(const Protocol& protocol, RawReport raw) {
   return detail::any_report(protocol, std::move(raw), static_cast<const Any*>(nullptr));

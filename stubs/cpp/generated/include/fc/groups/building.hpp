@@ -348,7 +348,13 @@ class BuildingDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using BuildingCommands = fc_runtime::Types<ListIotDevicesRequest, GetFloorsRequest>;
+using BuildingCommands = fc_runtime::Types<
+    // 0x0A07
+    ListIotDevicesRequest,
+    // 0x03A1
+    GetFloorsRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_building(BuildingRobot& robot,

@@ -579,7 +579,13 @@ class CellDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using CellCommands = fc_runtime::Types<GetCellConfigRequest, SetCellConfigRequest>;
+using CellCommands = fc_runtime::Types<
+    // 0x0A02
+    GetCellConfigRequest,
+    // 0x0A0B
+    SetCellConfigRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_cell(CellRobot& robot,

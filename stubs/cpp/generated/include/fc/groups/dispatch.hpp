@@ -207,7 +207,11 @@ class DispatchDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using DispatchCommands = fc_runtime::Types<CheckCondition0333Request>;
+using DispatchCommands = fc_runtime::Types<
+    // 0x0333
+    CheckCondition0333Request,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_dispatch(DispatchRobot& robot,

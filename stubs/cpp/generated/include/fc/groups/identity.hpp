@@ -259,7 +259,13 @@ class IdentityDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using IdentityCommands = fc_runtime::Types<GetRobotSnRequest, GetFirmwareVersionsRequest>;
+using IdentityCommands = fc_runtime::Types<
+    // 0x0A01
+    GetRobotSnRequest,
+    // 0x0A0A
+    GetFirmwareVersionsRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_identity(IdentityRobot& robot,

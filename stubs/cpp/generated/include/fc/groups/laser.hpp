@@ -137,7 +137,11 @@ class LaserDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using LaserCommands = fc_runtime::Types<GetLaserScanRequest>;
+using LaserCommands = fc_runtime::Types<
+    // 0x0001
+    GetLaserScanRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_laser(LaserRobot& robot,

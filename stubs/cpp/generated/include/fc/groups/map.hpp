@@ -1154,19 +1154,30 @@ class MapReporter {
   }
 };
 
-// clang-format off
 /// 这一组指令的请求。The requests of the group.
 using MapCommands = fc_runtime::Types<
+    // 0x0111
     GetMapImageRequest,
+    // 0x0103
     ListMapsRequest,
+    // 0x010C
     GetMapInfoRequest,
+    // 0x0109
     SaveMapRequest,
+    // 0x0320
     DownloadMapsRequest,
+    // 0x0321
     UploadMapsRequest,
-    GetMapSyncProgressRequest>;
-// clang-format on
+    // 0x0322
+    GetMapSyncProgressRequest,
+    // No more.
+    fc_runtime::End>;
 /// 这一组的主动上报。The reports of the group.
-using MapReports = fc_runtime::Types<MapSyncProgress>;
+using MapReports = fc_runtime::Types<
+    // 0x0343
+    MapSyncProgress,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_map(MapRobot& robot,

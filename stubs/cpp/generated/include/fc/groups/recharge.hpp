@@ -557,15 +557,22 @@ class RechargeReporter {
   }
 };
 
-// clang-format off
 /// 这一组指令的请求。The requests of the group.
 using RechargeCommands = fc_runtime::Types<
+    // 0x0A04
     StartRechargeRequest,
+    // 0x0A05
     CancelRechargeRequest,
-    GetRechargeStatusRequest>;
-// clang-format on
+    // 0x0A06
+    GetRechargeStatusRequest,
+    // No more.
+    fc_runtime::End>;
 /// 这一组的主动上报。The reports of the group.
-using RechargeReports = fc_runtime::Types<RechargeProgress>;
+using RechargeReports = fc_runtime::Types<
+    // 0x0B01
+    RechargeProgress,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_recharge(RechargeRobot& robot,

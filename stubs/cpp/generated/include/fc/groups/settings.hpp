@@ -512,13 +512,16 @@ class SettingsDefaults : public Base {
   }
 };
 
-// clang-format off
 /// 这一组指令的请求。The requests of the group.
 using SettingsCommands = fc_runtime::Types<
+    // 0x0A08
     Switch0a08Request,
+    // 0x0A09
     SetVoiceReminderRequest,
-    SwitchEnvironmentRequest>;
-// clang-format on
+    // 0x03A0
+    SwitchEnvironmentRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_settings(SettingsRobot& robot,

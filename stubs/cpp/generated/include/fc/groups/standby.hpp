@@ -422,14 +422,18 @@ class StandbyDefaults : public Base {
   }
 };
 
-// clang-format off
 /// 这一组指令的请求。The requests of the group.
 using StandbyCommands = fc_runtime::Types<
+    // 0x0311
     SetStandbyPositionRequest,
+    // 0x0312
     GetStandbyPositionRequest,
+    // 0x0313
     SetPositions0313Request,
-    GetPositions0314Request>;
-// clang-format on
+    // 0x0314
+    GetPositions0314Request,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_standby(StandbyRobot& robot,

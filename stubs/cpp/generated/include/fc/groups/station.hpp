@@ -856,15 +856,20 @@ class StationDefaults : public Base {
   }
 };
 
-// clang-format off
 /// 这一组指令的请求。The requests of the group.
 using StationCommands = fc_runtime::Types<
+    // 0x0A03
     GetStationRequest,
+    // 0x0308
     UploadMapStationsRequest,
+    // 0x0302
     AddStationRequest,
+    // 0x0304
     DeleteStationRequest,
-    RenameStationRequest>;
-// clang-format on
+    // 0x0305
+    RenameStationRequest,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_station(StationRobot& robot,

@@ -662,9 +662,19 @@ class StatusReporter {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using StatusCommands = fc_runtime::Types<ListFaultsRequest, GetSelfCheckRequest>;
+using StatusCommands = fc_runtime::Types<
+    // 0x0A0C
+    ListFaultsRequest,
+    // 0x0A0D
+    GetSelfCheckRequest,
+    // No more.
+    fc_runtime::End>;
 /// 这一组的主动上报。The reports of the group.
-using StatusReports = fc_runtime::Types<RobotStatus>;
+using StatusReports = fc_runtime::Types<
+    // 0x0342
+    RobotStatus,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_status(StatusRobot& robot,

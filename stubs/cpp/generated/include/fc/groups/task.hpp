@@ -690,9 +690,23 @@ class TaskReporter {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using TaskCommands = fc_runtime::Types<CreateTaskRequest, GetTaskStatusRequest>;
+using TaskCommands = fc_runtime::Types<
+    // 0x0350
+    CreateTaskRequest,
+    // 0x0353
+    GetTaskStatusRequest,
+    // No more.
+    fc_runtime::End>;
 /// 这一组的主动上报。The reports of the group.
-using TaskReports = fc_runtime::Types<ObstacleAnnouncement, TargetReached, TaskProgress>;
+using TaskReports = fc_runtime::Types<
+    // 0x0341
+    ObstacleAnnouncement,
+    // 0x0340
+    TargetReached,
+    // 0x0345
+    TaskProgress,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_task(TaskRobot& robot,

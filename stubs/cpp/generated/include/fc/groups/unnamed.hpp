@@ -221,7 +221,13 @@ class UnnamedDefaults : public Base {
 };
 
 /// 这一组指令的请求。The requests of the group.
-using UnnamedCommands = fc_runtime::Types<Unnamed0309Request, Unnamed0460Request>;
+using UnnamedCommands = fc_runtime::Types<
+    // 0x0309
+    Unnamed0309Request,
+    // 0x0460
+    Unnamed0460Request,
+    // No more.
+    fc_runtime::End>;
 /// 由机器人处理这一组的指令；其他指令没有结果。
 /// Has a robot handle a command of the group; none if it is of another.
 [[nodiscard]] std::optional<fc_runtime::Handled> serve_unnamed(UnnamedRobot& robot,
