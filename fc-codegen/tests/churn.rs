@@ -93,7 +93,6 @@ fn an_addition_changes_the_files_of_its_group_and_what_lists_all() {
         (
             "commands",
             "  dim_lamp: { code: 0x0113, zh: 调暗, en: Dim the lamp, effect: config, source: { sections: [] }, \
-             errors: [{ code: 3, zh: 坏, en: Broken }], \
              request: { to: { type: u8, example: 3, zh: 亮度, en: Brightness } } }",
             [
                 "docs-site/en/reference/commands/dim_lamp.md",

@@ -116,33 +116,33 @@ fn client(out: &mut Source, groups: &[Group<'_>]) {
   ///
   /// Returns at once and connects in the background; calls made meanwhile wait within their timeout.
   [[nodiscard]] static Client connect_lazy(const fc_runtime::ClientConfig& config = {});
-  explicit Client(fc_runtime::Connection connection) : connection_(std::move(connection)) {}
+  explicit Client(fc_runtime::Connection connection) : robot_connection_(std::move(connection)) {}
 
   /// 此刻的连接状态；没有连接时说明原因。
   ///
   /// Whether there is a connection at this moment, and why not.
-  [[nodiscard]] fc_runtime::ConnectionState state() const { return connection_.state(); }
+  [[nodiscard]] fc_runtime::ConnectionState state() const { return robot_connection_.state(); }
   /// 连接状态的变化：先是此刻的状态，之后是每一次变化。
   ///
   /// The states of the connection: the present one first, and then each that it comes to.
-  [[nodiscard]] fc_runtime::ConnectionStates states() const { return connection_.states(); }
+  [[nodiscard]] fc_runtime::ConnectionStates states() const { return robot_connection_.states(); }
   /// 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
   ///
   /// All reports received from now on. While nobody receives, no report is acknowledged.
-  [[nodiscard]] Reports reports() const { return Reports(connection_.reports()); }
+  [[nodiscard]] Reports reports() const { return Reports(robot_connection_.reports()); }
   /// 连接数据端口：在后台建立，断线后重连，随指令连接一起结束。
   ///
   /// A connection to the data port: made in the background, made again after a loss, and as long as this
   /// one.
-  [[nodiscard]] fc_runtime::DataConnection data() const { return connection_.data(); }
+  [[nodiscard]] fc_runtime::DataConnection data() const { return robot_connection_.data(); }
   /// 永久关闭连接。
   ///
   /// Ends the connection for good.
-  void close() const { connection_.close(); }
+  void close() const { robot_connection_.close(); }
   /// 底层连接：原始指令、不等待的调用、计数。
   ///
   /// The underlying connection: raw commands, calls that do not wait, counters.
-  [[nodiscard]] const fc_runtime::Connection& connection() const { return connection_; }
+  [[nodiscard]] const fc_runtime::Connection& connection() const { return robot_connection_; }
 
   /// 发出指令，取得响应，再逐个取得它引起的 `Message`，直到终态、失败或连接结束。
   ///
@@ -151,11 +151,11 @@ fn client(out: &mut Source, groups: &[Group<'_>]) {
   template <class Message, class Request>
   [[nodiscard]] fc_runtime::Called<fc_runtime::Following<Request, Message>> follow(
       const Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return fc_runtime::follow<Message>(connection_, request, options);
+    return fc_runtime::follow<Message>(robot_connection_, request, options);
   }
 
  private:
-  fc_runtime::Connection connection_;
+  fc_runtime::Connection robot_connection_;
 };",
     );
 }
@@ -224,10 +224,7 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
             continue;
         }
         out.line(format!("/// {zh}{en}"));
-        out.line(format!(
-            "using {} = fc_runtime::Types<",
-            group.name(part)
-        ));
+        out.line(format!("using {} = fc_runtime::Types<", group.name(part)));
         // A comment on each keeps it on a line of its own, and with an end behind the last a type more changes no line of
         // another.
         for call in calls {

@@ -249,13 +249,13 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
     out.class("Reporter", &bases);
     out.line(
         " public:
-  explicit Reporter(const fc_runtime::Server& server) : server_(&server) {}
+  explicit Reporter(const fc_runtime::Server& server) : robot_server_(&server) {}
 
   /// 上报由它发出。What sends the reports.
-  [[nodiscard]] const fc_runtime::Server& server() const { return *server_; }
+  [[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }
 
  private:
-  const fc_runtime::Server* server_;
+  const fc_runtime::Server* robot_server_;
 };",
     );
 }

@@ -54,13 +54,9 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
 fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
     out.blank();
     out.line(about);
+    // Each on a line of its own, so that one more changes no line of another.
     let close = format!("}} as Readonly<Record<string, {ty}>>");
-    let flat = format!("export default {{ {} {close}", join(members));
-    if out.has_room([&flat]) {
-        out.line(flat);
-    } else {
-        out.lines("export default {", members, &close);
-    }
+    out.lines("export default {", members, &close);
 }
 
 /// What the runtime calls the type of a command's constant.

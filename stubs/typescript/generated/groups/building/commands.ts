@@ -95,4 +95,7 @@ export const getFloors: Command<messages.GetFloorsRequest, messages.GetFloorsRes
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { listIotDevices, getFloors } as Readonly<Record<string, AnyCommand>>
+export default {
+  listIotDevices,
+  getFloors,
+} as Readonly<Record<string, AnyCommand>>

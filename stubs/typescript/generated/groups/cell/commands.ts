@@ -67,4 +67,7 @@ export const setCellConfig: Command<messages.SetCellConfigRequest, messages.SetC
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { getCellConfig, setCellConfig } as Readonly<Record<string, AnyCommand>>
+export default {
+  getCellConfig,
+  setCellConfig,
+} as Readonly<Record<string, AnyCommand>>

@@ -36,4 +36,6 @@ export const checkCondition0333: Command<messages.CheckCondition0333Request, mes
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { checkCondition0333 } as Readonly<Record<string, AnyCommand>>
+export default {
+  checkCondition0333,
+} as Readonly<Record<string, AnyCommand>>

@@ -59,4 +59,7 @@ export const getFirmwareVersions: Command<messages.GetFirmwareVersionsRequest, m
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { getRobotSn, getFirmwareVersions } as Readonly<Record<string, AnyCommand>>
+export default {
+  getRobotSn,
+  getFirmwareVersions,
+} as Readonly<Record<string, AnyCommand>>

@@ -36,4 +36,6 @@ export const getLaserScan: Command<messages.GetLaserScanRequest, messages.GetLas
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { getLaserScan } as Readonly<Record<string, AnyCommand>>
+export default {
+  getLaserScan,
+} as Readonly<Record<string, AnyCommand>>

@@ -46,4 +46,6 @@ export const mapSyncProgress: Report<messages.MapSyncProgress, 'MapSyncProgress'
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { mapSyncProgress } as Readonly<Record<string, AnyReportOf>>
+export default {
+  mapSyncProgress,
+} as Readonly<Record<string, AnyReportOf>>

@@ -91,4 +91,8 @@ export const getRechargeStatus: Command<messages.GetRechargeStatusRequest, messa
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { startRecharge, cancelRecharge, getRechargeStatus } as Readonly<Record<string, AnyCommand>>
+export default {
+  startRecharge,
+  cancelRecharge,
+  getRechargeStatus,
+} as Readonly<Record<string, AnyCommand>>

@@ -40,4 +40,6 @@ export const rechargeProgress: Report<messages.RechargeProgress, 'RechargeProgre
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { rechargeProgress } as Readonly<Record<string, AnyReportOf>>
+export default {
+  rechargeProgress,
+} as Readonly<Record<string, AnyReportOf>>

@@ -85,4 +85,8 @@ export const switchEnvironment: Command<messages.SwitchEnvironmentRequest, messa
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { switch0a08, setVoiceReminder, switchEnvironment } as Readonly<Record<string, AnyCommand>>
+export default {
+  switch0a08,
+  setVoiceReminder,
+  switchEnvironment,
+} as Readonly<Record<string, AnyCommand>>

@@ -72,4 +72,7 @@ export const getSelfCheck: Command<messages.GetSelfCheckRequest, messages.GetSel
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { listFaults, getSelfCheck } as Readonly<Record<string, AnyCommand>>
+export default {
+  listFaults,
+  getSelfCheck,
+} as Readonly<Record<string, AnyCommand>>

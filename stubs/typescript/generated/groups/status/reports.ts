@@ -37,4 +37,6 @@ export const robotStatus: Report<messages.RobotStatus, 'RobotStatus'> = {
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { robotStatus } as Readonly<Record<string, AnyReportOf>>
+export default {
+  robotStatus,
+} as Readonly<Record<string, AnyReportOf>>

@@ -59,4 +59,7 @@ export const getTaskStatus: Command<messages.GetTaskStatusRequest, messages.GetT
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { createTask, getTaskStatus } as Readonly<Record<string, AnyCommand>>
+export default {
+  createTask,
+  getTaskStatus,
+} as Readonly<Record<string, AnyCommand>>

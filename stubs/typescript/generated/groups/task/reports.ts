@@ -79,4 +79,8 @@ export const taskProgress: Report<messages.TaskProgress, 'TaskProgress'> = {
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { obstacleAnnouncement, targetReached, taskProgress } as Readonly<Record<string, AnyReportOf>>
+export default {
+  obstacleAnnouncement,
+  targetReached,
+  taskProgress,
+} as Readonly<Record<string, AnyReportOf>>

@@ -59,4 +59,7 @@ export const unnamed0460: Command<messages.Unnamed0460Request, messages.Unnamed0
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { unnamed0309, unnamed0460 } as Readonly<Record<string, AnyCommand>>
+export default {
+  unnamed0309,
+  unnamed0460,
+} as Readonly<Record<string, AnyCommand>>

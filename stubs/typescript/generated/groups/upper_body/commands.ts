@@ -39,4 +39,6 @@ export const getUpperBodyStatus: Command<messages.GetUpperBodyStatusRequest, mes
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { getUpperBodyStatus } as Readonly<Record<string, AnyCommand>>
+export default {
+  getUpperBodyStatus,
+} as Readonly<Record<string, AnyCommand>>

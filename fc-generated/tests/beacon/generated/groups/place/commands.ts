@@ -76,4 +76,8 @@ export const sound: Command<messages.SoundRequest, messages.SoundResponse> = {
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { locate, blink, sound } as Readonly<Record<string, AnyCommand>>
+export default {
+  locate,
+  blink,
+  sound,
+} as Readonly<Record<string, AnyCommand>>

@@ -33,4 +33,6 @@ export const seen: Report<messages.Seen, 'Seen'> = {
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { seen } as Readonly<Record<string, AnyReportOf>>
+export default {
+  seen,
+} as Readonly<Record<string, AnyReportOf>>

@@ -28,4 +28,6 @@ export const sight: Stream<Uint8Array> = {
 }
 
 /** 本组的数据流，按方法名中的名称。The streams of the group, by what methods call them. */
-export default { Sight: sight } as Readonly<Record<string, AnyStream>>
+export default {
+  Sight: sight,
+} as Readonly<Record<string, AnyStream>>

@@ -127,4 +127,9 @@ export const watchLoad: Command<messages.WatchLoadRequest, messages.WatchLoadRes
 }
 
 /** 本组的指令，按方法名。The commands of the group, by the names of their methods. */
-export default { readPower, setTariff, closeSwitch, watchLoad } as Readonly<Record<string, AnyCommand>>
+export default {
+  readPower,
+  setTariff,
+  closeSwitch,
+  watchLoad,
+} as Readonly<Record<string, AnyCommand>>

@@ -120,4 +120,10 @@ export const tariffSet: Report<messages.TariffSet, 'TariffSet'> = {
 }
 
 /** 本组的上报，按方法名。The reports of the group, by the names of their methods. */
-export default { powerLost, switchMoved, powerRead, priceMoved, tariffSet } as Readonly<Record<string, AnyReportOf>>
+export default {
+  powerLost,
+  switchMoved,
+  powerRead,
+  priceMoved,
+  tariffSet,
+} as Readonly<Record<string, AnyReportOf>>
