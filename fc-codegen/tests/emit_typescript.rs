@@ -202,7 +202,7 @@ fn a_command_is_in_every_file_that_commands_are_in() {
         ),
         ("commands.ts", "export * from './groups/more/commands.ts'"),
         ("groups/more/commands.ts", "export const doMore: Command<"),
-        ("groups/more/commands.ts", "export default { doMore } as"),
+        ("groups/more/commands.ts", "doMore,"),
         (
             "groups/more/messages.ts",
             "doMore(request: DoMoreRequest, options?: CallOptions): Promise<DoMoreResponse>",

@@ -149,6 +149,10 @@ pub fn defaults(out: &mut Source, group: &Group<'_>) {
                 "const fc_runtime::Context& /*context*/".to_owned(),
                 format!("const {}& request", command.request.ty.name),
             ];
+            out.line(format!(
+                "/// 见 `Robot::{0}`。See `Robot::{0}`.",
+                command.method
+            ));
             out.parameters(&open, &parameters, ") override {");
             out.line("  return Base::answer_(request);");
             out.line("}");

@@ -337,10 +337,12 @@ class BuildingRobot {
 template <class Base>
 class BuildingDefaults : public Base {
  public:
+  /// 见 `Robot::list_iot_devices`。See `Robot::list_iot_devices`.
   fc_runtime::Replied<ListIotDevicesResponse> list_iot_devices(
       const fc_runtime::Context& /*context*/, const ListIotDevicesRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_floors`。See `Robot::get_floors`.
   fc_runtime::Replied<GetFloorsResponse> get_floors(const fc_runtime::Context& /*context*/,
                                                     const GetFloorsRequest& request) override {
     return Base::answer_(request);

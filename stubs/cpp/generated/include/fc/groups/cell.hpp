@@ -568,10 +568,12 @@ class CellRobot {
 template <class Base>
 class CellDefaults : public Base {
  public:
+  /// 见 `Robot::get_cell_config`。See `Robot::get_cell_config`.
   fc_runtime::Replied<GetCellConfigResponse> get_cell_config(
       const fc_runtime::Context& /*context*/, const GetCellConfigRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::set_cell_config`。See `Robot::set_cell_config`.
   fc_runtime::Replied<SetCellConfigResponse> set_cell_config(
       const fc_runtime::Context& /*context*/, const SetCellConfigRequest& request) override {
     return Base::answer_(request);

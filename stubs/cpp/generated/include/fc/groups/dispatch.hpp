@@ -200,6 +200,7 @@ class DispatchRobot {
 template <class Base>
 class DispatchDefaults : public Base {
  public:
+  /// 见 `Robot::check_condition_0333`。See `Robot::check_condition_0333`.
   fc_runtime::Replied<CheckCondition0333Response> check_condition_0333(
       const fc_runtime::Context& /*context*/, const CheckCondition0333Request& request) override {
     return Base::answer_(request);

@@ -248,10 +248,12 @@ class IdentityRobot {
 template <class Base>
 class IdentityDefaults : public Base {
  public:
+  /// 见 `Robot::get_robot_sn`。See `Robot::get_robot_sn`.
   fc_runtime::Replied<GetRobotSnResponse> get_robot_sn(const fc_runtime::Context& /*context*/,
                                                        const GetRobotSnRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_firmware_versions`。See `Robot::get_firmware_versions`.
   fc_runtime::Replied<GetFirmwareVersionsResponse> get_firmware_versions(
       const fc_runtime::Context& /*context*/, const GetFirmwareVersionsRequest& request) override {
     return Base::answer_(request);

@@ -130,6 +130,7 @@ class LaserRobot {
 template <class Base>
 class LaserDefaults : public Base {
  public:
+  /// 见 `Robot::get_laser_scan`。See `Robot::get_laser_scan`.
   fc_runtime::Replied<GetLaserScanResponse> get_laser_scan(
       const fc_runtime::Context& /*context*/, const GetLaserScanRequest& request) override {
     return Base::answer_(request);

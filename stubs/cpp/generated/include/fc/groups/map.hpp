@@ -1101,30 +1101,37 @@ class MapRobot {
 template <class Base>
 class MapDefaults : public Base {
  public:
+  /// 见 `Robot::get_map_image`。See `Robot::get_map_image`.
   fc_runtime::Replied<GetMapImageResponse> get_map_image(
       const fc_runtime::Context& /*context*/, const GetMapImageRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::list_maps`。See `Robot::list_maps`.
   fc_runtime::Replied<ListMapsResponse> list_maps(const fc_runtime::Context& /*context*/,
                                                   const ListMapsRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_map_info`。See `Robot::get_map_info`.
   fc_runtime::Replied<GetMapInfoResponse> get_map_info(const fc_runtime::Context& /*context*/,
                                                        const GetMapInfoRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::save_map`。See `Robot::save_map`.
   fc_runtime::Replied<SaveMapResponse> save_map(const fc_runtime::Context& /*context*/,
                                                 const SaveMapRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::download_maps`。See `Robot::download_maps`.
   fc_runtime::Replied<DownloadMapsResponse> download_maps(
       const fc_runtime::Context& /*context*/, const DownloadMapsRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::upload_maps`。See `Robot::upload_maps`.
   fc_runtime::Replied<UploadMapsResponse> upload_maps(const fc_runtime::Context& /*context*/,
                                                       const UploadMapsRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_map_sync_progress`。See `Robot::get_map_sync_progress`.
   fc_runtime::Replied<GetMapSyncProgressResponse> get_map_sync_progress(
       const fc_runtime::Context& /*context*/, const GetMapSyncProgressRequest& request) override {
     return Base::answer_(request);

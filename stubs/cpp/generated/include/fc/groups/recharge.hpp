@@ -511,14 +511,17 @@ class RechargeRobot {
 template <class Base>
 class RechargeDefaults : public Base {
  public:
+  /// 见 `Robot::start_recharge`。See `Robot::start_recharge`.
   fc_runtime::Replied<StartRechargeResponse> start_recharge(
       const fc_runtime::Context& /*context*/, const StartRechargeRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::cancel_recharge`。See `Robot::cancel_recharge`.
   fc_runtime::Replied<CancelRechargeResponse> cancel_recharge(
       const fc_runtime::Context& /*context*/, const CancelRechargeRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_recharge_status`。See `Robot::get_recharge_status`.
   fc_runtime::Replied<GetRechargeStatusResponse> get_recharge_status(
       const fc_runtime::Context& /*context*/, const GetRechargeStatusRequest& request) override {
     return Base::answer_(request);

@@ -498,14 +498,17 @@ class SettingsRobot {
 template <class Base>
 class SettingsDefaults : public Base {
  public:
+  /// 见 `Robot::switch_0a08`。See `Robot::switch_0a08`.
   fc_runtime::Replied<Switch0a08Response> switch_0a08(const fc_runtime::Context& /*context*/,
                                                       const Switch0a08Request& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::set_voice_reminder`。See `Robot::set_voice_reminder`.
   fc_runtime::Replied<SetVoiceReminderResponse> set_voice_reminder(
       const fc_runtime::Context& /*context*/, const SetVoiceReminderRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::switch_environment`。See `Robot::switch_environment`.
   fc_runtime::Replied<SwitchEnvironmentResponse> switch_environment(
       const fc_runtime::Context& /*context*/, const SwitchEnvironmentRequest& request) override {
     return Base::answer_(request);

@@ -404,18 +404,22 @@ class StandbyRobot {
 template <class Base>
 class StandbyDefaults : public Base {
  public:
+  /// 见 `Robot::set_standby_position`。See `Robot::set_standby_position`.
   fc_runtime::Replied<SetStandbyPositionResponse> set_standby_position(
       const fc_runtime::Context& /*context*/, const SetStandbyPositionRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_standby_position`。See `Robot::get_standby_position`.
   fc_runtime::Replied<GetStandbyPositionResponse> get_standby_position(
       const fc_runtime::Context& /*context*/, const GetStandbyPositionRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::set_positions_0313`。See `Robot::set_positions_0313`.
   fc_runtime::Replied<SetPositions0313Response> set_positions_0313(
       const fc_runtime::Context& /*context*/, const SetPositions0313Request& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_positions_0314`。See `Robot::get_positions_0314`.
   fc_runtime::Replied<GetPositions0314Response> get_positions_0314(
       const fc_runtime::Context& /*context*/, const GetPositions0314Request& request) override {
     return Base::answer_(request);

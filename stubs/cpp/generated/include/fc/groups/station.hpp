@@ -834,22 +834,27 @@ class StationRobot {
 template <class Base>
 class StationDefaults : public Base {
  public:
+  /// 见 `Robot::get_station`。See `Robot::get_station`.
   fc_runtime::Replied<GetStationResponse> get_station(const fc_runtime::Context& /*context*/,
                                                       const GetStationRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::upload_map_stations`。See `Robot::upload_map_stations`.
   fc_runtime::Replied<UploadMapStationsResponse> upload_map_stations(
       const fc_runtime::Context& /*context*/, const UploadMapStationsRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::add_station`。See `Robot::add_station`.
   fc_runtime::Replied<AddStationResponse> add_station(const fc_runtime::Context& /*context*/,
                                                       const AddStationRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::delete_station`。See `Robot::delete_station`.
   fc_runtime::Replied<DeleteStationResponse> delete_station(
       const fc_runtime::Context& /*context*/, const DeleteStationRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::rename_station`。See `Robot::rename_station`.
   fc_runtime::Replied<RenameStationResponse> rename_station(
       const fc_runtime::Context& /*context*/, const RenameStationRequest& request) override {
     return Base::answer_(request);

@@ -628,10 +628,12 @@ class StatusRobot {
 template <class Base>
 class StatusDefaults : public Base {
  public:
+  /// 见 `Robot::list_faults`。See `Robot::list_faults`.
   fc_runtime::Replied<ListFaultsResponse> list_faults(const fc_runtime::Context& /*context*/,
                                                       const ListFaultsRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_self_check`。See `Robot::get_self_check`.
   fc_runtime::Replied<GetSelfCheckResponse> get_self_check(
       const fc_runtime::Context& /*context*/, const GetSelfCheckRequest& request) override {
     return Base::answer_(request);

@@ -619,10 +619,12 @@ class TaskRobot {
 template <class Base>
 class TaskDefaults : public Base {
  public:
+  /// 见 `Robot::create_task`。See `Robot::create_task`.
   fc_runtime::Replied<CreateTaskResponse> create_task(const fc_runtime::Context& /*context*/,
                                                       const CreateTaskRequest& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::get_task_status`。See `Robot::get_task_status`.
   fc_runtime::Replied<GetTaskStatusResponse> get_task_status(
       const fc_runtime::Context& /*context*/, const GetTaskStatusRequest& request) override {
     return Base::answer_(request);

@@ -210,10 +210,12 @@ class UnnamedRobot {
 template <class Base>
 class UnnamedDefaults : public Base {
  public:
+  /// 见 `Robot::unnamed_0309`。See `Robot::unnamed_0309`.
   fc_runtime::Replied<Unnamed0309Response> unnamed_0309(
       const fc_runtime::Context& /*context*/, const Unnamed0309Request& request) override {
     return Base::answer_(request);
   }
+  /// 见 `Robot::unnamed_0460`。See `Robot::unnamed_0460`.
   fc_runtime::Replied<Unnamed0460Response> unnamed_0460(
       const fc_runtime::Context& /*context*/, const Unnamed0460Request& request) override {
     return Base::answer_(request);

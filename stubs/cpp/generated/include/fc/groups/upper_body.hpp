@@ -208,6 +208,7 @@ class UpperBodyRobot {
 template <class Base>
 class UpperBodyDefaults : public Base {
  public:
+  /// 见 `Robot::get_upper_body_status`。See `Robot::get_upper_body_status`.
   fc_runtime::Replied<GetUpperBodyStatusResponse> get_upper_body_status(
       const fc_runtime::Context& /*context*/, const GetUpperBodyStatusRequest& request) override {
     return Base::answer_(request);
