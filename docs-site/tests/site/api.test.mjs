@@ -17,7 +17,7 @@ const REFERENCES = {
   rust: { page: 'fc_generated/struct.Client.html', method: (name) => `id="method.${name}"`, guide: 'first-call' },
   typescript: { page: 'classes/fc-protocol.Client.html', method: (name) => `id="${camel(name).toLowerCase()}"`, guide: 'first-call-typescript' },
   python: { page: 'fc.html', method: (name) => `id="Client.${name}"`, guide: 'first-call-python' },
-  cpp: { page: 'classfc_1_1Client.html', method: (name) => ` fc::Client::${name} <`, guide: 'first-call-cpp' },
+  cpp: { page: 'classfc_1_1Client.html', method: (name) => `>${name}</a> (`, guide: 'first-call-cpp' },
 }
 const there = (language) => existsSync(path.join(folder, language))
 
