@@ -133,7 +133,7 @@ impl Places {
         all.into_iter().map(|(_, at)| at).collect()
     }
 
-    /// Those of one file, those of a name that an earlier file has included.
+    /// Those of one file, also those of a name that stands in an earlier file too.
     pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&Item, &Place)> {
         let own = usize::try_from(file.0).ok();
         let own = own.and_then(|at| self.files.get(at));

@@ -175,6 +175,21 @@ pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
             call(out, context, command);
         }
     });
+    out.blank();
+    out.line("// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.");
+    out.line("// clang-format off");
+    for command in &group.commands {
+        let (request, response) = (&command.request.ty.name, &command.response.ty.name);
+        out.line("template <class Self>");
+        out.line(format!(
+            "fc_runtime::Called<{response}> {}<Self>::{}(const {request}& request, const fc_runtime::CallOptions& options) const {{",
+            group.name("Calls"),
+            command.method
+        ));
+        out.line("  return static_cast<const Self*>(this)->connection().call(request, options);");
+        out.line("}");
+    }
+    out.line("// clang-format on");
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
@@ -196,9 +211,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         out.line("// clang-format off");
         out.line(format!("[[deprecated({reason})]]"));
     }
-    out.parameters(&open, &parameters, ") const {");
-    out.line("  return static_cast<const Self*>(this)->connection().call(request, options);");
-    out.line("}");
+    out.parameters(&open, &parameters, ") const;");
     if deprecation.is_some() {
         out.line("// clang-format on");
     }

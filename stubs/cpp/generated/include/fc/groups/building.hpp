@@ -271,9 +271,7 @@ class BuildingCalls {
   /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
   /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
   fc_runtime::Called<ListIotDevicesResponse> list_iot_devices(
-      const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取楼层信息
   /// Get the floors
@@ -288,10 +286,20 @@ class BuildingCalls {
   /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
   /// - Docs: `docs-site/reference/commands/get_floors.md`
   fc_runtime::Called<GetFloorsResponse> get_floors(
-      const GetFloorsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetFloorsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<ListIotDevicesResponse> BuildingCalls<Self>::list_iot_devices(const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetFloorsResponse> BuildingCalls<Self>::get_floors(const GetFloorsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -482,9 +482,7 @@ class CellCalls {
   /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
   /// - Docs: `docs-site/reference/commands/get_cell_config.md`
   fc_runtime::Called<GetCellConfigResponse> get_cell_config(
-      const GetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 设置机器人格口配置
   /// Set the compartment configuration
@@ -509,10 +507,20 @@ class CellCalls {
   /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
   /// - Docs: `docs-site/reference/commands/set_cell_config.md`
   fc_runtime::Called<SetCellConfigResponse> set_cell_config(
-      const SetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const SetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetCellConfigResponse> CellCalls<Self>::get_cell_config(const GetCellConfigRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<SetCellConfigResponse> CellCalls<Self>::set_cell_config(const SetCellConfigRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -166,10 +166,16 @@ class DispatchCalls {
   /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
   /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
   fc_runtime::Called<CheckCondition0333Response> check_condition_0333(
-      const CheckCondition0333Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const CheckCondition0333Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<CheckCondition0333Response> DispatchCalls<Self>::check_condition_0333(const CheckCondition0333Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -177,9 +177,7 @@ class IdentityCalls {
   /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
   /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
   fc_runtime::Called<GetRobotSnResponse> get_robot_sn(
-      const GetRobotSnRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetRobotSnRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取固件版本
   /// Get the firmware versions
@@ -196,11 +194,20 @@ class IdentityCalls {
   /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
   /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
   fc_runtime::Called<GetFirmwareVersionsResponse> get_firmware_versions(
-      const GetFirmwareVersionsRequest& request,
-      const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetFirmwareVersionsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetRobotSnResponse> IdentityCalls<Self>::get_robot_sn(const GetRobotSnRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetFirmwareVersionsResponse> IdentityCalls<Self>::get_firmware_versions(const GetFirmwareVersionsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

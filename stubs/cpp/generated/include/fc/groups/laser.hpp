@@ -97,10 +97,16 @@ class LaserCalls {
   /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
   /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
   fc_runtime::Called<GetLaserScanResponse> get_laser_scan(
-      const GetLaserScanRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetLaserScanRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetLaserScanResponse> LaserCalls<Self>::get_laser_scan(const GetLaserScanRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -857,9 +857,7 @@ class MapCalls {
   /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/get_map_image.md`
   fc_runtime::Called<GetMapImageResponse> get_map_image(
-      const GetMapImageRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetMapImageRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取地图列表
   /// List the maps
@@ -872,10 +870,8 @@ class MapCalls {
   ///
   /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/list_maps.md`
-  fc_runtime::Called<ListMapsResponse> list_maps(
-      const ListMapsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+  fc_runtime::Called<ListMapsResponse> list_maps(const ListMapsRequest& request,
+                                                 const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取地图信息
   /// Get the details of a map
@@ -885,9 +881,7 @@ class MapCalls {
   /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/get_map_info.md`
   fc_runtime::Called<GetMapInfoResponse> get_map_info(
-      const GetMapInfoRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetMapInfoRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 保存地图
   /// Save the map
@@ -901,9 +895,7 @@ class MapCalls {
   /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/save_map.md`
   fc_runtime::Called<SaveMapResponse> save_map(const SaveMapRequest& request,
-                                               const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+                                               const fc_runtime::CallOptions& options = {}) const;
 
   /// 下载地图
   /// Download maps
@@ -933,9 +925,7 @@ class MapCalls {
   /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/download_maps.md`
   fc_runtime::Called<DownloadMapsResponse> download_maps(
-      const DownloadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const DownloadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 上传地图
   /// Upload maps
@@ -963,9 +953,7 @@ class MapCalls {
   /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/upload_maps.md`
   fc_runtime::Called<UploadMapsResponse> upload_maps(
-      const UploadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const UploadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取正在同步的地图进度
   /// Get the progress of map synchronisation
@@ -980,10 +968,40 @@ class MapCalls {
   /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
   /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
   fc_runtime::Called<GetMapSyncProgressResponse> get_map_sync_progress(
-      const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetMapImageResponse> MapCalls<Self>::get_map_image(const GetMapImageRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<ListMapsResponse> MapCalls<Self>::list_maps(const ListMapsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetMapInfoResponse> MapCalls<Self>::get_map_info(const GetMapInfoRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<SaveMapResponse> MapCalls<Self>::save_map(const SaveMapRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<DownloadMapsResponse> MapCalls<Self>::download_maps(const DownloadMapsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<UploadMapsResponse> MapCalls<Self>::upload_maps(const UploadMapsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetMapSyncProgressResponse> MapCalls<Self>::get_map_sync_progress(const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

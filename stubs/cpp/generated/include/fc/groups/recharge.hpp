@@ -410,9 +410,7 @@ class RechargeCalls {
   /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
   /// - Docs: `docs-site/reference/commands/start_recharge.md`
   fc_runtime::Called<StartRechargeResponse> start_recharge(
-      const StartRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const StartRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 取消一键回充
   /// Cancel returning to dock
@@ -427,9 +425,7 @@ class RechargeCalls {
   /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
   /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
   fc_runtime::Called<CancelRechargeResponse> cancel_recharge(
-      const CancelRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const CancelRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取回充状态
   /// Get the charging state
@@ -444,10 +440,24 @@ class RechargeCalls {
   /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
   /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
   fc_runtime::Called<GetRechargeStatusResponse> get_recharge_status(
-      const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<StartRechargeResponse> RechargeCalls<Self>::start_recharge(const StartRechargeRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<CancelRechargeResponse> RechargeCalls<Self>::cancel_recharge(const CancelRechargeRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetRechargeStatusResponse> RechargeCalls<Self>::get_recharge_status(const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

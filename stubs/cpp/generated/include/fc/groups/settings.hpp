@@ -390,9 +390,7 @@ class SettingsCalls {
   /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
   /// - Docs: `docs-site/reference/commands/switch_0a08.md`
   fc_runtime::Called<Switch0a08Response> switch_0a08(
-      const Switch0a08Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const Switch0a08Request& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 语音提醒的开关
   /// Voice reminder switch
@@ -413,9 +411,7 @@ class SettingsCalls {
   // clang-format off
   [[deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")]]
   fc_runtime::Called<SetVoiceReminderResponse> set_voice_reminder(
-      const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options = {}) const;
   // clang-format on
 
   /// 切换业务环境
@@ -430,10 +426,24 @@ class SettingsCalls {
   /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
   /// - Docs: `docs-site/reference/commands/switch_environment.md`
   fc_runtime::Called<SwitchEnvironmentResponse> switch_environment(
-      const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<Switch0a08Response> SettingsCalls<Self>::switch_0a08(const Switch0a08Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<SetVoiceReminderResponse> SettingsCalls<Self>::set_voice_reminder(const SetVoiceReminderRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<SwitchEnvironmentResponse> SettingsCalls<Self>::switch_environment(const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -294,9 +294,7 @@ class StandbyCalls {
   /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
   /// - Docs: `docs-site/reference/commands/set_standby_position.md`
   fc_runtime::Called<SetStandbyPositionResponse> set_standby_position(
-      const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取机器人待命时的位置
   /// Get the standby position
@@ -306,9 +304,7 @@ class StandbyCalls {
   /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
   /// - Docs: `docs-site/reference/commands/get_standby_position.md`
   fc_runtime::Called<GetStandbyPositionResponse> get_standby_position(
-      const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 设置点位（0x0313，用途不详）
   /// Set points (0x0313, purpose unknown)
@@ -318,9 +314,7 @@ class StandbyCalls {
   /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
   /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
   fc_runtime::Called<SetPositions0313Response> set_positions_0313(
-      const SetPositions0313Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const SetPositions0313Request& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取点位（0x0314，用途不详）
   /// Get points (0x0314, purpose unknown)
@@ -335,10 +329,28 @@ class StandbyCalls {
   /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
   /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
   fc_runtime::Called<GetPositions0314Response> get_positions_0314(
-      const GetPositions0314Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetPositions0314Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<SetStandbyPositionResponse> StandbyCalls<Self>::set_standby_position(const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetStandbyPositionResponse> StandbyCalls<Self>::get_standby_position(const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<SetPositions0313Response> StandbyCalls<Self>::set_positions_0313(const SetPositions0313Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetPositions0314Response> StandbyCalls<Self>::get_positions_0314(const GetPositions0314Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -697,9 +697,7 @@ class StationCalls {
   /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
   /// - Docs: `docs-site/reference/commands/get_station.md`
   fc_runtime::Called<GetStationResponse> get_station(
-      const GetStationRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 一键上报地图点位信息
   /// Report the stations of the map
@@ -715,9 +713,7 @@ class StationCalls {
   /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
   /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
   fc_runtime::Called<UploadMapStationsResponse> upload_map_stations(
-      const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 添加站点信息
   /// Add a station
@@ -731,9 +727,7 @@ class StationCalls {
   /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
   /// - Docs: `docs-site/reference/commands/add_station.md`
   fc_runtime::Called<AddStationResponse> add_station(
-      const AddStationRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const AddStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 删除站点信息
   /// Delete a station
@@ -743,9 +737,7 @@ class StationCalls {
   /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
   /// - Docs: `docs-site/reference/commands/delete_station.md`
   fc_runtime::Called<DeleteStationResponse> delete_station(
-      const DeleteStationRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const DeleteStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 重命名站点
   /// Rename a station
@@ -755,10 +747,32 @@ class StationCalls {
   /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
   /// - Docs: `docs-site/reference/commands/rename_station.md`
   fc_runtime::Called<RenameStationResponse> rename_station(
-      const RenameStationRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const RenameStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetStationResponse> StationCalls<Self>::get_station(const GetStationRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<UploadMapStationsResponse> StationCalls<Self>::upload_map_stations(const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<AddStationResponse> StationCalls<Self>::add_station(const AddStationRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<DeleteStationResponse> StationCalls<Self>::delete_station(const DeleteStationRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<RenameStationResponse> StationCalls<Self>::rename_station(const RenameStationRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -563,9 +563,7 @@ class StatusCalls {
   /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
   /// - Docs: `docs-site/reference/commands/list_faults.md`
   fc_runtime::Called<ListFaultsResponse> list_faults(
-      const ListFaultsRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const ListFaultsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取自检结果
   /// Get the result of the self-check
@@ -580,10 +578,20 @@ class StatusCalls {
   /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
   /// - Docs: `docs-site/reference/commands/get_self_check.md`
   fc_runtime::Called<GetSelfCheckResponse> get_self_check(
-      const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<ListFaultsResponse> StatusCalls<Self>::list_faults(const ListFaultsRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetSelfCheckResponse> StatusCalls<Self>::get_self_check(const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -561,9 +561,7 @@ class TaskCalls {
   /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
   /// - Docs: `docs-site/reference/commands/create_task.md`
   fc_runtime::Called<CreateTaskResponse> create_task(
-      const CreateTaskRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const CreateTaskRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 获取任务状态
   /// Get a task's status
@@ -573,10 +571,20 @@ class TaskCalls {
   /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
   /// - Docs: `docs-site/reference/commands/get_task_status.md`
   fc_runtime::Called<GetTaskStatusResponse> get_task_status(
-      const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<CreateTaskResponse> TaskCalls<Self>::create_task(const CreateTaskRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<GetTaskStatusResponse> TaskCalls<Self>::get_task_status(const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

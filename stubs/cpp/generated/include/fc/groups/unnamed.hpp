@@ -142,9 +142,7 @@ class UnnamedCalls {
   /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
   /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
   fc_runtime::Called<Unnamed0309Response> unnamed_0309(
-      const Unnamed0309Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const Unnamed0309Request& request, const fc_runtime::CallOptions& options = {}) const;
 
   /// 未命名指令（0x0460）
   /// Unnamed command (0x0460)
@@ -159,10 +157,20 @@ class UnnamedCalls {
   /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
   /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
   fc_runtime::Called<Unnamed0460Response> unnamed_0460(
-      const Unnamed0460Request& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const Unnamed0460Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<Unnamed0309Response> UnnamedCalls<Self>::unnamed_0309(const Unnamed0309Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+template <class Self>
+fc_runtime::Called<Unnamed0460Response> UnnamedCalls<Self>::unnamed_0460(const Unnamed0460Request& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.

@@ -173,10 +173,16 @@ class UpperBodyCalls {
   /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
   /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
   fc_runtime::Called<GetUpperBodyStatusResponse> get_upper_body_status(
-      const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options = {}) const {
-    return static_cast<const Self*>(this)->connection().call(request, options);
-  }
+      const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
+
+// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// clang-format off
+template <class Self>
+fc_runtime::Called<GetUpperBodyStatusResponse> UpperBodyCalls<Self>::get_upper_body_status(const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options) const {
+  return static_cast<const Self*>(this)->connection().call(request, options);
+}
+// clang-format on
 
 /// 一组指令，由 `Robot` 处理。
 /// The commands of a group as `Robot` handles them.
