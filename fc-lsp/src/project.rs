@@ -1,9 +1,13 @@
 //! The project whose spec is edited, and who finds it.
 
-use fc_codegen::target::Targets;
+use fc_codegen::target::{FILE, Targets};
 use fc_diff::Version;
 use fc_diff::release::{DIRECTORY, Releases};
+use fc_spec::diagnostic::Faults;
+use fc_spec::lint::{self, faults, lint, waive};
+use fc_spec::load::Places;
 use fc_spec::model::Model;
+use fc_spec::syntax::Sources;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -28,7 +32,18 @@ pub struct Project {
     pub spec: PathBuf,
     /// What is made of the spec.
     pub targets: Targets,
+    lint: Lint,
     release: OnceLock<Option<Release>>,
+}
+
+/// What the project says of the lint, and where.
+#[derive(Debug)]
+pub struct Lint {
+    settings: lint::Settings,
+    /// `fc.yaml` and the files of rules that it names.
+    pub files: Sources,
+    /// What is wrong in them.
+    pub faults: Faults,
 }
 
 /// A version of the spec that is out.
@@ -44,12 +59,43 @@ impl Project {
     /// A project that has been found.
     #[must_use]
     pub fn new(root: PathBuf, spec: PathBuf, targets: Targets) -> Self {
+        let mut faults = Faults::new();
+        let (settings, files) = lint::settings(&root, FILE, &mut faults);
+        let lint = Lint {
+            settings,
+            files,
+            faults,
+        };
         Self {
             root,
             spec,
             targets,
+            lint,
             release: OnceLock::new(),
         }
+    }
+
+    /// What it says of the lint.
+    #[must_use]
+    pub fn lint(&self) -> &Lint {
+        &self.lint
+    }
+
+    /// What the lint finds in a model on a day, `YYYY-MM-DD`: nothing while something is wrong with its settings, as then nobody knows
+    /// what it is to look for.
+    pub fn linted<'p>(
+        &self,
+        model: &Model,
+        today: &str,
+        places: impl FnOnce() -> &'p Places,
+    ) -> Faults {
+        if !self.lint.faults.is_empty() {
+            return Faults::new();
+        }
+        let settings = &self.lint.settings;
+        let mut findings = lint(model, settings, today);
+        waive(&mut findings, &model.waivers, today);
+        faults(&findings, settings, places)
     }
 
     /// The last release, if there is one that can be read. It is read when it is asked for first.
@@ -74,10 +120,13 @@ impl Project {
         })
     }
 
-    /// Whether a file says something of the project beside its spec: what is made of it, what is released.
+    /// Whether a file says something of the project beside its spec: what is made of it, what the lint looks for, what is released.
     #[must_use]
     pub fn is_about(&self, file: &Path) -> bool {
         let releases = self.root.join(&self.spec).join(DIRECTORY);
-        file == self.root.join(fc_codegen::target::FILE) || file.starts_with(releases)
+        let mut rules = self.lint.files.iter();
+        file == self.root.join(FILE)
+            || rules.any(|(_, rules)| file == self.root.join(&rules.path))
+            || file.starts_with(releases)
     }
 }

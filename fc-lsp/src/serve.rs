@@ -367,12 +367,7 @@ impl Server<'_> {
 
     /// Tells the client what is wrong in each file, and of which nothing is any more.
     fn publish(&mut self, snapshot: &Snapshot, is_newest: bool) {
-        let mut found: BTreeMap<String, Vec<lsp::Diagnostic>> = BTreeMap::new();
-        for (file, faults) in diagnostics(snapshot) {
-            if let Some(uri) = snapshot.uri(file) {
-                found.insert(uri.0.clone(), faults);
-            }
-        }
+        let found = diagnostics(snapshot);
         // What has changed since is told of once more.
         let touched = if is_newest {
             std::mem::take(&mut self.touched)

@@ -46,7 +46,7 @@ pub struct State {
 /// What checking a spec comes to.
 #[derive(Debug)]
 pub struct Analysis {
-    /// Its faults, in the order of their places.
+    /// Its faults in the order of their places, and, where it has no errors, what the lint finds.
     pub faults: Faults,
     /// What it means, or what could be read of it.
     pub read: Result<Model, Box<Partial>>,
@@ -61,6 +61,14 @@ impl State {
             let mut faults = self.unread.clone();
             let languages = self.project.targets.languages();
             let checked = check_trees(&self.trees, &languages, &mut faults);
+            if let Ok(model) = &checked.read
+                && !faults.has_errors()
+            {
+                let places = || self.places();
+                let linted = self.project.linted(model, &self.today, places);
+                faults.extend(linted.iter().cloned());
+                faults.sort();
+            }
             Analysis {
                 faults,
                 read: checked.read,

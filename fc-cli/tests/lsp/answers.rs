@@ -3,8 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::editor::{Editor, editor, editor_in};
-use crate::support::Project;
-use crate::{LAMP, PROTOCOL, TYPES};
+use crate::{LAMP, PROTOCOL, TYPES, project};
 
 fn hover(editor: &mut Editor<'_>, path: &str, marked: &str) -> String {
     let hover = editor.ask_at("textDocument/hover", path, marked);
@@ -15,7 +14,7 @@ fn hover(editor: &mut Editor<'_>, path: &str, marked: &str) -> String {
 
 #[test]
 fn keys_words_and_things_are_explained_in_both_languages() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     for (path, marked, parts) in [
         // A key, a word of it, a unit, a built-in type.
@@ -113,7 +112,7 @@ fn keys_words_and_things_are_explained_in_both_languages() {
 
 #[test]
 fn a_name_leads_to_what_it_names() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     for (path, marked, target) in [
         (LAMP, "\"Spo|t?\"", "spec/types.yaml:13 Spot"),
@@ -175,7 +174,7 @@ fn a_name_leads_to_what_it_names() {
 
 #[test]
 fn what_names_a_thing_is_found_in_all_files() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     let ask = |editor: &mut Editor<'_>, path: &str, marked: &str, with_own: bool| {
         let mut params = editor.at(path, marked);
@@ -208,7 +207,7 @@ fn what_names_a_thing_is_found_in_all_files() {
 
 #[test]
 fn a_file_has_an_outline() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     let document = json!({ "textDocument": { "uri": editor.uri(TYPES) } });
     let symbols = editor.ask("textDocument/documentSymbol", document);

@@ -3,8 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::editor::{Editor, editor};
-use crate::support::Project;
-use crate::{LAMP, TYPES};
+use crate::{LAMP, TYPES, project};
 
 /// What is offered at a mark, after `old` has become `new`, which has the mark.
 fn offered(editor: &mut Editor<'_>, path: &str, old: &str, new: &str) -> Vec<Value> {
@@ -21,7 +20,7 @@ fn offered(editor: &mut Editor<'_>, path: &str, old: &str, new: &str) -> Vec<Val
 
 #[test]
 fn what_may_be_written_is_offered() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     for (path, old, new, wanted, unwanted) in [
         // Keys: in braces, on a line of their own, where the form is not known yet, at the top.
@@ -162,7 +161,7 @@ reports:
 
 #[test]
 fn what_is_chosen_makes_the_spec_right_again() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     for (path, old, new, chosen, then) in [
         (

@@ -240,7 +240,7 @@ impl<'p> Editor<'p> {
         })
     }
 
-    /// The codes of what is wrong in a file.
+    /// The codes of what is told of a file.
     pub fn codes(&mut self, path: &str) -> Vec<String> {
         let faults = self.faults(path);
         let codes = faults.iter().map(|fault| fault["code"].as_str());

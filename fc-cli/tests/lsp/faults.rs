@@ -3,12 +3,11 @@
 use serde_json::{Value, json};
 
 use crate::editor::Editor;
-use crate::support::Project;
-use crate::{LAMP, TYPES};
+use crate::{LAMP, TYPES, project};
 
 #[test]
 fn faults_come_and_go_with_the_text() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     assert_eq!(editor.codes(TYPES), [""; 0]);
@@ -34,7 +33,7 @@ fn faults_come_and_go_with_the_text() {
 
 #[test]
 fn faults_and_their_fixes_speak_the_language_of_the_editor() {
-    let project = Project::new();
+    let project = project();
     let told = [
         ("zh-cn", "没有", "把 `unti` 改为 `unit`："),
         ("en", "is not a key", "replace `unti` with `unit`: "),
@@ -59,7 +58,7 @@ fn faults_and_their_fixes_speak_the_language_of_the_editor() {
 
 #[test]
 fn a_change_in_one_file_shows_in_another() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     assert_eq!(editor.codes(TYPES), [""; 0]);
@@ -80,7 +79,7 @@ fn a_change_in_one_file_shows_in_another() {
 
 #[test]
 fn what_changes_on_the_disk_is_read_again() {
-    let project = Project::new();
+    let project = project();
     let asks = json!({ "workspace": { "didChangeWatchedFiles": { "dynamicRegistration": true } } });
     let mut editor = Editor::with(&project, json!({ "capabilities": asks }));
     let patterns = editor.wait(|message| match message {
@@ -109,7 +108,7 @@ fn columns_are_counted_as_the_client_counts_them() {
     let old = "zh: 直径, en: Diameter }";
     let new = "zh: 直径😀, en: Diameter, unti: 1 }";
     for counts in ["utf-16", "utf-8"] {
-        let project = Project::new();
+        let project = project();
         let general = json!({ "positionEncodings": ["utf-32", counts] });
         let mut editor = Editor::with(&project, json!({ "capabilities": { "general": general } }));
         assert_eq!(editor.capabilities["positionEncoding"], counts);
@@ -134,7 +133,7 @@ fn columns_are_counted_as_the_client_counts_them() {
 
 #[test]
 fn a_text_that_is_laid_out_is_what_fc_fmt_makes_of_it() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     for path in [TYPES, LAMP] {
         editor.open(path);
@@ -178,7 +177,7 @@ fn every_fix_mends_its_fault() {
             "after: [get_levl, probe]",
         ),
     ] {
-        let project = Project::new();
+        let project = project();
         let mut editor = Editor::start(&project);
         editor.open(path);
         assert_eq!(editor.codes(path), [""; 0]);
@@ -209,7 +208,7 @@ fn every_fix_mends_its_fault() {
 
 #[test]
 fn a_fault_of_several_places_is_fixed_at_each_or_at_all() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(LAMP);
     let before = editor.text(LAMP).to_owned();
@@ -246,7 +245,7 @@ fn a_fault_of_several_places_is_fixed_at_each_or_at_all() {
 
 #[test]
 fn what_leaves_no_choice_is_fixed_at_once() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(LAMP);
     let before = editor.text(LAMP).to_owned();
@@ -273,4 +272,56 @@ fn what_leaves_no_choice_is_fixed_at_once() {
         let params = asked(&editor, only);
         assert_eq!(editor.ask("textDocument/codeAction", params), json!([]));
     }
+}
+
+/// The rules of a project that has no commands.
+const NO_COMMANDS: &str = "\
+- id: no-commands
+  zh: 不要指令
+  en: There is a command
+  for: command
+  where: { name: set_level }
+  require: { name: absent }
+";
+
+#[test]
+fn what_the_lint_finds_is_told_where_there_are_no_errors() {
+    let project = project();
+    project.write(
+        "fc.yaml",
+        "lint: { levels: { STANDARD: \"off\", DOCS: \"off\", SUNSET: \"off\" }, house: [rules.yaml] }\n",
+    );
+    project.write("rules.yaml", NO_COMMANDS);
+    let mut editor = Editor::start(&project);
+    editor.open(LAMP);
+    let found = editor.faults(LAMP);
+    let [found] = found.as_slice() else {
+        panic!("{found:#?}");
+    };
+    assert_eq!(found["code"], "FC0890");
+    assert_eq!(found["severity"], 2);
+    assert_eq!(editor.slice(LAMP, &found["range"]), "set_level");
+    let told = project.fc(&["lint", "--format", "json"]).expect(0);
+    let told: Value = serde_json::from_str(told.stdout.trim()).expect("one finding");
+    assert_eq!(told["code"], found["code"]);
+
+    editor.replace(LAMP, "effect: motion", "effect: moton");
+    assert_eq!(editor.codes(LAMP), ["FC0109"]);
+    editor.replace(LAMP, "effect: moton", "effect: motion");
+    assert_eq!(editor.codes(LAMP), ["FC0890"]);
+
+    // The rules change on the disk, and cannot be used: that is told where they are, and nothing is found by them.
+    let changed = json!({ "changes": [{ "uri": editor.uri("rules.yaml"), "type": 2 }] });
+    project.write("rules.yaml", &NO_COMMANDS.replace("for:", "fro:"));
+    editor.tell("workspace/didChangeWatchedFiles", changed.clone());
+    assert_eq!(editor.codes(LAMP), [""; 0]);
+    let wrong = editor.codes("rules.yaml");
+    assert!(
+        !wrong.is_empty() && wrong.iter().all(|code| code == "FC0893"),
+        "{wrong:?}"
+    );
+    project.write("rules.yaml", NO_COMMANDS);
+    editor.tell("workspace/didChangeWatchedFiles", changed);
+    assert_eq!(editor.codes(LAMP), ["FC0890"]);
+    assert_eq!(editor.end(), 0);
 }

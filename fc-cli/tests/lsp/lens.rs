@@ -4,12 +4,11 @@ use lsp_server::Message;
 use serde_json::json;
 
 use crate::editor::{Editor, editor};
-use crate::support::Project;
-use crate::{LAMP, TYPES};
+use crate::{LAMP, TYPES, project};
 
 #[test]
 fn lenses_tell_of_codes_users_and_breaks() {
-    let project = Project::new();
+    let project = project();
     project
         .fc(&["release", "7", "--today", "2026-09-01"])
         .expect(0);
@@ -65,7 +64,7 @@ fn lenses_tell_of_codes_users_and_breaks() {
 
 #[test]
 fn lenses_are_asked_for_again_when_a_check_has_found_other_things() {
-    let project = Project::new();
+    let project = project();
     project
         .fc(&["release", "7", "--today", "2026-09-01"])
         .expect(0);

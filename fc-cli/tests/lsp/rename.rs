@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::editor::{Editor, editor};
 use crate::support::Project;
-use crate::{LAMP, PROTOCOL, TYPES};
+use crate::{LAMP, PROTOCOL, TYPES, project};
 
 /// The parts of the dump that say what is sent: every wire key, code and enum value.
 fn sent(project: &Project) -> Vec<String> {
@@ -139,7 +139,7 @@ fn a_thing_is_renamed_wherever_it_is_named_and_what_is_sent_stays() {
             &[(PROTOCOL, "    hanging: {")],
         ),
     ] {
-        let project = Project::new();
+        let project = project();
         project.fc(&["fmt"]).expect(0);
         let before = sent(&project);
         let mut editor = editor(&project);
@@ -172,7 +172,7 @@ fn a_thing_is_renamed_wherever_it_is_named_and_what_is_sent_stays() {
 
 #[test]
 fn a_field_in_short_form_gets_room_for_its_name() {
-    let project = Project::new();
+    let project = project();
     let text = project.read(LAMP);
     let long =
         "spot: { type: \"Spot?\", coordinates: beam, kept: memory, zh: 光斑, en: Spot of light }";
@@ -198,7 +198,7 @@ fn a_field_in_short_form_gets_room_for_its_name() {
 
 #[test]
 fn a_name_that_cannot_be_is_refused_with_the_reason() {
-    let project = Project::new();
+    let project = project();
     let mut editor = editor(&project);
     for (path, marked, new) in [
         (TYPES, "  Sp|ot:\n", "spot"),

@@ -2,13 +2,13 @@
 
 use serde_json::{Value, json};
 
-use crate::TYPES;
 use crate::editor::Editor;
 use crate::support::{self, Project};
+use crate::{TYPES, project};
 
 #[test]
 fn what_no_client_should_say_ends_nothing() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     let uri = editor.uri(TYPES);
@@ -76,7 +76,7 @@ fn what_no_client_should_say_ends_nothing() {
 
 #[test]
 fn many_changes_at_once_end_in_what_is_wrong_with_the_last() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     let text = editor.text(TYPES).to_owned();
@@ -102,7 +102,7 @@ fn without_a_project_there_is_nothing_to_say() {
         Value::Null
     );
     // A project below the directory that is open is found by the first file in it.
-    let inner = Project::new();
+    let inner = crate::project();
     support::copy(&inner.path("spec"), &project.path("robot/spec"));
     let path = "robot/spec/types.yaml";
     editor.open(path);
@@ -115,7 +115,7 @@ fn without_a_project_there_is_nothing_to_say() {
 /// Questions that are taken back, that a change overtakes, or that the end does: each has one answer.
 #[test]
 fn every_question_has_one_answer_whatever_comes_behind_it() {
-    let project = Project::new();
+    let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     let (there, gone) = ("unit: mm", "unti: mm");

@@ -7,14 +7,15 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::{Item, Places};
 use crate::syntax::{FileId, Span};
 use crate::text;
+use std::borrow::Borrow;
 
 /// What is to be shown of the findings: those that no waiver accepts and whose level is not off, in the order of their places. Places
 /// are only asked for if there is anything to be shown.
 #[must_use]
-pub fn faults(
+pub fn faults<P: Borrow<Places>>(
     findings: &[Finding],
     settings: &Settings,
-    places: impl FnOnce() -> Places,
+    places: impl FnOnce() -> P,
 ) -> Faults {
     let mut faults = Faults::new();
     let level = |finding: &Finding| settings.level(finding.rule, finding.house.as_deref());
@@ -25,7 +26,8 @@ pub fn faults(
         return faults;
     }
     let places = places();
-    faults.extend(shown.map(|(finding, level)| fault(finding, level, &places)));
+    let places = places.borrow();
+    faults.extend(shown.map(|(finding, level)| fault(finding, level, places)));
     faults.sort();
     faults
 }
