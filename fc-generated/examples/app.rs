@@ -16,14 +16,16 @@ use fc_runtime::{CallError, Command, DataConnection, Message, Report};
 use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::time::Duration;
-use support::{Args, Fault, Table};
+use support::{Args, Fault, Lang, Table};
 
 const USAGE: &str = "\
 Calls every command of a robot and prints what came of it.
 
 Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-from BYTES]
+           [--lang zh|en]
 
-Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.";
+Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.
+Without --lang, the language of the environment.";
 
 /// How long the app waits for what the robot sends of its own accord.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -41,7 +43,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     data.connected().await?;
     // #endregion data
 
-    let mut tour = Tour::default();
+    let mut tour = Tour::new(args.lang);
     call_all(&client, &mut tour).await;
     receive_all(&mut reports, &mut tour).await?;
     receive_picture(&data, &mut tour).await?;
@@ -54,24 +56,32 @@ async fn run(args: Args) -> Result<(), Fault> {
 
 /// What came of each operation so far.
 struct Tour {
+    lang: Lang,
     table: Table,
     failed: usize,
 }
 
-impl Default for Tour {
-    fn default() -> Self {
-        let mut table = Table::default();
-        table.row(["编码", "类型", "名称", "说明", "结果"]);
-        Self { table, failed: 0 }
-    }
-}
-
 impl Tour {
+    fn new(lang: Lang) -> Self {
+        let mut table = Table::default();
+        table.row(lang.pick(
+            ["功能码", "类型", "名称", "说明", "结果"],
+            ["Code", "Kind", "Name", "Title", "Outcome"],
+        ));
+        Self {
+            lang,
+            table,
+            failed: 0,
+        }
+    }
+
     fn add(&mut self, code: u16, kind: &str, outcome: Result<String, String>) {
         let operation = OPERATIONS
             .iter()
             .find(|operation| operation.code == Some(code));
-        let (name, title) = operation.map_or(("", ""), |operation| (operation.name, operation.zh));
+        let (name, title) = operation.map_or(("", ""), |operation| {
+            (operation.name, self.lang.pick(operation.zh, operation.en))
+        });
         let outcome = outcome.unwrap_or_else(|error| {
             self.failed += 1;
             error
@@ -82,9 +92,9 @@ impl Tour {
 
     fn answered<C: Command>(&mut self, answer: Result<C::Response, CallError>) {
         let outcome = answer
-            .map(|_| "成功".to_owned())
+            .map(|_| self.lang.pick("成功", "answered").to_owned())
             .map_err(|error| error.to_string());
-        self.add(C::CODE, "指令", outcome);
+        self.add(C::CODE, self.lang.pick("指令", "command"), outcome);
     }
 }
 
@@ -130,7 +140,12 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
         match report.ok_or("the robot has left")? {
             Ok(report) => {
                 if let Some(code) = code_of(&report).filter(|code| missing.remove(code)) {
-                    tour.add(code, "主动上报", Ok("收到".to_owned()));
+                    let outcome = tour.lang.pick("收到", "received");
+                    tour.add(
+                        code,
+                        tour.lang.pick("主动上报", "report"),
+                        Ok(outcome.to_owned()),
+                    );
                 }
             }
             Err(error) => return Err(error.into()),
@@ -146,14 +161,14 @@ async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(
         .await
         .map_err(|_| "no picture came")??;
     let outcome = if frame.code == GetMapImageRequest::CODE {
-        Ok(format!(
-            "收到 {} 字节，msgId {}，MD5 一致",
-            frame.data.len(),
-            frame.id
+        let (size, id) = (frame.data.len(), frame.id);
+        Ok(tour.lang.pick(
+            format!("收到 {size} 字节，msgId {id}，MD5 一致"),
+            format!("received {size} bytes, msgId {id}, MD5 verified"),
         ))
     } else {
         Err(format!("unexpected picture of 0x{:04X}", frame.code))
     };
-    tour.add(frame.code, "数据流", outcome);
+    tour.add(frame.code, tour.lang.pick("数据流", "stream"), outcome);
     Ok(())
 }

@@ -73,6 +73,36 @@ pub struct Args {
     pub gzip: Gzip,
     /// How many times as wide and high the robot's picture is.
     pub picture_scale: usize,
+    /// In which language it speaks.
+    pub lang: Lang,
+}
+
+/// A language of the spec.
+#[derive(Clone, Copy)]
+pub enum Lang {
+    Zh,
+    En,
+}
+
+impl Lang {
+    /// That of the environment, as POSIX has it.
+    fn of_environment() -> Self {
+        let mut values = ["LC_ALL", "LC_MESSAGES", "LANG"]
+            .map(std::env::var)
+            .into_iter();
+        match values.find_map(|value| value.ok().filter(|value| !value.is_empty())) {
+            Some(locale) if locale.starts_with("zh") => Self::Zh,
+            _ => Self::En,
+        }
+    }
+
+    /// The text of this language.
+    pub fn pick<T>(self, zh: T, en: T) -> T {
+        match self {
+            Self::Zh => zh,
+            Self::En => en,
+        }
+    }
 }
 
 impl Args {
@@ -100,6 +130,7 @@ impl Args {
             delay: Duration::ZERO,
             gzip: Gzip::default(),
             picture_scale: 1,
+            lang: Lang::of_environment(),
         };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
@@ -121,6 +152,13 @@ impl Args {
                 "--delay" => args.delay = Duration::from_millis(number(value()?)?.into()),
                 "--gzip-from" => args.gzip.from_bytes = number(value()?)? as usize,
                 "--picture-scale" => args.picture_scale = number(value()?)? as usize,
+                "--lang" => {
+                    args.lang = match value()?.as_str() {
+                        "zh" => Lang::Zh,
+                        "en" => Lang::En,
+                        other => return Err(format!("{other} is neither zh nor en")),
+                    }
+                }
                 "--help" | "-h" => {
                     println!("{usage}");
                     return Ok(None);

@@ -12,9 +12,9 @@ namespace {
 constexpr const char* kUsage =
     "Calls every command of a robot and prints what came of it.\n\n"
     "Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] "
-    "[--gzip-from BYTES]\n\n"
+    "[--gzip-from BYTES]\n           [--lang zh|en]\n\n"
     "Without ports, those of the spec. With --gzip-from, whatever has so many bytes is "
-    "compressed.\n";
+    "compressed.\nWithout --lang, the language of the environment.\n";
 
 /// How long the app waits for what the robot sends of its own accord.
 constexpr std::chrono::seconds kPatience{20};
@@ -22,7 +22,16 @@ constexpr std::chrono::seconds kPatience{20};
 /// What came of each operation so far.
 class Tour {
  public:
-  Tour() { table_.row({"编码", "类型", "名称", "说明", "结果"}); }
+  explicit Tour(bool is_chinese) : is_chinese_(is_chinese) {
+    table_.row({pick("功能码", "Code"), pick("类型", "Kind"), pick("名称", "Name"),
+                pick("说明", "Title"), pick("结果", "Outcome")});
+  }
+
+  /// The text of the language in which it speaks.
+  template <typename T>
+  [[nodiscard]] T pick(T zh, T en) const {
+    return is_chinese_ ? zh : en;
+  }
 
   void add(fc_runtime::OperationKind kind, std::uint16_t code, const char* what, bool good,
            const std::string& outcome) {
@@ -30,7 +39,7 @@ class Tour {
     char spelled[8];
     std::snprintf(spelled, sizeof spelled, "0x%04X", code);
     table_.row({spelled, what, known != nullptr ? std::string(known->name) : "",
-                known != nullptr ? std::string(known->zh) : "", outcome});
+                known != nullptr ? std::string(pick(known->zh, known->en)) : "", outcome});
     if (!good) ++failed_;
   }
 
@@ -38,6 +47,7 @@ class Tour {
   void print() const { table_.print(); }
 
  private:
+  bool is_chinese_;
   Table table_;
   int failed_ = 0;
 };
@@ -46,8 +56,9 @@ void call_all(const fc::Client& client, Tour& tour) {
   fc::for_each_command([&](const auto& any) {
     using Request = std::decay_t<decltype(any)>;
     const auto answer = client.connection().call(fc_runtime::example<Request>());
-    tour.add(fc_runtime::OperationKind::Command, fc_runtime::Command<Request>::code, "指令",
-             answer.has_value(), answer ? "成功" : to_string(answer.error()));
+    tour.add(fc_runtime::OperationKind::Command, fc_runtime::Command<Request>::code,
+             tour.pick("指令", "command"), answer.has_value(),
+             answer ? tour.pick("成功", "answered") : to_string(answer.error()));
   });
 }
 
@@ -72,7 +83,8 @@ bool receive_all(const fc::Reports& reports, Tour& tour) {
         },
         *report);
     if (missing.erase(code) > 0) {
-      tour.add(fc_runtime::OperationKind::Report, code, "主动上报", true, "收到");
+      tour.add(fc_runtime::OperationKind::Report, code, tour.pick("主动上报", "report"), true,
+               tour.pick("收到", "received"));
     }
   }
   for (const std::uint16_t code : missing) {
@@ -90,9 +102,12 @@ bool receive_picture(const fc_runtime::DataConnection& data, Tour& tour) {
     return false;
   }
   const bool is_asked_for = frame->code == fc_runtime::Command<fc::GetMapImageRequest>::code;
-  tour.add(fc_runtime::OperationKind::Command, frame->code, "数据流", is_asked_for,
-           "收到 " + std::to_string(frame->data.size()) + " 字节，msgId " +
-               std::to_string(frame->id) + "，MD5 一致");
+  const auto size = std::to_string(frame->data.size());
+  const auto id = std::to_string(frame->id);
+  tour.add(fc_runtime::OperationKind::Command, frame->code, tour.pick("数据流", "stream"),
+           is_asked_for,
+           tour.pick("收到 " + size + " 字节，msgId " + id + "，MD5 一致",
+                     "received " + size + " bytes, msgId " + id + ", MD5 verified"));
   return true;
 }
 
@@ -111,7 +126,7 @@ int main(int count, char** words) {
     std::fprintf(stderr, "no data connection: %s\n", to_string(connected.error()).c_str());
     return 1;
   }
-  Tour tour;
+  Tour tour(args.is_chinese);
   call_all(*client, tour);
   const bool all_came = receive_all(reports, tour) && receive_picture(data, tour);
   tour.print();

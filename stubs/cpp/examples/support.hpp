@@ -24,11 +24,23 @@ struct Args {
   fc_runtime::Gzip gzip;
   /// How many times as wide and high the robot's picture is.
   std::size_t picture_scale = 1;
+  /// Whether it speaks Chinese, or else English.
+  bool is_chinese = false;
 };
+
+/// Whether the language of the environment is Chinese, as POSIX has it.
+inline bool is_environment_chinese() {
+  for (const char* name : {"LC_ALL", "LC_MESSAGES", "LANG"}) {
+    const char* locale = std::getenv(name);
+    if (locale != nullptr && *locale != '\0') return std::string_view(locale).substr(0, 2) == "zh";
+  }
+  return false;
+}
 
 /// Reads the command line; says what is wrong with it and ends the program, if anything is.
 inline Args parse(int count, char** words, const char* usage) {
   Args args;
+  args.is_chinese = is_environment_chinese();
   const auto fail = [&](const std::string& why) {
     std::fprintf(stderr, "%s\n\n%s", why.c_str(), usage);
     std::exit(2);
@@ -58,6 +70,9 @@ inline Args parse(int count, char** words, const char* usage) {
       args.gzip.from_bytes = number(value, 1'000'000'000);
     } else if (word == "--picture-scale") {
       args.picture_scale = number(value, 100);
+    } else if (word == "--lang") {
+      if (value != "zh" && value != "en") fail(value + " is neither zh nor en");
+      args.is_chinese = value == "zh";
     } else {
       fail(std::string(word) + " is no option");
     }

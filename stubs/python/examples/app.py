@@ -9,10 +9,13 @@ from __future__ import annotations
 import asyncio
 import sys
 import warnings
+from typing import TypeVar
 
 import fc
 import fc_runtime as rt
 from common import Table, arguments
+
+T = TypeVar("T")
 
 # How long the app waits for what the robot sends of its own accord.
 PATIENCE = 20.0
@@ -21,14 +24,21 @@ PATIENCE = 20.0
 class Tour:
     """What came of each operation so far."""
 
-    def __init__(self) -> None:
-        self.table = Table("编码", "类型", "名称", "说明", "结果")
+    def __init__(self, lang: str) -> None:
+        """With nothing yet."""
+        self.is_chinese = lang == "zh"
+        head = ["功能码", "类型", "名称", "说明", "结果"], ["Code", "Kind", "Name", "Title", "Outcome"]
+        self.table = Table(*self.pick(*head))
         self.failed = 0
+
+    def pick(self, zh: T, en: T) -> T:
+        """What the language calls for."""
+        return zh if self.is_chinese else en
 
     def add(self, code: int, kind: str, outcome: str, *, ok: bool = True) -> None:
         """Adds a row."""
         known = fc.FC.operation(code)
-        name, title = (known.name, known.zh) if known else ("", "")
+        name, title = (known.name, self.pick(known.zh, known.en)) if known else ("", "")
         self.table.row(f"0x{code:04X}", kind, name, title, outcome)
         self.failed += not ok
 
@@ -37,12 +47,13 @@ async def call_all(client: fc.Client, tour: Tour) -> None:
     """Calls every command with the spec's example."""
     # A robot still has what is withdrawn.
     warnings.simplefilter("ignore", DeprecationWarning)
+    kind = tour.pick("指令", "command")
     for code, command in fc.FC.commands_by_code.items():
         try:
             await getattr(client, command.method_name)(command.request.example())
-            tour.add(code, "指令", "成功")
+            tour.add(code, kind, tour.pick("成功", "answered"))
         except rt.CallError as error:
-            tour.add(code, "指令", str(error), ok=False)
+            tour.add(code, kind, str(error), ok=False)
 
 
 async def receive_all(reports: rt.Reports[fc.AnyReport], tour: Tour) -> None:
@@ -57,7 +68,7 @@ async def receive_all(reports: rt.Reports[fc.AnyReport], tour: Tour) -> None:
             sys.exit("the robot has left")
         code = missing.pop(type(report), None)
         if code is not None:
-            tour.add(code, "主动上报", "收到")
+            tour.add(code, tour.pick("主动上报", "report"), tour.pick("收到", "received"))
 
 
 async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
@@ -67,8 +78,12 @@ async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
     except asyncio.TimeoutError:
         sys.exit("no picture came")
     is_asked_for = frame.code == fc.operations.GET_MAP_IMAGE.code
-    outcome = f"收到 {len(frame.data)} 字节，msgId {frame.id}，MD5 一致" if is_asked_for else "unexpected picture"
-    tour.add(frame.code, "数据流", outcome, ok=is_asked_for)
+    size = len(frame.data)
+    outcome = tour.pick(
+        f"收到 {size} 字节，msgId {frame.id}，MD5 一致", f"received {size} bytes, msgId {frame.id}, MD5 verified"
+    )
+    kind = tour.pick("数据流", "stream")
+    tour.add(frame.code, kind, outcome if is_asked_for else "unexpected picture", ok=is_asked_for)
 
 
 async def run() -> int:
@@ -81,7 +96,7 @@ async def run() -> int:
         data = client.data()
         await data.connected()
         # endregion data
-        tour = Tour()
+        tour = Tour(asked.lang)
         await call_all(client, tour)
         await receive_all(reports, tour)
         await receive_picture(data, tour)

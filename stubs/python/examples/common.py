@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import unicodedata
 
 
@@ -13,6 +14,7 @@ def arguments(usage: str, *, is_robot: bool = False) -> argparse.Namespace:
     parser.add_argument("--command-port", type=int)
     parser.add_argument("--data-port", type=int)
     parser.add_argument("--gzip-from", type=int, default=1024, help="bytes from which on something is compressed")
+    parser.add_argument("--lang", choices=["zh", "en"], default=_lang(), help="default: that of the environment")
     if is_robot:
         parser.add_argument("--once", action="store_true", help="end when the app has left")
         parser.add_argument("--delay", type=float, default=0.0, help="milliseconds to take over each command")
@@ -39,6 +41,13 @@ class Table:
             for row in self.rows
         ]
         return "\n".join(lines)
+
+
+def _lang() -> str:
+    """The language of the environment, as POSIX has it."""
+    locales = map(os.environ.get, ("LC_ALL", "LC_MESSAGES", "LANG"))
+    locale = next(filter(None, locales), "")
+    return "zh" if locale.startswith("zh") else "en"
 
 
 def _width(text: str) -> int:

@@ -16,6 +16,8 @@ export interface Args {
   gzip: { fromBytes?: number }
   /** How many times as wide and high the robot's picture is. */
   pictureScale: number
+  /** In which language it speaks. */
+  lang: 'zh' | 'en'
 }
 
 /** Runs an example as its command line says; a wrong one ends it with 2, a fault with 1. */
@@ -41,8 +43,21 @@ export async function main(usage: string, run: (args: Args) => Promise<void>): P
   }
 }
 
+/** The language of the environment, as POSIX has it. */
+function langOfEnvironment(): Args['lang'] {
+  const { LC_ALL, LC_MESSAGES, LANG } = process.env
+  return [LC_ALL, LC_MESSAGES, LANG].find((locale) => locale)?.startsWith('zh') ? 'zh' : 'en'
+}
+
 function parse(words: readonly string[]): Args {
-  const args: Args = { host: '127.0.0.1', once: false, delay: 0, gzip: {}, pictureScale: 1 }
+  const args: Args = {
+    host: '127.0.0.1',
+    once: false,
+    delay: 0,
+    gzip: {},
+    pictureScale: 1,
+    lang: langOfEnvironment(),
+  }
   for (let index = 0; index < words.length; index++) {
     const word = words[index] ?? ''
     const value = (): string => {
@@ -62,7 +77,11 @@ function parse(words: readonly string[]): Args {
     else if (word === '--gzip-from') args.gzip = { fromBytes: number(2 ** 31 - 1) }
     else if (word === '--picture-scale') args.pictureScale = number(100)
     else if (word === '--once') args.once = true
-    else throw new Error(`${word} is no option`)
+    else if (word === '--lang') {
+      const lang = value()
+      if (lang !== 'zh' && lang !== 'en') throw new Error(`${lang} is neither zh nor en`)
+      args.lang = lang
+    } else throw new Error(`${word} is no option`)
   }
   return args
 }

@@ -22,12 +22,14 @@ import kotlinx.coroutines.withTimeout
 private const val USAGE = """Calls every command of a robot and prints what came of it.
 
 Usage: run app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-from BYTES]
+           [--lang zh|en]
 
-Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed."""
+Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.
+Without --lang, the language of the environment."""
 
 internal fun main(arguments: Array<String>) {
     val told = Arguments(arguments, USAGE)
-    val tour = Tour()
+    val tour = Tour(told.isChinese)
     val fault = runBlocking {
         try {
             Client.connect(told.client()).use { client -> tour.take(client) }
@@ -42,8 +44,9 @@ internal fun main(arguments: Array<String>) {
 }
 
 /** What came of each operation so far. */
-private class Tour {
-    private val rows = arrayListOf(listOf("编码", "类型", "名称", "说明", "结果"))
+private class Tour(private val isChinese: Boolean) {
+    private val rows =
+        arrayListOf(pick(listOf("功能码", "类型", "名称", "说明", "结果"), listOf("Code", "Kind", "Name", "Title", "Outcome")))
     var failed = 0
         private set
 
@@ -56,6 +59,9 @@ private class Tour {
         receivePicture(data)
     }
 
+    /** What the language calls for. */
+    private fun <T> pick(zh: T, en: T): T = if (isChinese) zh else en
+
     private fun add(code: Int, kind: String, name: String, title: String, outcome: String) {
         rows.add(listOf(String.format(Locale.ROOT, "0x%04X", code), kind, name, title, outcome))
     }
@@ -63,12 +69,12 @@ private class Tour {
     private suspend fun <Q : Message, A : Message> call(client: Client, command: Command<Q, A>) {
         val outcome = try {
             client.connection.call(command, command.request.example())
-            "成功"
+            pick("成功", "answered")
         } catch (error: CallError) {
             failed++
             error.message
         }
-        add(command.code, "指令", command.name, command.titleZh, outcome)
+        add(command.code, pick("指令", "command"), command.name, pick(command.titleZh, command.titleEn), outcome)
     }
 
     /** Waits until every report has come once. */
@@ -77,7 +83,8 @@ private class Tour {
         while (missing.isNotEmpty()) {
             val report = withTimeout(Arguments.PATIENCE_MILLIS) { reports.receive() } ?: error("the robot has left")
             val known = missing.remove(report.code) ?: continue
-            add(known.code, "主动上报", known.name, known.titleZh, "收到")
+            val title = pick(known.titleZh, known.titleEn)
+            add(known.code, pick("主动上报", "report"), known.name, title, pick("收到", "received"))
         }
     }
 
@@ -86,7 +93,9 @@ private class Tour {
         val frame = withTimeout(Arguments.PATIENCE_MILLIS) { data.receive() }
         check(frame.code == Operations.getMapImage.code) { "unexpected picture of ${frame.code}" }
         val ordered = Operations.getMapImage
-        add(frame.code, "数据流", ordered.name, ordered.titleZh, "收到 ${frame.data.size} 字节，msgId ${frame.id}，MD5 一致")
+        val (size, id) = frame.data.size to frame.id
+        val outcome = pick("收到 $size 字节，msgId $id，MD5 一致", "received $size bytes, msgId $id, MD5 verified")
+        add(frame.code, pick("数据流", "stream"), ordered.name, pick(ordered.titleZh, ordered.titleEn), outcome)
     }
 
     fun print() {

@@ -35,6 +35,11 @@ internal class Arguments(arguments: Array<String>, usage: String) {
     /** How many times as wide and high the robot's picture is. */
     val pictureScale: Int get() = given["--picture-scale"]?.toInt() ?: 1
 
+    /** Whether they speak Chinese, or else English: as they are told, or as POSIX has it of the environment. */
+    val isChinese: Boolean get() = (given["--lang"] ?: locale()).startsWith("zh")
+
+    private fun locale(): String = listOf("LC_ALL", "LC_MESSAGES", "LANG").mapNotNull(System::getenv).firstOrNull { it.isNotEmpty() } ?: ""
+
     /** The robot and the ports as settings of a client. */
     fun client(): ClientConfig {
         var config = ClientConfig().host(host).gzip(gzip)
@@ -44,7 +49,7 @@ internal class Arguments(arguments: Array<String>, usage: String) {
     }
 
     internal companion object {
-        private val OPTIONS = listOf("--host", "--command-port", "--data-port", "--delay", "--gzip-from", "--picture-scale")
+        private val OPTIONS = listOf("--host", "--command-port", "--data-port", "--delay", "--gzip-from", "--picture-scale", "--lang")
 
         /** How long the programs wait for what is to come by itself. */
         val PATIENCE_MILLIS: Long = TimeUnit.SECONDS.toMillis(20)
