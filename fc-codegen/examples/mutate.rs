@@ -12,9 +12,10 @@ use fc_codegen::emit;
 use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
-use fc_spec::load;
+use fc_spec::load::Trees;
 use fc_spec::model::Model;
-use fc_spec::syntax::{self, Node, NodeKind, SourceFile, Sources, Style};
+use fc_spec::syntax::{self, FileId, Node, NodeKind, SourceFile, Style};
+use std::collections::HashMap;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,7 +23,7 @@ use std::time::Instant;
 
 /// A scalar to change: file, byte range, and the text to put there.
 struct Mutation {
-    file: usize,
+    file: FileId,
     start: usize,
     end: usize,
     text: String,
@@ -35,27 +36,51 @@ enum Outcome {
     Dead,
 }
 
-/// The products one by one, those first that notice most and cost least.
-const PRODUCTS: [fn(&Model, &Targets) -> Vec<Artifact>; 3] =
-    [emit::markdown::emit, emit::rust::emit, emit::vectors::emit];
+/// The products beside the pages.
+const PRODUCTS: [fn(&Model, &Targets) -> Vec<Artifact>; 2] =
+    [emit::rust::emit, emit::vectors::emit];
+
+/// What is made of the spec as it is.
+struct Baseline {
+    trees: Trees,
+    targets: Targets,
+    /// By their paths.
+    pages: HashMap<String, Artifact>,
+    others: Vec<Vec<Artifact>>,
+}
+
+impl Baseline {
+    /// Whether anything else is made of a model. Pages come first, which notice most, and of them no more are made than it takes.
+    fn differs(&self, model: &Model) -> bool {
+        let mut same = 0;
+        emit::markdown::emit_while(model, &self.targets, |page| {
+            let is_same = self.pages.get(&page.path) == Some(&page);
+            same += usize::from(is_same);
+            is_same
+        });
+        let mut others = PRODUCTS.iter().zip(&self.others);
+        same < self.pages.len() || others.any(|(emit, was)| emit(model, &self.targets) != *was)
+    }
+}
 
 fn main() -> ExitCode {
     let spec = std::env::args().nth(1).unwrap_or_else(|| "spec".to_owned());
     let mut faults = Faults::default();
     let sources = syntax::read_dir(Path::new("."), Path::new(&spec), &mut faults);
-    let Some(model) = load::load(&sources, &mut faults).model() else {
+    let trees = Trees::new(&sources);
+    let Some(model) = trees.load(&mut faults).model() else {
         eprintln!("the spec has faults; run `fc check`");
         return ExitCode::from(2);
     };
-    let baseline: Vec<Vec<Artifact>> = PRODUCTS
-        .iter()
-        .map(|emit| emit(&model, &Targets::default()))
-        .collect();
-    let files: Vec<(String, String)> = sources
-        .iter()
-        .map(|(_, file)| (file.path.clone(), file.text.clone()))
-        .collect();
-    let mutations = mutations(&sources);
+    let mutations = mutations(&trees);
+    let targets = Targets::default();
+    let pages = emit::markdown::emit(&model, &targets).into_iter();
+    let baseline = Baseline {
+        trees,
+        pages: pages.map(|page| (page.path.clone(), page)).collect(),
+        others: PRODUCTS.map(|emit| emit(&model, &targets)).into(),
+        targets,
+    };
 
     let started = Instant::now();
     let next = AtomicUsize::new(0);
@@ -70,7 +95,7 @@ fn main() -> ExitCode {
                         let Some(mutation) = mutations.get(index) else {
                             return mine;
                         };
-                        mine.push((index, try_one(&files, mutation, &baseline)));
+                        mine.push((index, try_one(mutation, &baseline)));
                         if index % 500 == 499 {
                             eprintln!("{} of {} tried", index + 1, mutations.len());
                         }
@@ -93,7 +118,7 @@ fn main() -> ExitCode {
         .collect();
     dead.sort_unstable();
     for mutation in dead.iter().filter_map(|index| mutations.get(*index)) {
-        if let Some((path, text)) = files.get(mutation.file) {
+        if let Some(SourceFile { path, text, .. }) = sources.get(mutation.file) {
             let before = text.get(..mutation.start).unwrap_or_default();
             let line = before.matches('\n').count() + 1;
             let was = text.get(mutation.start..mutation.end).unwrap_or_default();
@@ -121,41 +146,33 @@ fn count(outcomes: &[(usize, Outcome)], wanted: fn(&Outcome) -> bool) -> usize {
         .count()
 }
 
-fn try_one(files: &[(String, String)], mutation: &Mutation, baseline: &[Vec<Artifact>]) -> Outcome {
-    let sources = Sources::from_texts(files.iter().enumerate().map(|(index, (path, text))| {
-        let mut text = text.clone();
-        if index == mutation.file {
-            text.replace_range(mutation.start..mutation.end, &mutation.text);
-        }
-        (path.clone(), text)
-    }));
+fn try_one(mutation: &Mutation, baseline: &Baseline) -> Outcome {
+    let mut sources = baseline.trees.sources().clone();
+    if let Some(file) = sources.get(mutation.file) {
+        let mut text = file.text.clone();
+        text.replace_range(mutation.start..mutation.end, &mutation.text);
+        let file = SourceFile::new(file.path.as_str(), text);
+        sources.replace(file);
+    }
     let mut faults = Faults::default();
-    let Some(model) = load::load(&sources, &mut faults).model() else {
-        return Outcome::Refused;
-    };
-    let changed = PRODUCTS
-        .iter()
-        .zip(baseline)
-        .any(|(emit, before)| emit(&model, &Targets::default()) != *before);
-    if changed {
-        Outcome::Stale
-    } else {
-        Outcome::Dead
+    match baseline.trees.with(&sources).load(&mut faults).model() {
+        None => Outcome::Refused,
+        Some(model) if baseline.differs(&model) => Outcome::Stale,
+        Some(_) => Outcome::Dead,
     }
 }
 
-fn mutations(sources: &Sources) -> Vec<Mutation> {
+fn mutations(trees: &Trees) -> Vec<Mutation> {
     let mut mutations = Vec::new();
-    for (index, (id, file)) in sources.iter().enumerate() {
-        let mut faults = Faults::default();
-        if let Some(tree) = syntax::parse(id, &file.text, &mut faults) {
-            collect(tree.root(), index, file, &mut mutations);
+    for (id, file) in trees.sources().iter() {
+        if let Some(tree) = trees.tree(id) {
+            collect(tree.root(), id, file, &mut mutations);
         }
     }
     mutations
 }
 
-fn collect(node: Node<'_>, file: usize, source: &SourceFile, into: &mut Vec<Mutation>) {
+fn collect(node: Node<'_>, file: FileId, source: &SourceFile, into: &mut Vec<Mutation>) {
     match node.kind() {
         NodeKind::Null => {}
         NodeKind::Scalar(scalar) => {

@@ -24,6 +24,7 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
     let [command, data] = robot.ports.map(|port| port.to_string());
     let tour = Command::new(app)
         .args(["--command-port", &command, "--data-port", &data])
+        .args(["--lang", "zh"])
         .output()
         .unwrap();
     let table = String::from_utf8(tour.stdout).unwrap();

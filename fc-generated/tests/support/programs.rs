@@ -14,7 +14,11 @@ pub fn examples<const N: usize>(names: [&str; N], features: &str) -> [PathBuf; N
         .and_then(|deps| deps.parent())
         .expect("target/profile/deps");
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--offline", "--features", features]);
+    // With the features that dependencies have where all of the workspace is tested, so that nothing is compiled twice.
+    cargo.args(["build", "--quiet", "--offline", "--workspace"]);
+    for feature in features.split_whitespace() {
+        cargo.args(["--features", &format!("fc-generated/{feature}")]);
+    }
     for name in names {
         cargo.args(["--example", name]);
     }

@@ -53,8 +53,8 @@ class Programs(AsyncCase):
 
     async def tour(self, app: str, robot: str) -> None:
         process, commands, data = await self.robot(robot)
-        ports = ["--host", "127.0.0.1", "--command-port", commands, "--data-port", data]
-        code, table, error = await outcome(await start([*program(app, "app"), *ports]))
+        options = ["--host", "127.0.0.1", "--command-port", commands, "--data-port", data, "--lang", "zh"]
+        code, table, error = await outcome(await start([*program(app, "app"), *options]))
         self.assertEqual((code, error), (0, ""), table)
         rows = table.splitlines()
         expected = 1 + len(fc.FC.commands_by_code) + len(fc.FC.reports_by_code) + 1

@@ -45,30 +45,67 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 /// If a template is wrong. Templates are source code: none of them depends on what the spec says
 /// beyond the types of the views, and tests render each of them.
 #[must_use]
-#[allow(clippy::panic)]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let book = Book::new(model, tabs::of(model, targets));
-    let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
-    let render = |lang| {
-        let engine = engine.speaking(lang);
-        render(&book, &engine, targets, lang).unwrap_or_else(|error| panic!("{error:#}"))
-    };
-    let navigation = navigation::navigation(model);
-    let navigation = targets.artifact(Product::Markdown, "reference/navigation.json", navigation);
-    let languages = Lang::ALL.into_iter();
-    let languages = languages.filter(|lang| targets.speaks(lang.pick(Language::Zh, Language::En)));
-    languages.flat_map(render).chain([navigation]).collect()
+    let press = Press::new(model, targets);
+    let operations = model.operations.iter().map(Page::Operation);
+    let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
+    let languages = press.languages.iter().flat_map(|(lang, engine)| {
+        let pages = pages.par_iter();
+        let printed = pages.map(|&page| press.page(*lang, engine, page));
+        printed.collect::<Vec<_>>()
+    });
+    languages.chain([press.navigation()]).collect()
 }
 
-fn render(
-    book: &Book<'_>,
-    engine: &Engine,
-    targets: &Targets,
-    lang: Lang,
-) -> Result<Vec<Artifact>, minijinja::Error> {
-    let operations = book.model.operations.iter().map(Page::Operation);
-    let pages: Vec<Page<'_>> = Page::FIXED.into_iter().chain(operations).collect();
-    let rendered = pages.par_iter().map(|&page| {
+/// Hands the artifacts of [`emit`] over one after the other, the pages of operations first, as long as they are wanted: for whoever
+/// looks for a difference.
+///
+/// # Panics
+///
+/// As [`emit`] does.
+pub fn emit_while(model: &Model, targets: &Targets, mut wanted: impl FnMut(Artifact) -> bool) {
+    let press = Press::new(model, targets);
+    let operations = model.operations.iter().map(Page::Operation);
+    let pages: Vec<Page<'_>> = operations.chain(Page::FIXED).collect();
+    let in_all = pages.iter().flat_map(|&page| {
+        let press = &press;
+        let languages = press.languages.iter();
+        languages.map(move |(lang, engine)| press.page(*lang, engine, page))
+    });
+    // What is not wanted any more is not made.
+    let _ = in_all.chain([press.navigation()]).all(|it| wanted(it));
+}
+
+/// What pages are made with.
+struct Press<'m> {
+    book: Book<'m>,
+    targets: &'m Targets,
+    languages: Vec<(Lang, Engine)>,
+}
+
+impl<'m> Press<'m> {
+    #[allow(clippy::panic)]
+    fn new(model: &'m Model, targets: &'m Targets) -> Self {
+        let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
+        let languages = Lang::ALL.into_iter();
+        let languages =
+            languages.filter(|lang| targets.speaks(lang.pick(Language::Zh, Language::En)));
+        Self {
+            book: Book::new(model, tabs::of(model, targets)),
+            targets,
+            languages: languages.map(|it| (it, engine.speaking(it))).collect(),
+        }
+    }
+
+    fn navigation(&self) -> Artifact {
+        let navigation = navigation::navigation(self.book.model);
+        let (product, path) = (Product::Markdown, "reference/navigation.json");
+        self.targets.artifact(product, path, navigation)
+    }
+
+    #[allow(clippy::panic)]
+    fn page(&self, lang: Lang, engine: &Engine, page: Page<'_>) -> Artifact {
+        let book = &self.book;
         let desk = Desk { book, lang, page };
         let contents = match page {
             Page::Index => engine.render("index.md.j2", &pages::index(desk)),
@@ -90,10 +127,10 @@ fn render(
                 engine.render("operation.md.j2", &pages::operation(desk, operation))
             }
         };
+        let contents = contents.unwrap_or_else(|error| panic!("{error:#}"));
         let directory = lang.pick("reference", "en/reference");
         let path = format!("{directory}/{}", page.path());
-        let contents = tidy(&book.terms(lang).first_uses(page, &contents?));
-        Ok(targets.artifact(Product::Markdown, &path, contents))
-    });
-    rendered.collect()
+        let contents = tidy(&book.terms(lang).first_uses(page, &contents));
+        self.targets.artifact(Product::Markdown, &path, contents)
+    }
 }
