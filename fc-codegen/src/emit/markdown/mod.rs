@@ -63,7 +63,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// # Panics
 ///
 /// As [`emit`] does.
-pub fn emit_while(model: &Model, targets: &Targets, mut wanted: impl FnMut(Artifact) -> bool) {
+pub fn emit_while(model: &Model, targets: &Targets, wanted: impl FnMut(Artifact) -> bool) {
     let press = Press::new(model, targets);
     let operations = model.operations.iter().map(Page::Operation);
     let pages: Vec<Page<'_>> = operations.chain(Page::FIXED).collect();
@@ -73,7 +73,7 @@ pub fn emit_while(model: &Model, targets: &Targets, mut wanted: impl FnMut(Artif
         languages.map(move |(lang, engine)| press.page(*lang, engine, page))
     });
     // What is not wanted any more is not made.
-    let _ = in_all.chain([press.navigation()]).all(|it| wanted(it));
+    let _ = in_all.chain([press.navigation()]).all(wanted);
 }
 
 /// What pages are made with.
