@@ -54,14 +54,15 @@ struct Baseline {
 impl Baseline {
     /// Whether anything else is made of a model. Pages come first, which notice most, and of them no more are made than it takes.
     fn differs(&self, model: &Model) -> bool {
-        let mut same = 0;
-        emit::markdown::emit_while(model, &self.targets, |page| {
-            let is_same = self.pages.get(&page.path) == Some(&page);
-            same += usize::from(is_same);
-            is_same
+        let mut pages = 0;
+        let are_same = emit::markdown::emit_while(model, &self.targets, |page| {
+            pages += 1;
+            self.pages.get(&page.path) == Some(&page)
         });
         let mut others = PRODUCTS.iter().zip(&self.others);
-        same < self.pages.len() || others.any(|(emit, was)| emit(model, &self.targets) != *was)
+        !are_same
+            || pages < self.pages.len()
+            || others.any(|(emit, was)| emit(model, &self.targets) != *was)
     }
 }
 

@@ -4,6 +4,7 @@ use crate::snapshot::Snapshot;
 use crate::uri;
 use fc_spec::diagnostic::{Diagnostic, Severity};
 use fc_spec::model::Lang;
+use fc_spec::syntax::Span;
 use gen_lsp_types as lsp;
 use std::collections::BTreeMap;
 
@@ -23,13 +24,17 @@ pub fn diagnostics(snapshot: &Snapshot) -> BTreeMap<String, Vec<lsp::Diagnostic>
     }
     let project = &snapshot.project;
     let lint = project.lint();
+    let locate = |span: Span| {
+        let file = lint.files.get(span.file)?;
+        Some(lsp::Location {
+            uri: uri::of_path(&project.root.join(&file.path)).into(),
+            range: snapshot.settings.encoding.range(file, span),
+        })
+    };
     for fault in &lint.faults {
-        let span = fault.primary.span;
-        if let Some(file) = lint.files.get(span.file) {
-            let range = snapshot.settings.encoding.range(file, span);
-            let uri = uri::of_path(&project.root.join(&file.path));
-            let told = files.entry(uri).or_default();
-            told.push(shown(snapshot.settings.lang, fault, range));
+        if let Some(location) = locate(fault.primary.span) {
+            let file = files.entry(location.uri.0).or_default();
+            file.push(shown(fault, snapshot.settings.lang, locate));
         }
     }
     files
@@ -37,24 +42,26 @@ pub fn diagnostics(snapshot: &Snapshot) -> BTreeMap<String, Vec<lsp::Diagnostic>
 
 /// A fault of the spec.
 pub fn diagnostic(snapshot: &Snapshot, fault: &Diagnostic) -> lsp::Diagnostic {
-    let lang = snapshot.settings.lang;
+    shown(fault, snapshot.settings.lang, |span| {
+        snapshot.location(span)
+    })
+}
+
+/// A fault whose places are in the files that `locate` knows.
+fn shown(
+    fault: &Diagnostic,
+    lang: Lang,
+    locate: impl Fn(Span) -> Option<lsp::Location>,
+) -> lsp::Diagnostic {
     let related = fault.secondary.iter().filter_map(|label| {
         Some(lsp::DiagnosticRelatedInformation {
-            location: snapshot.location(label.span)?,
+            location: locate(label.span)?,
             message: lang.text(&label.text).to_owned(),
         })
     });
     let related: Vec<_> = related.collect();
     lsp::Diagnostic {
-        related_information: (!related.is_empty()).then_some(related),
-        ..shown(lang, fault, snapshot.range(fault.primary.span))
-    }
-}
-
-/// A fault with no other places.
-fn shown(lang: Lang, fault: &Diagnostic, range: lsp::Range) -> lsp::Diagnostic {
-    lsp::Diagnostic {
-        range,
+        range: locate(fault.primary.span).map_or_else(lsp::Range::default, |it| it.range),
         severity: Some(match fault.severity {
             Severity::Error => lsp::DiagnosticSeverity::Error,
             Severity::Warning => lsp::DiagnosticSeverity::Warning,
@@ -62,6 +69,7 @@ fn shown(lang: Lang, fault: &Diagnostic, range: lsp::Range) -> lsp::Diagnostic {
         code: Some(fault.code.to_string().into()),
         source: Some(SOURCE.to_owned()),
         message: text(fault, lang).into(),
+        related_information: (!related.is_empty()).then_some(related),
         ..lsp::Diagnostic::default()
     }
 }

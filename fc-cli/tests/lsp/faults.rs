@@ -320,6 +320,12 @@ fn what_the_lint_finds_is_told_where_there_are_no_errors() {
         !wrong.is_empty() && wrong.iter().all(|code| code == "FC0893"),
         "{wrong:?}"
     );
+    // One of two rules with one id shows where the other is.
+    project.write("rules.yaml", &NO_COMMANDS.repeat(2));
+    editor.tell("workspace/didChangeWatchedFiles", changed.clone());
+    let wrong = editor.faults("rules.yaml");
+    let first = &wrong[0]["relatedInformation"][0]["location"];
+    assert_eq!(first["uri"], editor.uri("rules.yaml"), "{wrong:#?}");
     project.write("rules.yaml", NO_COMMANDS);
     editor.tell("workspace/didChangeWatchedFiles", changed);
     assert_eq!(editor.codes(LAMP), ["FC0890"]);

@@ -58,12 +58,12 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 }
 
 /// Hands the artifacts of [`emit`] over one after the other, the pages of operations first, as long as they are wanted: for whoever
-/// looks for a difference.
+/// looks for a difference. Whether all were.
 ///
 /// # Panics
 ///
 /// As [`emit`] does.
-pub fn emit_while(model: &Model, targets: &Targets, wanted: impl FnMut(Artifact) -> bool) {
+pub fn emit_while(model: &Model, targets: &Targets, wanted: impl FnMut(Artifact) -> bool) -> bool {
     let press = Press::new(model, targets);
     let operations = model.operations.iter().map(Page::Operation);
     let pages: Vec<Page<'_>> = operations.chain(Page::FIXED).collect();
@@ -73,7 +73,7 @@ pub fn emit_while(model: &Model, targets: &Targets, wanted: impl FnMut(Artifact)
         languages.map(move |(lang, engine)| press.page(*lang, engine, page))
     });
     // What is not wanted any more is not made.
-    let _ = in_all.chain([press.navigation()]).all(wanted);
+    in_all.chain([press.navigation()]).all(wanted)
 }
 
 /// What pages are made with.
