@@ -80,3 +80,24 @@ fn every_definition_is_used() {
         assert!(text.contains(&format!("\"#/$defs/{name}\"")), "{name}");
     }
 }
+
+/// An editor offers defaults and examples, so each is to be taken where it stands.
+#[test]
+fn what_is_offered_for_a_key_may_stand_there() {
+    let root: Value = serde_json::from_str(&schema()).expect("the schema is JSON");
+    let mut offers = 0;
+    for (name, definition) in root["$defs"].as_object().expect("definitions") {
+        let properties = definition["properties"].as_object();
+        for (key, place) in properties.into_iter().flatten() {
+            let examples = place["examples"].as_array().into_iter().flatten();
+            for offer in place.get("default").into_iter().chain(examples) {
+                let misfit = Validator { root: &root }.misfit(place, offer, key);
+                assert!(misfit.is_none(), "{name}: {offer} does not fit: {misfit:?}");
+                offers += 1;
+            }
+        }
+    }
+    assert!(offers > 50, "only {offers}");
+    let optional = &root["$defs"]["field"]["properties"]["optional"];
+    assert_eq!(optional["default"], Value::Bool(false), "{optional}");
+}

@@ -1,8 +1,11 @@
 //! From grammar tables to schemas.
 
+use crate::diagnostic::Faults;
 use crate::load::grammar::unit::UNITS;
-use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, TEXT, Table};
+use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
+use crate::load::scalar;
 use crate::model::{Number, Type, Value};
+use crate::syntax::{FileId, parse};
 use crate::vocabulary::Meaning;
 use std::collections::BTreeMap;
 
@@ -88,6 +91,12 @@ impl Definitions {
         match self.kind(&key.kind) {
             Value::Object(mut entries) => {
                 entries.insert(0, entry("description", string(key.doc.en)));
+                let default = key.said.default.filter(|word| *word != STATED.name());
+                let default = default.and_then(parsed);
+                let examples = key.said.example.and_then(parsed);
+                let examples = examples.map(|value| [value].into_iter().collect());
+                entries.extend(default.map(|value| entry("default", value)));
+                entries.extend(examples.map(|values| entry("examples", values)));
                 Value::Object(entries)
             }
             other => other,
@@ -290,6 +299,12 @@ fn json_types(kind: &Kind) -> &'static [&'static str] {
         | Kind::WireKey
         | Kind::Word(_) => &["string"],
     }
+}
+
+/// What the YAML of a default or an example says; tests hold that it is YAML.
+fn parsed(yaml: &'static str) -> Option<Value> {
+    let tree = parse(FileId(0), yaml, &mut Faults::new())?;
+    Some(scalar::value(tree.root()))
 }
 
 fn integer(min: i128, max: i128) -> Value {
