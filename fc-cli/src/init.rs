@@ -28,9 +28,13 @@ pub struct Options {
 }
 
 /// Files of the project, and what is in them.
-const FILES: [(&str, &str); 8] = [
+const FILES: [(&str, &str); 9] = [
     ("fc.yaml", include_str!("../templates/init/fc.yaml")),
     (".gitignore", include_str!("../templates/init/gitignore")),
+    (
+        ".gitattributes",
+        include_str!("../templates/init/gitattributes"),
+    ),
     ("README.md", include_str!("../templates/init/README.md")),
     (
         "spec/protocol.yaml",

@@ -53,6 +53,20 @@ fn check_shows_what_is_stale_and_writes_nothing() {
 }
 
 #[test]
+fn a_deleted_output_is_stale_and_comes_back_as_it_was() {
+    let project = generated();
+    let path = "fc-generated/src/client.rs";
+    let before = project.read(path);
+    std::fs::remove_file(project.path(path)).expect("the file is there");
+    let run = project.fc(&["generate", "--check"]).expect(1);
+    assert!(run.stdout.contains(&format!("+++ b/{path}\n")), "{run:#?}");
+    assert!(!project.path(path).exists());
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stdout.contains(path), "{run:#?}");
+    assert_eq!(project.read(path), before);
+}
+
+#[test]
 fn the_command_to_run_is_the_one_that_was_run() {
     let project = generated();
     project.write("fc-generated/src/lib.rs", "");

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use support::Project;
+use support::git::git;
 
 #[test]
 fn a_project_checks_and_is_generated_at_once() {
@@ -47,6 +48,15 @@ fn nothing_of_anybody_else_is_touched() {
     // A repository that has just been made is empty.
     place.write("fresh/.git/HEAD", "ref: refs/heads/main\n");
     place.fc(&["init", "fresh"]).expect(0);
+}
+
+#[test]
+fn git_compares_and_merges_what_it_has_without_another_line() {
+    let place = Project::empty();
+    place.fc(&["init", "lamp"]).expect(0);
+    git(&place, &["init", "--quiet", "lamp"]);
+    let said = place.fc_in("lamp", &["git", "setup"]).expect(0).stdout;
+    assert!(!said.contains(".gitattributes"), "{said}");
 }
 
 #[test]
