@@ -7,7 +7,7 @@ use fc_codegen::questions::read;
 use fc_spec::load::{Said, settle};
 use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 
-use crate::lang::{counted, said};
+use crate::lang::{counted, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -188,7 +188,7 @@ impl Options {
                 )
             })?;
             let said = read(&sheet, model, self.by.as_deref(), &date).map_err(|errors| {
-                let errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
+                let errors: Vec<_> = errors.iter().map(|error| in_lang(&error.text())).collect();
                 errors.join("\n       ")
             })?;
             if said.is_empty() {

@@ -252,4 +252,8 @@ fn a_sheet_with_a_line_that_cannot_be_used_settles_nothing() {
         assert!(run.stderr.contains(why), "{why}: {run:#?}");
         assert_eq!(project.read(LAMP), GROUP, "{why}");
     }
+    project.write("answers.csv", &good.replace("C902,", "C909,"));
+    let arguments = ["--lang", "zh", "settle", "--from", "answers.csv"];
+    let run = project.fc(&arguments).expect(2);
+    assert!(run.stderr.contains("行（C909）：没有这个问题"), "{run:#?}");
 }

@@ -3,7 +3,8 @@
 use super::{List, facts};
 use crate::emit::markdown::{Lang, Word as _};
 use fc_spec::load::Said;
-use fc_spec::model::{Confirmation, Governed, Model, Question};
+use fc_spec::model::{Confirmation, Governed, Model, Question, Text};
+use fc_spec::text;
 use std::fmt;
 
 /// A spreadsheet takes a text without it for one of its own encoding.
@@ -52,20 +53,37 @@ pub enum SheetError {
         /// What its `id` says.
         id: String,
         /// Why, as a sentence without its end.
-        why: String,
+        why: Text,
     },
+}
+
+impl SheetError {
+    /// The same in both languages, as a sentence without its end.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        match self {
+            Self::Malformed(why) => text!(
+                "无法读取表格：{why}；请存为 UTF-8 编码的 CSV",
+                "the sheet cannot be read: {why}; save it as comma-separated values in UTF-8"
+            ),
+            Self::NoColumn(en, zh) => text!(
+                "表格没有 `{zh}`（`{en}`）列",
+                "the sheet has no column `{en}` (`{zh}`)"
+            ),
+            Self::Line { line, id, why } => {
+                text!(
+                    "第 {line} 行（{id}）：{why}",
+                    "line {line} ({id}): {why}",
+                    why = why
+                )
+            }
+        }
+    }
 }
 
 impl fmt::Display for SheetError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Malformed(why) => write!(
-                f,
-                "the sheet cannot be read: {why}; save it as comma-separated values in UTF-8"
-            ),
-            Self::NoColumn(en, zh) => write!(f, "the sheet has no column `{en}` (`{zh}`)"),
-            Self::Line { line, id, why } => write!(f, "line {line} ({id}): {why}"),
-        }
+        f.write_str(&self.text().en)
     }
 }
 
@@ -162,13 +180,13 @@ pub fn read(
         if answer.is_empty() {
             continue;
         }
-        let fail = |why: String| SheetError::Line {
+        let fail = |why: Text| SheetError::Line {
             line: record.position().map_or(0, csv::Position::line),
             id: id.to_owned(),
             why,
         };
         let Some(question) = model.questions.iter().find(|question| question.id == id) else {
-            errors.push(fail("there is no such question".to_owned()));
+            errors.push(fail(text!("没有这个问题", "there is no such question")));
             continue;
         };
         if !question.is_open() {
@@ -177,16 +195,17 @@ pub fn read(
         let asked = cell(Column::Question);
         let texts = [Lang::Zh, Lang::En].map(|lang| lang.text(&question.text));
         if !asked.is_empty() && !texts.contains(&asked) {
-            errors.push(fail(
+            errors.push(fail(text!(
+                "导出表格之后问题已改写；请重新导出",
                 "the question has been reworded since the sheet was made; make a new one"
-                    .to_owned(),
-            ));
+            )));
             continue;
         }
         let Some(by) = Some(cell(Column::By)).filter(|by| !by.is_empty()).or(by) else {
-            errors.push(fail(
-                "nobody is named in `by`; name them there, or with `--by`".to_owned(),
-            ));
+            errors.push(fail(text!(
+                "`答复人` 为空；请填写，或用 `--by` 指定",
+                "nobody is named in `by`; name them there, or with `--by`"
+            )));
             continue;
         };
         match values(&question.about, answer) {
@@ -216,7 +235,7 @@ pub fn read(
 /// By path, what an answer says; or the answer in the owner's words, where no fact is asked for.
 type Values = (Vec<(String, String)>, Option<String>);
 
-fn values(about: &[Governed], answer: &str) -> Result<Values, String> {
+fn values(about: &[Governed], answer: &str) -> Result<Values, Text> {
     let is_yes = YES.contains(&answer.to_lowercase().as_str());
     match about {
         _ if is_yes => Ok((Vec::new(), None)),
@@ -227,9 +246,10 @@ fn values(about: &[Governed], answer: &str) -> Result<Values, String> {
             let parts = parts.filter(|part| !part.is_empty());
             let values = parts.map(|part| match part.split_once(['=', '＝', ':', '：']) {
                 Some((path, value)) => Ok((path.trim().to_owned(), value.trim().to_owned())),
-                None => Err(format!(
-                    "it is about several things; say `{}=VALUE` and so on, with `;` between them",
-                    several.first().map_or("", |first| &first.path)
+                None => Err(text!(
+                    "它涉及多项；写成 `{first}=VALUE`，各项之间用 `;` 隔开",
+                    "it is about several things; say `{first}=VALUE` and so on, with `;` between them",
+                    first = several.first().map_or("", |first| first.path.as_str())
                 )),
             });
             Ok((values.collect::<Result<_, _>>()?, None))
