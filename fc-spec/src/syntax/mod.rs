@@ -13,6 +13,7 @@ mod conflict;
 mod control;
 mod edit;
 mod find;
+mod key;
 pub mod limits;
 mod node;
 mod parse;
