@@ -21,8 +21,10 @@ fn a_project_checks_and_is_generated_at_once() {
     for language in ["docs/reference", "docs/en/reference"] {
         assert!(place.path("lamp").join(language).join("index.md").is_file());
     }
-    let run = place.fc_in("lamp", &["check"]).expect(0);
-    assert_eq!(run.stderr, "");
+    for command in ["check", "lint"] {
+        let run = place.fc_in("lamp", &[command]).expect(0);
+        assert_eq!(run.stderr, "", "{command}");
+    }
     place
         .fc_in("lamp/spec/commands", &["generate", "--check"])
         .expect(0);
