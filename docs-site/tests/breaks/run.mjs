@@ -94,7 +94,8 @@ function copy() {
   for (const name of readdirSync(root)) {
     if (!name.startsWith('.') && !copied.includes(name) && name !== 'target') symlinkSync(path.join(root, name), path.join(folder, name))
   }
-  const left = (source) => path.basename(source) === 'node_modules' || ['dist', 'cache', '.temp'].some((name) => source === path.join(site, '.vitepress', name))
+  // A `build` of a package may be at work meanwhile.
+  const left = (source) => ['node_modules', 'build'].includes(path.basename(source)) || ['dist', 'cache', '.temp'].some((name) => source === path.join(site, '.vitepress', name))
   for (const name of copied) cpSync(path.join(root, name), path.join(folder, name), { recursive: true, filter: (source) => !left(source) })
   symlinkSync(path.join(site, 'node_modules'), path.join(mine, 'node_modules'))
   return { mine, remove: () => rmSync(folder, { recursive: true, force: true }) }
