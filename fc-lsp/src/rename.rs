@@ -7,7 +7,7 @@ use fc_spec::diagnostic::{Faults, Severity};
 use fc_spec::model::Lang;
 use fc_spec::syntax::{FileId, SourceFile, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The words at an offset that can be another name, and the name there is.
 #[must_use]
@@ -84,16 +84,25 @@ fn worse(snapshot: &Snapshot, changes: &[(Span, String)]) -> BTreeSet<String> {
     let trees = snapshot.trees().with(&sources);
     let mut faults = Faults::new();
     check_trees(&trees, &snapshot.project.targets.languages(), &mut faults);
-    let errors = |faults: &Faults| -> BTreeSet<String> {
-        let errors = faults.iter().filter(|it| it.severity == Severity::Error);
+    // By code: a fault that is there already may only call the thing by its new name.
+    let errors = |faults: &Faults| {
         let lang = snapshot.settings.lang;
-        let texts = errors.map(|fault| {
+        let mut errors: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for fault in faults.iter().filter(|it| it.severity == Severity::Error) {
             let text = crate::diagnostics::text(fault, lang);
-            let first = text.lines().next().unwrap_or_default().to_owned();
-            format!("{first} ({})", fault.code)
-        });
-        texts.collect()
+            let first = text.lines().next().unwrap_or_default();
+            let texts = errors.entry(fault.code.to_string()).or_default();
+            texts.insert(format!("{first} ({})", fault.code));
+        }
+        errors
     };
     let before = errors(&snapshot.analysis().faults);
-    errors(&faults).difference(&before).cloned().collect()
+    let mut worse = BTreeSet::new();
+    for (code, after) in errors(&faults) {
+        let before = before.get(&code).cloned().unwrap_or_default();
+        if after.len() > before.len() {
+            worse.extend(after.difference(&before).cloned());
+        }
+    }
+    worse
 }

@@ -236,3 +236,17 @@ fn a_name_that_cannot_be_is_refused_with_the_reason() {
             .expect_err("refused");
     }
 }
+
+/// What is wrong with a thing already does not keep it from another name, by which the fault calls it from then on.
+#[test]
+fn a_thing_with_a_fault_can_be_renamed() {
+    let project = project();
+    let mut editor = editor(&project);
+    editor.open(TYPES);
+    editor.replace(TYPES, "unit: mm", "unti: mm");
+    let mut params = editor.at(TYPES, "  Sp|ot:\n");
+    params["newName"] = json!("Sport");
+    editor
+        .try_ask("textDocument/rename", params)
+        .expect("the edit");
+}
