@@ -168,7 +168,7 @@ fn foreign_punctuation(search: &mut Search<'_>) {
         if let Some((_, sign)) = in_chinese {
             let finding = Finding::new(
                 search.rule,
-                item.clone(),
+                item,
                 text!(
                     "中文里汉字后面用了半角的 `{sign}`",
                     "the Chinese text has `{sign}` behind a Chinese character"

@@ -27,11 +27,11 @@ pub struct Finding {
 
 impl Finding {
     /// About a thing.
-    pub(super) fn new(rule: &'static Rule, item: Item, message: Text) -> Self {
+    pub(super) fn new(rule: &'static Rule, item: impl Into<Item>, message: Text) -> Self {
         Self {
             rule,
             house: None,
-            item,
+            item: item.into(),
             message,
             also: Vec::new(),
             note: None,

@@ -22,7 +22,7 @@ pub(super) struct Search<'m> {
 
 impl<'m> Search<'m> {
     /// Reports what is wrong with a thing.
-    pub fn report(&mut self, item: Item, message: Text) {
+    pub fn report(&mut self, item: impl Into<Item>, message: Text) {
         self.add(Finding::new(self.rule, item, message));
     }
 
@@ -52,44 +52,76 @@ impl<'m> Search<'m> {
 
     /// Every text that people have written about something that programs use: of what, whether it is a short one (a title and no
     /// paragraphs), and the text.
-    pub fn texts(&self) -> Vec<(Item, bool, &'m Text)> {
+    pub fn texts(&self) -> Vec<(Subject<'m>, bool, &'m Text)> {
         let mut texts = Vec::new();
         for group in &self.model.groups {
-            texts.push((of_group(group), true, &group.title));
-            texts.extend(group.about.iter().map(|it| (of_group(group), false, it)));
+            let of = Subject::Group(group);
+            texts.push((of, true, &group.title));
+            texts.extend(group.about.iter().map(|about| (of, false, about)));
         }
-        for it in &self.model.operations {
-            texts.push((of_operation(it), true, &it.title));
-            texts.extend(
-                it.about
-                    .iter()
-                    .map(|about| (of_operation(it), false, about)),
-            );
+        for operation in &self.model.operations {
+            let of = Subject::Operation(operation);
+            texts.push((of, true, &operation.title));
+            texts.extend(operation.about.iter().map(|about| (of, false, about)));
         }
         for ty in &self.model.types {
+            let of = Subject::Type(ty);
             if ty.body_of.is_none() {
-                texts.push((of_type(ty), true, &ty.title));
+                texts.push((of, true, &ty.title));
             }
-            texts.extend(ty.about.iter().map(|about| (of_type(ty), false, about)));
+            texts.extend(ty.about.iter().map(|about| (of, false, about)));
             match &ty.shape {
                 TypeShape::Struct(shape) => {
                     for field in &shape.fields {
-                        texts.push((of_field(ty, field), true, &field.text));
+                        let of = Subject::Field(ty, field);
+                        texts.push((of, true, &field.text));
                         let note = field.details().note.iter();
-                        texts.extend(note.map(|note| (of_field(ty, field), false, note)));
+                        texts.extend(note.map(|note| (of, false, note)));
                     }
                 }
                 TypeShape::Enum(shape) => {
+                    let of = |it| Subject::Value(ty, it);
                     let values = shape.values.iter();
-                    texts.extend(values.map(|value| (of_value(ty, value), true, &value.text)));
+                    texts.extend(values.map(|it| (of(it), true, &it.text)));
                 }
                 TypeShape::OneOf(choice) => {
+                    let of = |it| Subject::Variant(ty, it);
                     let variants = choice.variants.iter();
-                    texts.extend(variants.map(|it| (of_variant(ty, it), true, &it.text)));
+                    texts.extend(variants.map(|it| (of(it), true, &it.text)));
                 }
             }
         }
         texts
+    }
+}
+
+/// What a rule looks at. Its name is put together only where something is found: most rules find nothing in most of a model.
+#[derive(Clone, Copy)]
+pub(super) enum Subject<'m> {
+    /// A group.
+    Group(&'m Group),
+    /// An operation.
+    Operation(&'m Operation),
+    /// A type.
+    Type(&'m TypeDef),
+    /// A field of a struct.
+    Field(&'m TypeDef, &'m Field),
+    /// A value of an enum.
+    Value(&'m TypeDef, &'m EnumValue),
+    /// A variant of a choice.
+    Variant(&'m TypeDef, &'m Variant),
+}
+
+impl From<Subject<'_>> for Item {
+    fn from(subject: Subject<'_>) -> Self {
+        match subject {
+            Subject::Group(group) => of_group(group),
+            Subject::Operation(operation) => of_operation(operation),
+            Subject::Type(ty) => of_type(ty),
+            Subject::Field(ty, field) => of_field(ty, field),
+            Subject::Value(ty, value) => of_value(ty, value),
+            Subject::Variant(ty, variant) => of_variant(ty, variant),
+        }
     }
 }
 

@@ -2,8 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
-use super::search::{Search, of_field, of_operation, of_variant};
-use crate::load::Item;
+use super::search::{Search, Subject};
 use crate::model::{Deprecation, TypeShape, is_past};
 use crate::text;
 
@@ -52,23 +51,21 @@ pub(super) const RULES: &[Rule] = &[
 /// Months before that of the sunset in which it is near.
 const NEAR: i32 = 3;
 
-fn withdrawn(search: &Search<'_>) -> Vec<(Item, Deprecation)> {
+fn withdrawn<'m>(search: &Search<'m>) -> Vec<(Subject<'m>, &'m Deprecation)> {
     let operations = search.operations();
-    let operations = operations.map(|it| (of_operation(it), it.deprecated.as_ref()));
+    let operations = operations.map(|it| (Subject::Operation(it), it.deprecated.as_ref()));
     let fields = search.fields();
-    let fields = fields.map(|(ty, it)| (of_field(ty, it), it.details().deprecated.as_ref()));
-    let variants = search.model.types.iter().flat_map(|ty| match &ty.shape {
-        TypeShape::OneOf(choice) => {
-            let variants = choice.variants.iter();
-            variants
-                .map(|it| (of_variant(ty, it), it.deprecated.as_ref()))
-                .collect()
-        }
-        TypeShape::Struct(_) | TypeShape::Enum(_) => Vec::new(),
+    let fields = fields.map(|(ty, it)| (Subject::Field(ty, it), it.details().deprecated.as_ref()));
+    let choices = search.model.types.iter().filter_map(|ty| match &ty.shape {
+        TypeShape::OneOf(choice) => Some((ty, choice)),
+        TypeShape::Struct(_) | TypeShape::Enum(_) => None,
+    });
+    let variants = choices.flat_map(|(ty, choice)| {
+        let variants = choice.variants.iter();
+        variants.map(move |it| (Subject::Variant(ty, it), it.deprecated.as_ref()))
     });
     let all = operations.chain(fields).chain(variants);
-    all.filter_map(|(item, it)| Some((item, it?.clone())))
-        .collect()
+    all.filter_map(|(of, it)| Some((of, it?))).collect()
 }
 
 /// Months since the year 0.
@@ -80,13 +77,14 @@ fn months(date: &str) -> Option<i32> {
 
 fn with_sunset(search: &mut Search<'_>, is_wanted: impl Fn(&str, &str) -> bool, what: [&str; 2]) {
     for (item, deprecated) in withdrawn(search) {
-        let Some(sunset) = deprecated.sunset.filter(|it| is_wanted(it, search.today)) else {
+        let sunset = deprecated.sunset.as_ref();
+        let Some(sunset) = sunset.filter(|it| is_wanted(it, search.today)) else {
             continue;
         };
         let [en, zh] = what;
         let mut finding =
             Finding::new(search.rule, item, text!("{zh}{sunset}", "{en} {sunset}")).about(sunset);
-        if let Some(by) = deprecated.replaced_by {
+        if let Some(by) = &deprecated.replaced_by {
             finding = finding.note(text!("请改用 `{by}`", "`{by}` is to be used instead"));
         }
         search.add(finding);
