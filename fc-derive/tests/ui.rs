@@ -5,7 +5,7 @@
 //! here and is compared by it alone, which CI has to have (`FC_CI`). With any other, unit tests still see
 //! to it that each program is refused, and in the words written down; where the error points is not
 //! compared then, and the test says so. To write the files anew: `TRYBUILD=overwrite cargo test -p
-//! fc-derive --test ui`.
+//! fc-derive --test ui -- --ignored`.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -14,6 +14,7 @@ use std::process::Command;
 const COMPILER: &str = "rustc 1.95.";
 
 #[test]
+#[ignore = "compiles programs of its own"]
 fn programs() {
     let programs = trybuild::TestCases::new();
     programs.pass("tests/pass/*.rs");

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "it/common/mod.rs"]
 mod common;
 
 use common::Toy;

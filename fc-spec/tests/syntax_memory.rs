@@ -3,6 +3,8 @@
 
 #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "it/syntax_support.rs"]
 mod syntax_support;
 
 use std::fs::File;

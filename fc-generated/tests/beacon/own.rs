@@ -1,5 +1,5 @@
 //! What the beacon does otherwise: without a result code, a response says that all went well, and what did not
-//! is not answered. `tests/other_protocols.rs` runs this in a crate made from it.
+//! is not answered. `tests/it/other_protocols.rs` runs this in a crate made from it.
 
 #![allow(missing_docs, reason = "tests")]
 

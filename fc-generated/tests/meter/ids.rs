@@ -1,4 +1,4 @@
-//! The meter with a type for the ids of each entity; `tests/other_protocols.rs` runs this in a crate made so.
+//! The meter with a type for the ids of each entity; `tests/it/other_protocols.rs` runs this in a crate made so.
 
 #![allow(missing_docs, reason = "tests")]
 

@@ -1,4 +1,4 @@
-//! What the meter does otherwise; `tests/other_protocols.rs` runs this in a crate made from it.
+//! What the meter does otherwise; `tests/it/other_protocols.rs` runs this in a crate made from it.
 
 #![allow(missing_docs, reason = "tests")]
 

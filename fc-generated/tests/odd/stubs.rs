@@ -1,4 +1,4 @@
-//! The stubs of the odd protocol; `tests/odd_spec.rs` runs this in a crate made from it.
+//! The stubs of the odd protocol; `tests/it/odd_spec.rs` runs this in a crate made from it.
 
 #![allow(deprecated, missing_docs, reason = "tests")]
 

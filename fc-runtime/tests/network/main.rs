@@ -26,7 +26,8 @@
     reason = "a test may"
 )]
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod garbage;
 mod lane;

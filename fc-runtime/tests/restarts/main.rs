@@ -23,7 +23,8 @@
 )]
 
 mod cable;
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod hour;
 mod log;

@@ -1,6 +1,6 @@
 // Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line.
 //
-// Decoders in several languages are compared by it: `fc-reflect/tests/judges.rs` says what the lists are.
+// Decoders in several languages are compared by it: `fc-reflect/tests/it/judges.rs` says what the lists are.
 #include <iostream>
 #include <string>
 

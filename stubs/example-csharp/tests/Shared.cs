@@ -57,7 +57,7 @@ namespace FcTests
         }
     }
 
-    /// <summary>Says of each frame, one in hex on a line, what is made of it, as <c>fc-reflect/tests/judges.rs</c> asks.</summary>
+    /// <summary>Says of each frame, one in hex on a line, what is made of it, as <c>fc-reflect/tests/it/judges.rs</c> asks.</summary>
     internal static class Judge
     {
         internal static void Run(System.IO.TextReader from, System.IO.TextWriter to)

@@ -1,5 +1,5 @@
 // Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line: what decoders in several
-// languages are compared by. `fc-reflect/tests/judges.rs` says what the lists are.
+// languages are compared by. `fc-reflect/tests/it/judges.rs` says what the lists are.
 
 import { createInterface } from 'node:readline'
 import { commands, reports } from 'fc-protocol'

@@ -5,7 +5,7 @@ import java.io.BufferedWriter
 
 /**
  * Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line. Decoders in several
- * languages are compared by it; `fc-reflect/tests/judges.rs` says what the lists are.
+ * languages are compared by it; `fc-reflect/tests/it/judges.rs` says what the lists are.
  */
 internal fun main() {
     val out: BufferedWriter = System.out.bufferedWriter()

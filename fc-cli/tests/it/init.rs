@@ -1,0 +1,110 @@
+//! `fc init`.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::Project;
+use crate::support::git::git;
+
+#[test]
+fn a_project_checks_and_is_generated_at_once() {
+    let place = Project::empty();
+    let run = place.fc(&["init", "lamp"]).expect(0);
+    assert!(run.stdout.contains("\nbegan lamp\n"), "{run:#?}");
+    for path in ["README.md", "fc.yaml", "src/lib.rs", "vectors/frames.json"] {
+        assert!(place.path("lamp").join(path).is_file(), "{path}");
+    }
+    for language in ["docs/reference", "docs/en/reference"] {
+        assert!(place.path("lamp").join(language).join("index.md").is_file());
+    }
+    for command in ["check", "lint"] {
+        let run = place.fc_in("lamp", &[command]).expect(0);
+        assert_eq!(run.stderr, "", "{command}");
+    }
+    place
+        .fc_in("lamp/spec/commands", &["generate", "--check"])
+        .expect(0);
+    let new = ["new", "get_battery", "--group", "light"];
+    place.fc_in("lamp", &new).expect(0);
+    place.fc_in("lamp", &["generate"]).expect(0);
+    let group = place.read("lamp/src/messages/light.rs");
+    assert!(group.contains("pub async fn get_battery("), "{group}");
+}
+
+#[test]
+fn nothing_of_anybody_else_is_touched() {
+    let place = Project::empty();
+    place.write("mine/notes.txt", "mine\n");
+    let run = place.fc(&["init", "mine"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("`mine` is not empty: it has `notes.txt`; name another directory"),
+        "{run:#?}"
+    );
+    assert_eq!(place.files("mine").len(), 1);
+
+    // A repository that has just been made is empty.
+    place.write("fresh/.git/HEAD", "ref: refs/heads/main\n");
+    place.fc(&["init", "fresh"]).expect(0);
+}
+
+#[test]
+fn git_compares_and_merges_what_it_has_without_another_line() {
+    let place = Project::empty();
+    place.fc(&["init", "lamp"]).expect(0);
+    git(&place, &["init", "--quiet", "lamp"]);
+    let said = place.fc_in("lamp", &["git", "setup"]).expect(0).stdout;
+    assert!(!said.contains(".gitattributes"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_is_said_before_anything_is_written() {
+    let place = Project::empty();
+    for (arguments, message) in [
+        (
+            ["init", "lamp", "--runtime", "nowhere"].as_slice(),
+            "there is no `nowhere/fc-derive`",
+        ),
+        (
+            &["init", "lamp", "--root", "."],
+            "it has no --root and no --spec",
+        ),
+        (&["init"], "<DIR>"),
+    ] {
+        let run = place.fc(arguments).expect(2);
+        assert!(run.stderr.contains(message), "{run:#?}");
+        assert!(!place.path("lamp").exists());
+    }
+}
+
+/// The lines of its README: it compiles, the samples of its docs run, and its robot and its app talk.
+#[test]
+#[ignore = "compiles a project of its own"]
+fn the_robot_and_the_app_of_a_project_talk() {
+    let place = Project::empty();
+    place.fc(&["init", "lamp"]).expect(0);
+    // The versions that are there, so that nothing has to be fetched.
+    let lock = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.lock");
+    std::fs::copy(lock, place.path("lamp/Cargo.lock")).expect("the versions");
+    let output = Command::new(env!("CARGO"))
+        .args(["test", "--offline", "--all-targets"])
+        .current_dir(place.path("lamp"))
+        .env(
+            "CARGO_TARGET_DIR",
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested"),
+        )
+        .output()
+        .expect("cargo");
+    let said = String::from_utf8_lossy(&output.stdout);
+    let complaints = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success() && !complaints.contains("warning"),
+        "{said}\n{complaints}"
+    );
+    for test in [
+        "test every_sample_runs ... ok",
+        "test an_app_sets_the_light_and_is_told_of_it ... ok",
+    ] {
+        assert!(said.contains(test), "{said}");
+    }
+}

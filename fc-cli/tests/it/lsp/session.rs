@@ -1,0 +1,156 @@
+//! What comes in any order, at once, or should not come at all.
+
+use serde_json::{Value, json};
+
+use crate::lsp::editor::Editor;
+use crate::lsp::{TYPES, project};
+use crate::support::{self, Project};
+
+#[test]
+fn what_no_client_should_say_ends_nothing() {
+    let project = project();
+    let mut editor = Editor::start(&project);
+    editor.open(TYPES);
+    let uri = editor.uri(TYPES);
+    let document = json!({ "uri": uri });
+    let far = json!({ "line": 4_000_000_000_u32, "character": 4_000_000_000_u32 });
+    for method in [
+        "textDocument/completion",
+        "textDocument/hover",
+        "textDocument/definition",
+        "textDocument/references",
+        "textDocument/documentSymbol",
+        "textDocument/codeAction",
+        "textDocument/codeLens",
+        "textDocument/formatting",
+        "textDocument/prepareRename",
+        "textDocument/rename",
+        "workspace/symbol",
+    ] {
+        for params in [
+            Value::Null,
+            json!([1]),
+            json!({}),
+            json!({ "textDocument": 7, "position": "here" }),
+            json!({ "textDocument": { "uri": "nothing" }, "position": far, "newName": "", "query": "x",
+                "range": { "start": far, "end": far }, "context": { "diagnostics": [], "includeDeclaration": true },
+                "options": { "tabSize": 2, "insertSpaces": true } }),
+            json!({ "textDocument": document, "position": far, "newName": ": [\n", "query": "",
+                "range": { "start": far, "end": { "line": 0, "character": 0 } },
+                "context": { "diagnostics": [], "includeDeclaration": true },
+                "options": { "tabSize": 2, "insertSpaces": true } }),
+        ] {
+            // Answered or refused: either will do.
+            let _ = editor.try_ask(method, params);
+        }
+    }
+    let error = editor
+        .try_ask("textDocument/nonsense", json!({}))
+        .expect_err("not known");
+    assert!(error.starts_with("-32601"), "{error}");
+    for (method, params) in [
+        ("textDocument/didOpen", json!({})),
+        (
+            "textDocument/didChange",
+            json!({ "textDocument": { "uri": uri }, "contentChanges": 7 }),
+        ),
+        (
+            "textDocument/didChange",
+            json!({ "textDocument": { "uri": "x", "version": 1 }, "contentChanges": [] }),
+        ),
+        ("textDocument/didClose", Value::Null),
+        ("$/cancelRequest", json!({ "id": [] })),
+        ("$/unheard", json!(1)),
+    ] {
+        editor.tell(method, params);
+    }
+    // Ends before starts, and beyond the end.
+    let backwards = json!({ "range": { "start": far, "end": { "line": 0, "character": 3 } }, "text": "# 末尾\n" });
+    let version = 2;
+    let params = json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": [backwards] });
+    editor.tell("textDocument/didChange", params);
+    let place = editor.ask_at("textDocument/definition", TYPES, "  Sp|ot:\n");
+    assert_eq!(editor.slice(TYPES, &place["range"]), "Spot");
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn many_changes_at_once_end_in_what_is_wrong_with_the_last() {
+    let project = project();
+    let mut editor = Editor::start(&project);
+    editor.open(TYPES);
+    let text = editor.text(TYPES).to_owned();
+    for n in 0..200 {
+        editor.write(
+            TYPES,
+            &text.replace("type: u16, unit", &format!("type: u{n}, unit")),
+        );
+    }
+    editor.write(TYPES, &text);
+    assert_eq!(editor.codes(TYPES), [""; 0]);
+    assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn without_a_project_there_is_nothing_to_say() {
+    let project = Project::empty();
+    project.write("notes.yaml", "a: 1\n");
+    let mut editor = Editor::start(&project);
+    editor.open("notes.yaml");
+    assert_eq!(
+        editor.ask_at("textDocument/hover", "notes.yaml", "|a: 1"),
+        Value::Null
+    );
+    // A project below the directory that is open is found by the first file in it.
+    let inner = crate::lsp::project();
+    support::copy(&inner.path("spec"), &project.path("robot/spec"));
+    let path = "robot/spec/types.yaml";
+    editor.open(path);
+    assert_eq!(editor.codes(path), [""; 0]);
+    editor.replace(path, "unit: mm", "unti: mm");
+    assert_eq!(editor.codes(path).len(), 1);
+    assert_eq!(editor.end(), 0);
+}
+
+/// Questions that are taken back, that a change overtakes, or that the end does: each has one answer.
+#[test]
+fn every_question_has_one_answer_whatever_comes_behind_it() {
+    let project = project();
+    let mut editor = Editor::start(&project);
+    editor.open(TYPES);
+    let (there, gone) = ("unit: mm", "unti: mm");
+    let mut asked = Vec::new();
+    for at in 0..40 {
+        let (old, new) = if at % 2 == 0 {
+            (there, gone)
+        } else {
+            (gone, there)
+        };
+        editor.replace(TYPES, old, new);
+        let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
+        let document = json!({ "uri": editor.uri(TYPES) });
+        let params =
+            json!({ "textDocument": document, "range": range, "context": { "diagnostics": [] } });
+        let actions = editor.request("textDocument/codeAction", params);
+        let lenses = editor.request("textDocument/codeLens", json!({ "textDocument": document }));
+        let renaming = editor.at(TYPES, "  Sp|ot:\n");
+        let mut params = renaming.clone();
+        params["newName"] = json!("Sport");
+        let renamed = editor.request("textDocument/rename", params);
+        if at % 3 == 0 {
+            editor.tell("$/cancelRequest", json!({ "id": actions }));
+            editor.tell("$/cancelRequest", json!({ "id": renamed }));
+        }
+        asked.extend([actions, lenses, renamed]);
+    }
+    editor.request("shutdown", Value::Null);
+    for id in asked {
+        if let Err(error) = editor.answer(id) {
+            // Taken back, overtaken by a change, or one too many.
+            let known = ["-32800", "-32801", "-32802"];
+            assert!(known.iter().any(|code| error.starts_with(code)), "{error}");
+        }
+    }
+    let error = editor.try_ask("workspace/symbol", json!({ "query": "" }));
+    assert!(error.expect_err("it is shut down").starts_with("-32600"));
+}

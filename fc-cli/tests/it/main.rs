@@ -1,0 +1,37 @@
+//! The integration tests of fc-cli, in one program: a program per file would link the crate each time.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::needless_pass_by_value,
+    clippy::panic,
+    clippy::single_match_else,
+    clippy::too_many_lines,
+    reason = "tests"
+)]
+
+mod audience;
+mod check;
+mod codes;
+mod diff;
+mod explain;
+mod fmt;
+mod generate;
+mod git_diff;
+mod git_merge;
+mod init;
+mod lang;
+mod lint;
+mod lsp;
+mod merge;
+mod new;
+mod pre_commit;
+mod progress;
+mod questions;
+mod release;
+mod retire;
+mod shell;
+mod support;
+mod targets;
+mod watch;
+mod where_;

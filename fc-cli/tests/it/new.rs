@@ -1,0 +1,239 @@
+//! `fc new`.
+
+use crate::support::Project;
+
+#[test]
+fn a_command_begins_with_the_next_free_code() {
+    let project = Project::new();
+    let before = project.read("spec/commands/lamp.yaml");
+    let run = project
+        .fc(&["new", "get_battery", "--group", "lamp"])
+        .expect(0);
+    let said = run.stdout.lines().next().expect("a line");
+    let (begun, line) = said
+        .split_once(" in spec/commands/lamp.yaml:")
+        .expect("the place");
+    let code = begun.strip_prefix("began get_battery as ").expect("a code");
+    let line: usize = line.parse().expect("a line number");
+
+    let after = project.read("spec/commands/lamp.yaml");
+    let mut lines: Vec<&str> = after.lines().collect();
+    let length = lines.iter().skip(line).take_while(|line| !line.is_empty());
+    let new: Vec<&str> = lines.drain(line - 2..line + length.count()).collect();
+    assert_eq!(new.first(), Some(&""));
+    assert_eq!(new.get(1), Some(&"  get_battery:"));
+    assert_eq!(new.get(2), Some(&format!("    code: {code}").as_str()));
+    assert_eq!(
+        lines,
+        before.lines().collect::<Vec<_>>(),
+        "the rest is as it was"
+    );
+    // It is sound, and the next gets another code.
+    project.fc(&["check"]).expect(0);
+    let again = project
+        .fc(&["new", "get_voltage", "--group", "lamp"])
+        .expect(0);
+    assert!(!again.stdout.contains(code), "{again:#?}");
+}
+
+#[test]
+fn a_report_stands_behind_the_reports() {
+    let project = Project::new();
+    let before = project.read("spec/commands/lamp.yaml");
+    let run = project.fc(&["new", "battery_low", "--group", "lamp", "--report"]);
+    assert!(run.expect(0).stdout.contains(" as 0x0203 "));
+    let after = project.read("spec/commands/lamp.yaml");
+    let reports = after.find("\nreports:\n").expect("reports");
+    assert!(after.find("\n  battery_low:\n").expect("the report") > reports);
+    assert!(after.len() > before.len());
+    // A group without reports gets some.
+    project.write(
+        "spec/commands/identity.yaml",
+        "group: { id: identity, zh: 标识, en: Identity }
+
+commands:
+  get_serial: { code: 0x010F, zh: 序列号, en: Serial, effect: read, source: { sections: [] } }
+",
+    );
+    project
+        .fc(&["new", "door_left_open", "--group", "identity", "--report"])
+        .expect(0);
+    let identity = project.read("spec/commands/identity.yaml");
+    assert!(
+        identity.contains("\nreports:\n  door_left_open:\n"),
+        "{identity}"
+    );
+    project.fc(&["check"]).expect(0);
+    project.fc(&["generate"]).expect(0);
+}
+
+/// A stream has the code of the command that starts it, or none yet, or one of its own.
+#[test]
+fn a_stream_shares_the_code_of_its_command() {
+    let project = Project::new();
+    let add = |arguments: &[&str]| {
+        let all = [&["new"], arguments, &["--group", "lamp", "--stream"]].concat();
+        project.fc(&all).expect(0).stdout
+    };
+    let command = ["new", "watch_heat", "--group", "lamp"];
+    let said = project.fc(&command).expect(0).stdout;
+    let code = said.split_once(" as ").expect("a code").1;
+    let code = code.split(' ').next().expect("a code").to_owned();
+    let said = add(&["heat", "--started-by", "watch_heat"]);
+    assert!(said.contains(&format!("heat as {code} ")), "{said}");
+    assert!(add(&["film"]).contains("film without a code "));
+    let said = add(&["sound", "--code", "0x0502"]);
+    assert!(said.contains("sound as 0x0502 "), "{said}");
+    let lamp = project.read("spec/commands/lamp.yaml");
+    let streams = lamp.find("\nstreams:\n").expect("streams");
+    let begun = format!("\n  heat:\n    code: {code}\n");
+    assert!(lamp.find(&begun).expect("the stream") > streams);
+    assert!(lamp.contains("\n    started_by: watch_heat\n"), "{lamp}");
+    project.fc(&["check"]).expect(0);
+    project.fc(&["generate"]).expect(0);
+}
+
+#[test]
+fn what_cannot_be_begun_changes_nothing() {
+    let project = Project::new();
+    let before = project.files("spec");
+    for (arguments, status, said) in [
+        (
+            &["Battery", "--group", "lamp"][..],
+            2,
+            "is not a snake_case name",
+        ),
+        (&["a: b", "--group", "lamp"], 2, "is not a snake_case name"),
+        (
+            &["get_battery", "--group", "power"],
+            2,
+            "the groups are lamp",
+        ),
+        (
+            &["set_level", "--group", "lamp"],
+            2,
+            "there is a `set_level` already, in spec/commands/lamp.yaml:",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0x0101"],
+            2,
+            "0x0101 is the code of `set_level`, in spec/commands/lamp.yaml:",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0x0503"],
+            2,
+            "0x0503 is in the range 0x0500 to 0x0503, which is closed for new operations; the next free code is 0x01",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0x020A"],
+            2,
+            "which is for reports, and this is a command",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "0xFFFF"],
+            2,
+            "0xFFFF is in none of the ranges; the next free code is 0x01",
+        ),
+        (
+            &["get_battery", "--group", "lamp", "--code", "65536"],
+            2,
+            "from 0x0000 to 0xFFFF",
+        ),
+        (
+            &["film", "--group", "lamp", "--stream", "--code", "0x0101"],
+            2,
+            "0x0101 is the code of `set_level`, in spec/commands/lamp.yaml:",
+        ),
+        (
+            &[
+                "film",
+                "--group",
+                "lamp",
+                "--stream",
+                "--started-by",
+                "alarm",
+            ],
+            2,
+            "there is no command `alarm`",
+        ),
+        (
+            &["film", "--group", "lamp", "--started-by", "set_level"],
+            2,
+            "--stream",
+        ),
+        (&["get_battery"], 2, "--group"),
+    ] {
+        let run = project.fc(&[&["new"], arguments].concat()).expect(status);
+        assert!(run.stderr.contains(said), "{said:?} in {}", run.stderr);
+        assert_eq!(run.stdout, "");
+        // No place in a text that is not on disk.
+        assert!(!run.stderr.contains("-->"), "{}", run.stderr);
+    }
+    assert_eq!(project.files("spec"), before);
+}
+
+/// Groups and codes are those of the examples; their names are free in a spec of the test's own.
+#[test]
+fn the_examples_of_the_help_run() {
+    let project = Project::new();
+    let help = project.fc(&["new", "--help"]).expect(0).stdout;
+    let examples: Vec<Vec<&str>> = help
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("fc new "))
+        .map(|arguments| arguments.split(' ').collect())
+        .collect();
+    assert!(examples.len() >= 3, "{help}");
+    let protocol = project.read("spec/protocol.yaml");
+    let more = "    - { from: 0x0A01, to: 0x0AFF, use: commands, zh: 指令, en: Commands }";
+    let ranges = format!("  ranges:\n{more}\n");
+    project.write(
+        "spec/protocol.yaml",
+        &protocol.replacen("  ranges:\n", &ranges, 1),
+    );
+    for (number, example) in examples.iter().enumerate() {
+        let at = example.iter().position(|word| *word == "--group");
+        let group = at
+            .and_then(|at| example.get(at + 1))
+            .expect("it names a group");
+        let path = format!("spec/commands/{group}.yaml");
+        if !project.path(&path).exists() {
+            project.write(
+                &path,
+                &format!(
+                    "group: {{ id: {group}, zh: 分组, en: A group }}
+
+commands:
+  first_{number}: {{ code: 0x0AF{number}, zh: 指令, en: A command, effect: read, source: {{ sections: [] }} }}
+"
+                ),
+            );
+        }
+        project
+            .fc(&[&["new"], example.as_slice()].concat())
+            .expect(0);
+        project.fc(&["check"]).expect(0);
+    }
+}
+
+/// What is only begun is remembered: a warning until the texts are written, in every format.
+#[test]
+fn what_is_still_to_be_written_is_a_warning() {
+    let project = Project::new();
+    project
+        .fc(&["new", "get_battery", "--group", "lamp"])
+        .expect(0);
+    let run = project.fc(&["check"]).expect(0);
+    let said = "warning[FC0613]: this text is still to be written";
+    assert!(run.stderr.contains(said), "{run:#?}");
+    assert!(run.stdout.contains("checked "), "{run:#?}");
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stderr.contains(said), "{run:#?}");
+    for (format, said) in [
+        ("json", "\"severity\":\"warning\""),
+        ("sarif", "\"level\": \"warning\""),
+        ("github", "::warning file=spec/commands/lamp.yaml,"),
+    ] {
+        let run = project.fc(&["check", "--format", format]).expect(0);
+        assert!(run.stdout.contains(said), "{run:#?}");
+    }
+}

@@ -1,0 +1,503 @@
+//! `fc release`, and what stands on it: `fc diff` without a version, waivers, `fc changelog`, `fc generate --as-of`.
+
+use crate::support::Project;
+use serde_json::Value;
+
+const NEW: &str = "
+  get_warmth:
+    code: 0x0108
+    zh: 查询色温
+    en: Get the warmth
+    effect: read
+    source: { sections: [] }
+    response:
+      kelvin: { type: u16, example: 4000, zh: 色温, en: Colour temperature }
+";
+
+/// A project that has released version 7 of its spec.
+fn released() -> Project {
+    let project = Project::new();
+    project
+        .fc(&["release", "7", "--today", "2026-09-01"])
+        .expect(0);
+    project
+}
+
+fn change(project: &Project, file: &str, from: &str, to: &str) {
+    let path = format!("spec/{file}");
+    let text = project.read(&path);
+    assert!(text.contains(from), "{from}");
+    project.write(&path, &text.replacen(from, to, 1));
+}
+
+/// Puts a command behind the first group's `commands:`.
+fn add_command(project: &Project) {
+    change(
+        project,
+        "commands/lamp.yaml",
+        "\ncommands:\n",
+        &format!("\ncommands:{NEW}"),
+    );
+}
+
+/// Changes what is sent.
+fn break_it(project: &Project) {
+    change(
+        project,
+        "commands/lamp.yaml",
+        "code: 0x0104",
+        "code: 0x0109",
+    );
+}
+
+fn waiver(project: &Project) -> String {
+    let run = project.fc(&["diff"]).expect(0);
+    let mut lines = run.stdout.lines();
+    let line = lines.find_map(|line| line.trim().strip_prefix("waiver: "));
+    line.expect("the id of a waiver").to_owned()
+}
+
+#[test]
+fn a_release_freezes_the_spec_and_tells_what_is_new() {
+    let project = released();
+    assert_eq!(
+        project.read("spec/releases/CHANGELOG.md"),
+        "# 协议变更记录\n\n## 7 (2026-09-01)\n\n首次发布，共 8 个接口。\n"
+    );
+    let dump: Value = serde_json::from_str(&project.read("spec/releases/7.json")).expect("JSON");
+    assert_eq!(dump["protocol"]["version"], "7");
+    assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
+
+    add_command(&project);
+    let unreleased = "\
+## Unreleased
+
+### New
+
+- `get_warmth` (0x0108): Get the warmth
+";
+    assert_eq!(project.fc(&["changelog"]).expect(0).stdout, unreleased);
+    let run = project.fc(&["release", "7.1", "--dry-run"]).expect(0);
+    assert!(run.stdout.contains("+  version: \"7.1\""), "{run:#?}");
+    assert!(!project.path("spec/releases/7.1.json").exists());
+
+    let run = project
+        .fc(&["release", "7.1", "--today", "2026-12-01"])
+        .expect(0);
+    assert_eq!(
+        run.stdout,
+        "\
+released 7.1
+  spec/releases/7.1.json
+  spec/releases/CHANGELOG.md
+  spec/releases/CHANGELOG.en.md
+  spec/protocol.yaml
+run `fc generate`, commit, and tag the commit
+"
+    );
+    assert_eq!(
+        project.read("spec/releases/CHANGELOG.en.md"),
+        "\
+# Changes of the protocol
+
+## 7.1 (2026-12-01)
+
+### New
+
+- `get_warmth` (0x0108): Get the warmth
+
+## 7 (2026-09-01)
+
+First release, with 8 operations.
+"
+    );
+    assert!(
+        project
+            .read("spec/protocol.yaml")
+            .contains("  version: \"7.1\"\n")
+    );
+    let run = project
+        .fc(&["changelog", "7", "7.1", "--lang", "zh"])
+        .expect(0);
+    assert_eq!(
+        run.stdout,
+        "## 7.1\n\n### 新增\n\n- `get_warmth`（0x0108）：查询色温\n"
+    );
+}
+
+#[test]
+fn a_number_that_does_not_fit_is_refused_and_nothing_is_written() {
+    let project = released();
+    let before = project.files("spec");
+    let refused = |number: &str, why: &str| {
+        let run = project.fc(&["release", number]).expect(1);
+        assert!(run.stderr.contains(why), "{run:#?}");
+    };
+    refused("8", "nothing has changed since the last release");
+    assert_eq!(project.files("spec"), before);
+    add_command(&project);
+    break_it(&project);
+    let before = project.files("spec");
+    refused("7", "the last release is 7; choose a later number");
+    refused("7.1", "the first part of the number has to rise");
+    refused("2026.12", "accept each with a waiver: FC0717-");
+    assert_eq!(project.files("spec"), before);
+    project.fc(&["release", "8"]).expect(0);
+    let run = project.fc(&["release", "v9"]).expect(2);
+    assert!(run.stderr.contains("such as 2026.12 or 2.1.0"), "{run:#?}");
+}
+
+#[test]
+fn a_waiver_accepts_one_change_for_a_time() {
+    let project = released();
+    break_it(&project);
+    let break_ = ["diff", "--fail-on", "wire", "--today", "2027-03-31"];
+    let run = project.fc(&break_).expect(1);
+    assert!(run.stdout.contains("FC0763 "), "{run:#?}");
+    let id = waiver(&project);
+    let waivers =
+        format!("waivers:\n  {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }}\n");
+    project.write("spec/waivers.yaml", &waivers);
+    let run = project.fc(&break_).expect(0);
+    assert!(
+        run.stdout
+            .contains("    waived by 张伟 until 2027-03: Agreed\n"),
+        "{run:#?}"
+    );
+    assert!(!run.stdout.contains("FC0763 "), "it is announced: {run:#?}");
+    let json = project
+        .fc(&[&break_[..], &["--format", "json"]].concat())
+        .expect(0);
+    let list: Value = serde_json::from_str(&json.stdout).expect("JSON");
+    assert_eq!(list[0]["waived"]["until"], "2027-03");
+
+    // The month is over.
+    let run = project.fc(&["diff", "--today", "2027-04-01"]).expect(1);
+    assert!(
+        run.stdout
+            .contains(&format!("FC0765 {id}: the waiver has expired")),
+        "{run:#?}"
+    );
+    let run = project
+        .fc(&["release", "2027.04", "--today", "2027-04-01"])
+        .expect(1);
+    assert!(run.stderr.contains("the waiver has expired"), "{run:#?}");
+}
+
+/// With a waiver, a number by the calendar will do. After the release it would accept nothing.
+#[test]
+fn a_release_takes_out_the_waivers_that_have_served() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waiver = format!("  {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }}\n");
+    let other =
+        "  FC0801-000000000000: { zh: 无关, en: Of another check, by: 李雷, until: 2099-01 }\n";
+    project.write(
+        "spec/waivers.yaml",
+        &format!("# Breaks.\nwaivers:\n{waiver}{other}"),
+    );
+    let run = project.fc(&["release", "2026.12", "--dry-run"]).expect(0);
+    let shown = format!("spec/waivers.yaml\n-{waiver}");
+    assert!(run.stdout.contains(&shown), "{run:#?}");
+    let release = ["release", "2026.12", "--today", "2026-12-01"];
+    let run = project.fc(&release).expect(0);
+    assert!(run.stdout.contains("  spec/waivers.yaml\n"), "{run:#?}");
+    let left = format!("# Breaks.\nwaivers:\n{other}");
+    assert_eq!(project.read("spec/waivers.yaml"), left);
+    let changelog = project.read("spec/releases/CHANGELOG.md");
+    assert!(
+        changelog.contains("（影响：旧 app 配新机器人、新 app 配旧机器人）。已商定\n"),
+        "{changelog}"
+    );
+    assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
+
+    // Put back, it accepts nothing. Against another version than the last release that cannot be said.
+    project.write("spec/waivers.yaml", &format!("waivers:\n{waiver}"));
+    let run = project.fc(&["diff"]).expect(1);
+    let unused = format!("FC0766 {id}: the waiver accepts nothing");
+    assert!(run.stdout.contains(&unused), "{run:#?}");
+    project
+        .fc(&["diff", "7", "--today", "2026-12-01"])
+        .expect(0);
+}
+
+/// A file of waivers alone stays a file that can be read.
+#[test]
+fn the_last_waiver_leaves_an_empty_list() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waivers = format!(
+        "waivers:\n  {id}:\n    zh: 已商定\n    en: Agreed\n    by: 张伟\n    until: 2027-03\n"
+    );
+    project.write("spec/waivers.yaml", &waivers);
+    project
+        .fc(&["release", "2026.12", "--today", "2026-12-01"])
+        .expect(0);
+    assert_eq!(project.read("spec/waivers.yaml"), "waivers: {}\n");
+    project.fc(&["check"]).expect(0);
+}
+
+#[test]
+fn a_waiver_in_braces_is_left_to_people() {
+    let project = released();
+    break_it(&project);
+    let id = waiver(&project);
+    let waivers =
+        format!("waivers: {{ {id}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2027-03 }} }}\n");
+    project.write("spec/waivers.yaml", &waivers);
+    let run = project
+        .fc(&["release", "2026.12", "--today", "2026-12-01"])
+        .expect(0);
+    let left = format!("take these waivers out, they have served: {id}\n");
+    assert!(run.stdout.contains(&left), "{run:#?}");
+    assert_eq!(project.read("spec/waivers.yaml"), waivers);
+}
+
+#[test]
+fn a_code_that_is_used_again_cannot_be_waived() {
+    let project = released();
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "code: 0x0104",
+        "code: 0x0109",
+    );
+    let protocol = project.read("spec/protocol.yaml");
+    let retired = protocol
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("- { code: "));
+    let retired = retired.and_then(|it| it.get(..6)).expect("a retired code");
+    let without: Vec<_> = protocol
+        .lines()
+        .filter(|line| !line.contains(&format!("code: {retired}")))
+        .collect();
+    let without = without.join("\n") + "\n";
+    project.write("spec/protocol.yaml", &without.replace("  retired:\n", ""));
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "code: 0x0109",
+        &format!("code: {retired}"),
+    );
+    let run = project.fc(&["diff", "--format", "json"]).expect(0);
+    let list: Vec<Value> = serde_json::from_str(&run.stdout).expect("JSON");
+    let found = list.iter().find(|it| it["rule"] == "retired-code-reused");
+    let print = found.expect("the finding")["fingerprint"]
+        .as_str()
+        .expect("a text");
+    let waivers = format!(
+        "waivers:\n  FC0718-{print}: {{ zh: 已商定, en: Agreed, by: 张伟, until: 2099-01 }}\n"
+    );
+    project.write("spec/waivers.yaml", &waivers);
+    let run = project.fc(&["diff"]).expect(1);
+    assert!(run.stdout.contains("FC0767"), "{run:#?}");
+}
+
+#[test]
+fn what_a_release_said_is_made_again() {
+    let project = released();
+    project.fc(&["generate"]).expect(0);
+    let before = project.read("fc-generated/vectors/frames.json");
+    let messages = project.read("fc-generated/src/lib.rs");
+    add_command(&project);
+    break_it(&project);
+    project.fc(&["generate"]).expect(0);
+    project
+        .fc(&["generate", "--as-of", "7", "--out", "old"])
+        .expect(0);
+    assert_eq!(project.read("old/fc-generated/vectors/frames.json"), before);
+    assert_eq!(project.read("old/fc-generated/src/lib.rs"), messages);
+    project
+        .fc(&["generate", "--as-of", "7", "--out", "old", "--check"])
+        .expect(0);
+
+    let run = project
+        .fc(&["generate", "--as-of", "6", "--out", "old"])
+        .expect(2);
+    assert!(
+        run.stderr.contains("there is no release `6`; there are 7"),
+        "{run:#?}"
+    );
+    project.fc(&["generate", "--as-of", "7"]).expect(2);
+}
+
+#[test]
+fn the_first_release_is_not_before_the_version_of_the_spec() {
+    let project = Project::new();
+    let before = project.files("spec");
+    let run = project.fc(&["release", "6.9"]).expect(1);
+    assert_eq!(
+        run.stderr,
+        "error: the spec is of version 7 already; choose that or a later number\n6.9 is not released\n"
+    );
+    let run = project
+        .fc(&["release", "7", "--dry-run", "--today", "2026-09-01"])
+        .expect(0);
+    assert_eq!(
+        run.stdout,
+        "\
+would release 7
+
+## 7 (2026-09-01)
+
+首次发布，共 8 个接口。
+
+## 7 (2026-09-01)
+
+First release, with 8 operations.
+"
+    );
+    assert_eq!(project.files("spec"), before);
+
+    // Once more, and with zeros behind it, it is there already.
+    project.fc(&["release", "7"]).expect(0);
+    let before = project.files("spec");
+    for number in ["7", "7.0"] {
+        let run = project.fc(&["release", number]).expect(1);
+        let said = "error: the last release is 7; choose a later number\n";
+        assert!(run.stderr.starts_with(said), "{run:#?}");
+    }
+    assert_eq!(project.files("spec"), before);
+
+    // A version that was raised by hand is not lowered again.
+    add_command(&project);
+    change(
+        &project,
+        "protocol.yaml",
+        "version: \"7\"",
+        "version: \"7.3\"",
+    );
+    let run = project.fc(&["release", "7.2"]).expect(1);
+    assert!(run.stderr.contains("is of version 7.3 already"), "{run:#?}");
+    project.fc(&["release", "7.3"]).expect(0);
+}
+
+#[test]
+fn what_people_have_written_into_the_changelog_stays() {
+    let project = released();
+    let path = "spec/releases/CHANGELOG.en.md";
+    let old = "## 7 (2026-09-01)\n\nFirst release. Thanks to all.\n\n## 6\n\nLost.\n";
+    for head in ["", "# Our changes\n\nA word before.\n\n"] {
+        project.write(path, &format!("{head}{old}"));
+        std::fs::remove_file(project.path("spec/releases/7.1.json")).ok();
+        if head.is_empty() {
+            add_command(&project);
+        }
+        project
+            .fc(&["release", "7.1", "--today", "2026-12-01"])
+            .expect(0);
+        let new = "## 7.1 (2026-12-01)\n\n### New\n\n- `get_warmth` (0x0108): Get the warmth\n\n";
+        assert_eq!(project.read(path), format!("{head}{new}{old}"));
+    }
+}
+
+#[test]
+fn a_spec_with_errors_is_not_released() {
+    let project = released();
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "effect: motion",
+        "effect: red",
+    );
+    let before = project.files("spec");
+    let run = project.fc(&["release", "8"]).expect(1);
+    assert!(run.stderr.contains("`red`"), "{run:#?}");
+    assert_eq!(project.files("spec"), before);
+}
+
+#[test]
+fn a_release_that_cannot_be_read_is_named() {
+    let project = released();
+    project.write("spec/releases/8.json", r#"{ "format": 99 }"#);
+    // What is not named by a number is no release.
+    project.write("spec/releases/draft.json", "{}");
+    for arguments in [
+        &["diff"][..],
+        &["changelog"],
+        &["release", "9"],
+        &["generate", "--as-of", "8", "--out", "old"],
+    ] {
+        let run = project.fc(arguments).expect(2);
+        let said = "a dump of format 99; this version reads format";
+        assert!(run.stderr.contains(said), "{run:#?}");
+        assert!(run.stderr.contains('8'), "{run:#?}");
+    }
+    let run = project.fc(&["diff", "draft"]).expect(2);
+    assert!(run.stderr.contains("cannot read `draft`"), "{run:#?}");
+    project.fc(&["diff", "7"]).expect(0);
+    let run = project.fc(&["diff", "6.2"]).expect(2);
+    assert_eq!(
+        run.stderr,
+        "error: there is no release `6.2`; there are 7, 8\n"
+    );
+
+    std::fs::remove_dir_all(project.path("spec/releases")).expect("removed");
+    project.write("spec/releases", "");
+    let run = project.fc(&["diff"]).expect(2);
+    assert!(run.stderr.contains("cannot read `"), "{run:#?}");
+    assert!(run.stderr.contains("spec/releases"), "{run:#?}");
+}
+
+/// A directory that is called like a release is not taken for it.
+#[test]
+fn a_release_counts_before_a_directory_of_its_name() {
+    let project = released();
+    project.write("7/nothing", "");
+    assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
+    let run = project.fc(&["diff", "./7"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("`./7` is neither a directory with a spec"),
+        "{run:#?}"
+    );
+}
+
+#[test]
+fn a_changelog_for_an_audience_has_what_is_for_it() {
+    let project = released();
+    let unknown = project.fc(&["changelog", "--for", "nobody"]).expect(2);
+    assert!(unknown.stderr.contains("nobody"), "{unknown:#?}");
+    let run = project.fc(&["changelog", "--for", "user_app"]).expect(0);
+    assert_eq!(run.stdout, "## Unreleased\n\nNothing has changed.\n");
+
+    change(
+        &project,
+        "protocol.yaml",
+        "    tester_app:",
+        "    new_app: { zh: 新 app, en: new app }\n    tester_app:",
+    );
+    let only = NEW.replace(
+        "    effect: read",
+        "    effect: read\n    available: { for: [new_app] }",
+    );
+    change(
+        &project,
+        "commands/lamp.yaml",
+        "\ncommands:\n",
+        &format!("\ncommands:{only}"),
+    );
+    let of = |audience: &str| {
+        project
+            .fc(&["changelog", "--for", audience])
+            .expect(0)
+            .stdout
+    };
+    assert!(!of("user_app").contains("get_warmth"));
+    // The last release does not know it yet.
+    assert!(of("new_app").contains("- `get_warmth` (0x0108): Get the warmth\n"));
+}
+
+#[test]
+fn without_a_release_there_is_nothing_to_compare_with() {
+    let project = Project::new();
+    for command in ["diff", "changelog"] {
+        let run = project.fc(&[command]).expect(2);
+        assert!(
+            run.stderr.contains("there is no release to compare with"),
+            "{run:#?}"
+        );
+    }
+}

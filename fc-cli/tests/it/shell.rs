@@ -1,0 +1,87 @@
+//! What the command is to a shell: completions, manual pages, silence, exit statuses.
+
+use crate::support::Project;
+
+/// The commands, as the help lists them.
+fn commands(project: &Project) -> Vec<String> {
+    let help = project.fc(&["--help"]).expect(0).stdout;
+    let (_, list) = help.split_once("Commands:\n").expect("a list");
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    let names = lines.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names = names.filter(|name| !name.is_empty() && *name != "help");
+    names.map(str::to_owned).collect()
+}
+
+#[test]
+fn each_shell_completes_each_command() {
+    let project = Project::empty();
+    let commands = commands(&project);
+    assert!(commands.len() > 9, "{commands:?}");
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = project.fc(&["completions", shell]).expect(0).stdout;
+        for command in &commands {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+    }
+    let unknown = project.fc(&["completions", "tcsh"]).expect(2);
+    assert!(unknown.stderr.contains("bash"), "{unknown:#?}");
+}
+
+#[test]
+fn each_command_has_a_manual_page() {
+    let project = Project::empty();
+    let run = project.fc(&["man", "share/man1"]).expect(0);
+    let commands = commands(&project);
+    let pages = project.files("share/man1").len();
+    assert_eq!(run.stdout, format!("wrote {pages} pages in share/man1\n"));
+    // `fc git` has commands of its own.
+    assert!(pages > commands.len() + 1, "{pages}");
+    for command in commands {
+        let page = project.read(&format!("share/man1/fc-{command}.1"));
+        assert!(page.contains(".SH SYNOPSIS"), "{command}");
+    }
+    assert!(project.read("share/man1/fc.1").contains("EXTRA"));
+    project.write("file", "");
+    let run = project.fc(&["man", "file"]).expect(2);
+    assert!(run.stderr.contains("cannot write to `file`"), "{run:#?}");
+}
+
+#[test]
+fn who_asks_for_silence_hears_what_is_wrong_and_what_was_asked_for() {
+    let project = Project::new();
+    for call in [
+        &["-q", "check"][..],
+        &["generate", "--quiet"],
+        &["generate", "--check", "-q"],
+        &["new", "added", "--group", "lamp", "-q"],
+        &["fmt", "-q"],
+    ] {
+        let run = project.fc(call).expect(0);
+        assert_eq!(
+            (run.stdout.as_str(), run.stderr.as_str()),
+            ("", ""),
+            "{call:?}"
+        );
+    }
+    // What was added has texts that are still to be written.
+    let run = project.fc(&["check", "-q"]).expect(0);
+    assert_eq!(run.stdout, "");
+    assert!(run.stderr.contains("warning"), "{run:#?}");
+    let run = project.fc(&["generate", "--check", "-q"]).expect(1);
+    assert!(run.stdout.contains("@@"), "{run:#?}");
+    let map = project.fc(&["codes", "-q"]).expect(0);
+    assert!(map.stdout.contains("added"), "{map:#?}");
+}
+
+#[test]
+fn warnings_change_the_status_for_who_denies_them() {
+    let project = Project::new();
+    let deny = ["check", "--deny", "warnings"];
+    project.fc(&deny).expect(0);
+    project.fc(&["new", "added", "--group", "lamp"]).expect(0);
+    project.fc(&["check"]).expect(0);
+    for format in ["text", "json", "sarif", "github"] {
+        let run = project.fc(&[&deny[..], &["--format", format]].concat());
+        run.expect(1);
+    }
+}

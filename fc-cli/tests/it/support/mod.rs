@@ -1,0 +1,137 @@
+//! A project of its own for each test, and the command run in it.
+
+pub mod git;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// A spec in a directory of its own.
+pub struct Project {
+    root: TempDir,
+}
+
+/// What a run of the command said and how it ended.
+#[derive(Debug)]
+pub struct Run {
+    pub status: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Project {
+    /// The small spec that the documentation is tested with. Not the repository's own: that one is
+    /// its owner's, who may add to it what these tests add.
+    pub fn new() -> Self {
+        let project = Self::empty();
+        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
+        copy(&docs.join("spec"), &project.path("spec"));
+        project
+    }
+
+    /// A directory with nothing in it.
+    pub fn empty() -> Self {
+        Self {
+            root: tempfile::tempdir().expect("a directory for the test"),
+        }
+    }
+
+    pub fn path(&self, path: &str) -> PathBuf {
+        self.root.path().join(path)
+    }
+
+    pub fn read(&self, path: &str) -> String {
+        std::fs::read_to_string(self.path(path)).expect("a file of the project")
+    }
+
+    pub fn write(&self, path: &str, text: &str) {
+        let path = self.path(path);
+        std::fs::create_dir_all(path.parent().expect("a directory")).expect("its directory");
+        std::fs::write(path, text).expect("a file of the project");
+    }
+
+    pub fn append(&self, path: &str, text: &str) {
+        self.write(path, &(self.read(path) + text));
+    }
+
+    /// Runs `fc` in the project's root.
+    pub fn fc(&self, args: &[&str]) -> Run {
+        self.fc_in("", args)
+    }
+
+    /// Runs `fc` in a directory of the project.
+    pub fn fc_in(&self, directory: &str, args: &[&str]) -> Run {
+        let output = command(args).current_dir(self.path(directory)).output();
+        Run::new(&output.expect("the command can be run"))
+    }
+
+    /// Every file below a directory of the project, with its time of change.
+    pub fn files(&self, directory: &str) -> Vec<(PathBuf, std::time::SystemTime)> {
+        let mut files = Vec::new();
+        visit(&self.path(directory), &mut files);
+        files.sort();
+        files
+    }
+}
+
+impl Run {
+    pub fn new(output: &Output) -> Self {
+        Self {
+            status: output.status.code().expect("not ended by a signal"),
+            stdout: String::from_utf8(output.stdout.clone()).expect("UTF-8"),
+            stderr: String::from_utf8(output.stderr.clone()).expect("UTF-8"),
+        }
+    }
+
+    /// Fails the test unless the run ended with this status.
+    pub fn expect(self, status: i32) -> Self {
+        assert_eq!(self.status, status, "{self:#?}");
+        self
+    }
+}
+
+/// The command, without what the environment says about colors, the repository and the language.
+pub fn command(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fc"));
+    command.args(args);
+    for variable in [
+        "NO_COLOR",
+        "CLICOLOR",
+        "CLICOLOR_FORCE",
+        "TERM",
+        "GITHUB_WORKSPACE",
+        "LC_ALL",
+        "LC_MESSAGES",
+        "LANG",
+    ] {
+        command.env_remove(variable);
+    }
+    command
+}
+
+/// Copies a directory.
+pub fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a directory");
+    for entry in std::fs::read_dir(from).expect("the spec") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            std::fs::copy(&path, &target).expect("a copy");
+        }
+    }
+}
+
+fn visit(directory: &Path, files: &mut Vec<(PathBuf, std::time::SystemTime)>) {
+    for entry in std::fs::read_dir(directory).expect("a directory") {
+        let entry = entry.expect("an entry");
+        if entry.path().is_dir() {
+            visit(&entry.path(), files);
+        } else {
+            let changed = entry.metadata().and_then(|meta| meta.modified());
+            files.push((entry.path(), changed.expect("a time of change")));
+        }
+    }
+}

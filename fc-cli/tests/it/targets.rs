@@ -1,0 +1,221 @@
+//! Projects with an `fc.yaml`.
+
+#![cfg(unix)]
+
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::Project;
+
+/// A project with this `fc.yaml`, whose spec is in `protocol/`.
+fn project(targets: &str) -> Project {
+    let project = Project::new();
+    std::fs::rename(project.path("spec"), project.path("protocol")).expect("moved");
+    project.write("fc.yaml", &format!("spec: protocol\ntargets:\n{targets}"));
+    project
+}
+
+fn program(project: &Project, path: &str, text: &str) {
+    project.write(path, text);
+    let all = std::fs::Permissions::from_mode(0o755);
+    std::fs::set_permissions(project.path(path), all).expect("its mode");
+}
+
+#[test]
+fn the_project_is_found_from_inside_and_makes_what_it_says() {
+    let project = project("  vectors: { out: golden }\n");
+    project.write("some/where/note.txt", "");
+    project.fc_in("some/where", &["check"]).expect(0);
+    let run = project.fc_in("some/where", &["generate"]).expect(0);
+    assert!(run.stdout.contains("golden/frames.json\n"), "{run:#?}");
+    assert!(project.path("golden/frames.json").is_file());
+    assert!(!project.path("fc-generated").exists());
+    project.fc(&["generate", "--check"]).expect(0);
+
+    // What is no longer wanted goes.
+    project.write(
+        "fc.yaml",
+        "spec: protocol\ntargets: { schema: { out: schema } }\n",
+    );
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stdout.contains("removed "), "{run:#?}");
+    assert!(!project.path("golden/frames.json").exists());
+    assert!(project.path("schema/fc-spec.schema.json").is_file());
+}
+
+#[test]
+fn a_file_that_cannot_be_read_says_where() {
+    let project = project("  rust: { ouut: here }\n");
+    let run = project.fc(&["check"]).expect(2);
+    assert!(
+        run.stderr.contains("`fc.yaml`: ")
+            && run.stderr.contains("`ouut`")
+            && run.stderr.contains("line 3"),
+        "{run:#?}"
+    );
+}
+
+#[test]
+fn a_plugin_gets_the_model_and_its_options_and_its_files_are_the_generators() {
+    let project = project("  mine: { plugin: tools/mine, out: made, options: { word: hello } }\n");
+    program(
+        &project,
+        "tools/mine",
+        "#!/bin/sh\ncat > asked.json\n\
+         grep -o '\"options\":{\"word\":\"hello\"}' asked.json >&2\n\
+         printf '%s' '[{\"path\": \"a/b.txt\", \"contents\": \"one\\n\"}]'\n",
+    );
+    let run = project.fc(&["generate"]).expect(0);
+    assert!(run.stdout.contains("made/a/b.txt\n"), "{run:#?}");
+    assert_eq!(run.stderr, "\"options\":{\"word\":\"hello\"}\n");
+    assert_eq!(project.read("made/a/b.txt"), "one\n");
+    project.fc(&["generate", "--check"]).expect(0);
+    // What it has got is a dump.
+    project
+        .fc(&["generate", "--check", "--from", "asked.json"])
+        .expect(0);
+
+    project.write("made/a/b.txt", "two\n");
+    let run = project
+        .fc(&["generate", "--check", "--only", "mine"])
+        .expect(1);
+    assert!(run.stdout.contains("\n-two\n+one\n"), "{run:#?}");
+}
+
+#[test]
+fn a_plugin_that_fails_leaves_everything_as_it_was() {
+    let project = project("  schema: { out: made }\n  mine: { plugin: ./mine, out: made }\n");
+    for (script, message) in [
+        (
+            "#!/bin/sh\ncat > /dev/null\necho no luck >&2\nexit 3\n",
+            "`./mine` made nothing of the target `mine`: exit status: 3",
+        ),
+        (
+            "#!/bin/sh\ncat > /dev/null\necho '{}'\n",
+            "`./mine` did not answer with a list of { path, contents } for the target `mine`: ",
+        ),
+        (
+            "#!/bin/sh\nexit 0\n",
+            "`./mine` did not answer with a list of { path, contents } for the target `mine`: ",
+        ),
+        (
+            "#!/bin/sh\ncat > /dev/null\necho '[{\"path\": \"../x\", \"contents\": \"\"}]'\n",
+            "`made/../x` cannot be written: it must not contain `.` or `..`",
+        ),
+    ] {
+        program(&project, "mine", script);
+        let run = project.fc(&["generate"]).expect(2);
+        assert!(run.stderr.contains(message), "{run:#?}");
+        assert!(!project.path("made").exists());
+        assert!(!project.path("fc-manifest.json").exists());
+    }
+    std::fs::remove_file(project.path("mine")).expect("removed");
+    let run = project.fc(&["generate"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("cannot run `./mine` for the target `mine`: "),
+        "{run:#?}"
+    );
+}
+
+/// Without a `/` it is not looked for in the project, but where the system has its programs.
+#[test]
+fn a_plugin_may_be_a_program_of_the_system() {
+    let project = project("  mine: { plugin: cat, out: made }\n");
+    program(&project, "cat", "#!/bin/sh\ncat > /dev/null\necho '[]'\n");
+    // It was run, and answered with what it was given: the dump, which is no list.
+    let run = project.fc(&["generate"]).expect(2);
+    assert!(
+        run.stderr.contains(
+            "`cat` did not answer with a list of { path, contents } for the target `mine`: "
+        ),
+        "{run:#?}"
+    );
+    assert!(!project.path("fc-manifest.json").exists());
+}
+
+/// The guide's own plugin, with the guide's own `fc.yaml`.
+#[test]
+fn the_plugin_of_the_guide_makes_a_header() {
+    if Command::new("python3").arg("--version").output().is_err() {
+        assert!(std::env::var_os("CI").is_none(), "python3 is not there");
+        println!("skipped: python3 is not there");
+        return;
+    }
+    let project = Project::new();
+    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs-site/guides/targets");
+    for name in ["fc.yaml", "codes.py"] {
+        std::fs::copy(guide.join(name), project.path(name)).expect("a file of the guide");
+    }
+    project.fc(&["generate"]).expect(0);
+    assert!(project.path("protocol/src/lib.rs").is_file());
+    assert!(project.path("protocol/vectors/frames.json").is_file());
+    assert!(project.path("docs/en/reference/index.md").is_file());
+    let header = project.read("firmware/codes.h");
+    assert!(
+        header.contains("#ifndef FC_CODES_H\n#define FC_CODES_H\n"),
+        "{header}"
+    );
+    assert!(header.matches("#define FC_").count() > 2, "{header}");
+}
+
+#[test]
+fn names_are_free_in_the_languages_of_the_targets() {
+    let command = "group: { id: doors, zh: 门, en: Doors }\n\
+         commands:\n  \
+         open_doors:\n    code: unassigned\n    zh: 开门\n    en: Open the doors\n    effect: motion\n    \
+         source: { sections: [] }\n    request:\n      \
+         door1: { type: bool, zh: 门一, en: Door one }\n      \
+         door_1: { type: bool, zh: 门二, en: Door two }\n";
+    let plugin = "  mine: { plugin: ./mine, out: made, names: kotlin }\n";
+    for (targets, status) in [(plugin, 1), ("  rust: { out: made }\n", 0)] {
+        let project = project(targets);
+        project.write("protocol/commands/doors.yaml", command);
+        let run = project.fc(&["check"]).expect(status);
+        let message = "two names are both `door1` in Kotlin";
+        assert_eq!(run.stderr.contains(message), status == 1, "{run:#?}");
+        assert_eq!(
+            run.stderr.contains("first used here"),
+            status == 1,
+            "{run:#?}"
+        );
+    }
+
+    let project = project("  rust: { out: made }\n");
+    project.write(
+        "protocol/commands/doors.yaml",
+        &command
+            .replace("door1: { type: bool,", "door1: { type: Option,")
+            .replace("      door_1: { type: bool, zh: 门二, en: Door two }\n", "types:\n  Option: { enum: u8, zh: 选项, en: Option, values: { 0: { name: idle, zh: 关, en: Inactive } } }\n"),
+    );
+    let run = project.fc(&["generate"]).expect(1);
+    let message = "`Option` already has a meaning in Rust";
+    assert!(run.stderr.contains(message), "{run:#?}");
+
+    // A dump of a project that does not make Rust may have such names.
+    project.write(
+        "fc.yaml",
+        "spec: protocol\ntargets: { vectors: { out: made } }\n",
+    );
+    let dump = project.fc(&["inspect"]).expect(0).stdout;
+    project.write("model.json", &dump);
+    project.write(
+        "fc.yaml",
+        "spec: protocol\ntargets: { rust: { out: made } }\n",
+    );
+    let run = project.fc(&["generate", "--from", "model.json"]).expect(2);
+    assert!(
+        run.stderr
+            .contains("`model.json`: `enum Option` cannot be called `Option` in Rust"),
+        "{run:#?}"
+    );
+
+    let wrong = "  mine: { plugin: ./mine, out: made, names: cobol }\n";
+    project.write("fc.yaml", &format!("targets:\n{wrong}"));
+    let run = project.fc(&["check"]).expect(2);
+    assert!(
+        run.stderr.contains("names in `cobol`") && run.stderr.contains("`kotlin`"),
+        "{run:#?}"
+    );
+}

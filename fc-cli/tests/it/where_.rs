@@ -1,0 +1,49 @@
+//! `fc where`.
+
+use crate::support::Project;
+
+/// A group of its own, so that nothing depends on what the project's spec says.
+const GROUP: &str = "\
+group: { id: lamp, zh: 灯, en: Lamp }
+commands:
+  # For tests.
+  get_lamp_colour: # once
+    code: 0x7F01
+    zh: 获取颜色
+    en: Get the colour
+    effect: read
+    source: { sections: [] }
+    response:
+      lampHue: { type: u8, example: 1, zh: 色相, en: Hue }
+";
+
+#[test]
+fn a_name_or_code_leads_to_its_place() {
+    let project = Project::new();
+    project.write("spec/commands/lamp.yaml", GROUP);
+    let operation =
+        "spec/commands/lamp.yaml:4:3: command get_lamp_colour\n    # For tests.\n    # once\n";
+    for name in ["get_lamp_colour", "0x7F01"] {
+        let run = project.fc(&["where", name]).expect(0);
+        assert_eq!(run.stdout, operation, "{name}");
+        // The code may be in no range: that is for `fc check` to say.
+        assert_eq!(run.stderr, "", "{name}");
+    }
+    for name in ["lampHue", "GetLampColourResponse.lampHue"] {
+        let run = project.fc(&["where", name]).expect(0);
+        let place = "spec/commands/lamp.yaml:11:7: field GetLampColourResponse.lampHue\n";
+        assert_eq!(run.stdout, place, "{name}");
+    }
+}
+
+#[test]
+fn what_is_not_there_is_said_with_what_is_near() {
+    let project = Project::new();
+    project.write("spec/commands/lamp.yaml", GROUP);
+    let run = project.fc(&["where", "get_lamp_color"]).expect(2);
+    assert_eq!(run.stdout, "");
+    assert!(
+        run.stderr.contains("did you mean `get_lamp_colour`?"),
+        "{run:#?}"
+    );
+}

@@ -1,0 +1,144 @@
+//! How many files a small addition changes: all about an operation is in the files of its group, so that a review reads
+//! few files a language, and two branches that add to different groups hardly meet.
+
+use crate::good_spec;
+use fc_codegen::emit::{generate, kotlin};
+use fc_codegen::target::Targets;
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::{Lang, Model};
+use fc_spec::syntax::Sources;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A group beside that of the good spec, which has one of everything.
+const LAMP: &str = "\
+group: { id: lamp, zh: 灯, en: Lamp }
+commands:
+  get_lamp:
+    code: 0x0111
+    zh: 查灯
+    en: Get the lamp
+    effect: read
+    source: { sections: [] }
+    response: { lit: { type: bool, example: true, zh: 亮, en: Whether it is lit } }
+  start_lamp: { code: 0x0112, zh: 开灯, en: Start the lamp, effect: motion, source: { sections: [] }, sets_off: [lamp_changed] }
+reports:
+  lamp_changed: { code: 0x0211, zh: 灯变了, en: The lamp has changed, source: { sections: [] } }
+streams:
+  lamp_picture: { code: 0x0511, zh: 灯的图片, en: Picture of the lamp, from: robot, content: image/png, source: { sections: [] } }
+";
+
+/// The group with the keys of one more operation at the top of a section.
+fn with(section: &str, operation: &str) -> String {
+    let head = format!("{section}:\n");
+    assert!(LAMP.contains(&head), "{section}");
+    LAMP.replace(&head, &format!("{head}{operation}\n"))
+}
+
+/// The model of the good spec with this group.
+fn model(lamp: &str) -> Model {
+    let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
+    let lamp = ("spec/commands/lamp.yaml".to_owned(), lamp.to_owned());
+    let sources = Sources::from_texts(good.into_iter().chain([lamp]));
+    let mut faults = Faults::new();
+    let model = load(&sources, &mut faults).model();
+    model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
+}
+
+/// Everything that is made of it, by path.
+fn made(lamp: &str) -> BTreeMap<String, String> {
+    let artifacts =
+        generate(&model(lamp), &Targets::default()).expect("every target can be written");
+    let artifacts = artifacts.into_iter();
+    artifacts.map(|it| (it.path, it.contents)).collect()
+}
+
+/// What an addition changes and makes, of every language.
+fn changed(before: &BTreeMap<String, String>, lamp: &str) -> BTreeSet<String> {
+    let after = made(lamp);
+    let paths = before.keys().chain(after.keys());
+    let paths = paths.filter(|path| before.get(*path) != after.get(*path));
+    paths.cloned().collect()
+}
+
+/// What any addition changes.
+const ALWAYS: [&str; 17] = [
+    "docs-site/en/reference/index.md",
+    "docs-site/reference/index.md",
+    "docs-site/reference/navigation.json",
+    "fc-generated/src/descriptors.rs",
+    "fc-generated/tests/samples.rs",
+    "stubs/cpp/generated/include/demo/groups/lamp.hpp",
+    "stubs/cpp/generated/src/groups/lamp.cpp",
+    "stubs/cpp/tests/samples.cpp",
+    "stubs/kotlin/generated/src/main/kotlin/demo/Lamp.kt",
+    "stubs/kotlin/generated/src/test/kotlin/Samples.kt",
+    "stubs/python/src/demo/groups/lamp.py",
+    "stubs/python/tests/test_samples.py",
+    "stubs/typescript/generated/groups/lamp/messages.ts",
+    "stubs/typescript/generated/groups/lamp/protocol.ts",
+    "stubs/typescript/generated/groups/lamp/schemas.ts",
+    "stubs/typescript/generated/samples.ts",
+    "fc-generated/src/messages/lamp.rs",
+];
+
+#[test]
+fn an_addition_changes_the_files_of_its_group_and_what_lists_all() {
+    let before = made(LAMP);
+    for (section, operation, further) in [
+        (
+            "commands",
+            "  dim_lamp: { code: 0x0113, zh: 调暗, en: Dim the lamp, effect: config, source: { sections: [] }, \
+             request: { to: { type: u8, example: 3, zh: 亮度, en: Brightness } } }",
+            [
+                "docs-site/en/reference/commands/dim_lamp.md",
+                "docs-site/reference/commands/dim_lamp.md",
+                "fc-generated/src/robot.rs",
+                "fc-generated/vectors/dim_lamp.json",
+                "stubs/typescript/generated/groups/lamp/commands.ts",
+            ]
+            .as_slice(),
+        ),
+        (
+            "reports",
+            "  lamp_failed: { code: 0x0212, zh: 灯坏了, en: The lamp has failed, source: { sections: [] }, \
+             body: { hours: { type: u32, example: 900, zh: 小时, en: For how long it was lit } } }",
+            &[
+                "docs-site/en/reference/reports/lamp_failed.md",
+                "docs-site/reference/reports/lamp_failed.md",
+                "fc-generated/src/client.rs",
+                "fc-generated/vectors/lamp_failed.json",
+                "stubs/typescript/generated/groups/lamp/reports.ts",
+            ],
+        ),
+    ] {
+        let changed = changed(&before, &with(section, operation));
+        let expected = ALWAYS.iter().chain(further);
+        let expected: BTreeSet<String> = expected.map(|&path| path.to_owned()).collect();
+        assert_eq!(changed, expected, "{section}");
+    }
+}
+
+/// The file of a group is called like the group, unless a file of the package is.
+#[test]
+fn a_group_may_be_called_like_a_part_of_the_kotlin_package() {
+    for (id, file) in [
+        ("client", "ClientGroup.kt"),
+        ("protocol", "ProtocolGroup.kt"),
+        ("shared_types", "SharedTypesGroup.kt"),
+        ("lamp_2", "Lamp2.kt"),
+    ] {
+        let lamp = LAMP.replace("id: lamp,", &format!("id: {id},"));
+        let files = kotlin::emit(&model(&lamp), &Targets::default()).into_iter();
+        let name = |path: &str| path.rsplit('/').next().unwrap_or_default().to_owned();
+        let files: BTreeMap<String, String> =
+            files.map(|it| (name(&it.path), it.contents)).collect();
+        let text = files.get(file).map_or("", String::as_str);
+        assert!(
+            text.contains("class GetLampRequest "),
+            "{id}: {:?}",
+            files.keys()
+        );
+        assert!(files.contains_key("Client.kt") && files.contains_key("Protocol.kt"));
+    }
+}

@@ -1,0 +1,37 @@
+//! The integration tests of fc-codegen, in one program: a program per file would link the crate each time.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::string_slice,
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "tests"
+)]
+
+mod churn;
+mod conditions;
+mod docs_support;
+mod emit_kotlin;
+mod emit_markdown;
+mod emit_python;
+mod emit_rust;
+mod emit_typescript;
+mod emit_vectors;
+mod error_names;
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "../../../fc-spec/tests/it/good_spec.rs"]
+mod good_spec;
+mod inspect;
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "../../../fc-spec/tests/it/json_schema.rs"]
+mod json_schema;
+mod load_property;
+mod names;
+mod output;
+mod target;
+mod vector_words;
+mod vocabulary;
+mod wire_facts;
+mod words;

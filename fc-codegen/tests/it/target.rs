@@ -1,0 +1,240 @@
+//! What `fc.yaml` may say, and what is made of it.
+
+use crate::good_spec;
+use fc_codegen::emit::generate;
+use fc_codegen::product::Product;
+use fc_codegen::target::Targets;
+
+fn made(yaml: &str) -> Vec<String> {
+    let targets = Targets::read(yaml).expect("sound");
+    let artifacts = generate(&good_spec::model(), &targets).expect("made");
+    artifacts
+        .into_iter()
+        .map(|artifact| artifact.path)
+        .collect()
+}
+
+#[test]
+fn a_product_goes_where_it_is_told_and_nothing_else_is_made() {
+    let paths = made("targets:\n  vectors: { out: golden/frames/ }\n");
+    assert!(paths.len() > 3);
+    let outside = paths
+        .iter()
+        .filter(|path| !path.starts_with("golden/frames/"));
+    assert_eq!(outside.count(), 0, "{paths:?}");
+    assert_eq!(
+        made("targets: { schema: { out: . } }"),
+        ["fc-spec.schema.json"]
+    );
+    assert_eq!(made("targets: { schema: }"), ["spec/fc-spec.schema.json"]);
+}
+
+#[test]
+fn without_a_file_every_product_is_made_at_its_usual_place() {
+    let targets = Targets::default();
+    for product in Product::ALL {
+        assert_eq!(targets.place(product), Some(product.usual_place()));
+    }
+    assert_eq!(targets.spec, "spec");
+}
+
+#[test]
+fn docs_are_made_in_the_languages_asked_for() {
+    let paths = made("targets: { markdown: { out: d, languages: [en] } }");
+    assert!(
+        paths.iter().any(|path| path == "d/en/reference/index.md"),
+        "{paths:?}"
+    );
+    assert!(
+        !paths.iter().any(|path| path == "d/reference/index.md"),
+        "{paths:?}"
+    );
+}
+
+/// A comment that leads to a page leads to where the pages are, or says nothing of them.
+#[test]
+fn comments_name_the_docs_where_they_are() {
+    let comments = |yaml: &str| {
+        let targets = Targets::read(yaml).expect("sound");
+        let artifacts = generate(&good_spec::model(), &targets).expect("made");
+        let rust = artifacts
+            .into_iter()
+            .filter(|artifact| artifact.target == "rust");
+        rust.map(|artifact| artifact.contents).collect::<String>()
+    };
+    let without = comments("targets: { rust: }");
+    assert!(without.contains("Spec: `commands.get_thing`"));
+    assert!(!without.contains("Docs: "));
+    let elsewhere = comments("targets: { rust: , markdown: { out: handbook } }");
+    assert!(elsewhere.contains("- Docs: `handbook/reference/commands/get_thing.md`"));
+}
+
+/// Those of each entity have a type of their own where it is asked for, and only there; pages that are made alone show
+/// the same code.
+#[test]
+fn ids_have_types_where_they_are_asked_for() {
+    let all = |yaml: &str, only: &[&str]| {
+        let only: Vec<_> = only.iter().map(ToString::to_string).collect();
+        let targets = Targets::read(yaml).expect("sound");
+        let targets = targets.only(&only).expect("there");
+        let artifacts = generate(&good_spec::model(), &targets).expect("whole");
+        let text = artifacts
+            .into_iter()
+            .map(|it| format!("{}\n{}", it.path, it.contents));
+        text.collect::<String>()
+    };
+    let with = "targets: { rust: { newtypes: true }, markdown: }";
+    let rust = all(with, &["rust"]);
+    assert!(rust.contains("pub struct ThingId(pub i64);"));
+    assert!(rust.contains("fc-generated/src/ids.rs\n"));
+    assert!(rust.contains("pub thing_id: ThingId,"));
+    assert!(
+        rust.contains("- Docs: `docs-site/reference/"),
+        "a package that is made alone points to the docs as well"
+    );
+    let pages = all(with, &["markdown"]);
+    assert!(pages.contains("ThingMoved::new(ThingId(7))"), "{pages}");
+    for without in [
+        "targets: { rust: { newtypes: false }, markdown: }",
+        "targets: { rust: , markdown: }",
+    ] {
+        assert!(!all(without, &[]).contains("ThingId"));
+    }
+}
+
+#[test]
+fn what_the_file_cannot_say_is_refused_by_name() {
+    for (yaml, message) in [
+        (
+            "targets: [rust]",
+            "`fc.yaml`: targets: invalid type: sequence, expected a map at line 1 column 10",
+        ),
+        (
+            "targets:\n  rust: { ouut: a }\n",
+            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `audience`, `options` at line 2 column 11",
+        ),
+        (
+            "target: {}\n",
+            "unknown field `target`, expected one of `spec`, `targets`, `lint`",
+        ),
+        (
+            "targets: { cobol: { out: a } }",
+            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `python`, `kotlin`, `cpp`, `schema`. A target of another name needs a `plugin`",
+        ),
+        (
+            "targets: { rust: { plugin: x } }",
+            "the target `rust` cannot have `plugin`",
+        ),
+        (
+            "targets: { schema: { audience: product_app } }",
+            "the target `schema` cannot have `audience`",
+        ),
+        (
+            "targets: { rust: { languages: [zh] } }",
+            "the target `rust` cannot have `languages`",
+        ),
+        (
+            "targets: { mine: { plugin: x } }",
+            "the target `mine` needs `out`",
+        ),
+        (
+            "targets: { vectors: { newtypes: true } }",
+            "the target `vectors` cannot have `newtypes`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, newtypes: true } }",
+            "the target `mine` cannot have `newtypes`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, languages: [zh] } }",
+            "the target `mine` cannot have `languages`",
+        ),
+        (
+            "targets: { rust: { names: rust } }",
+            "the target `rust` cannot have `names`",
+        ),
+        (
+            "targets: { mine: { plugin: x, out: a, names: cobol } }",
+            "the target `mine` has names in `cobol`; the languages are `rust`, `typescript`, `kotlin`, `java`, `cpp`, `python`",
+        ),
+        (
+            "targets: { markdown: { languages: [fr] } }",
+            "unknown variant `fr`, expected `zh` or `en`",
+        ),
+    ] {
+        let error = Targets::read(yaml).expect_err(yaml).to_string();
+        assert!(
+            error.starts_with("`fc.yaml`: ") && error.contains(message),
+            "{yaml}: {error}"
+        );
+    }
+}
+
+#[test]
+fn only_names_targets() {
+    let targets =
+        || Targets::read("targets: { rust: , mine: { plugin: x, out: a } }").expect("sound");
+    let only = |names: &[&str]| {
+        let names: Vec<_> = names.iter().map(ToString::to_string).collect();
+        targets()
+            .only(&names)
+            .map(|targets| targets.names().collect::<Vec<_>>().join(" "))
+    };
+    assert_eq!(only(&[]).expect("all"), "rust mine");
+    assert_eq!(only(&["mine"]).expect("there"), "mine");
+    assert_eq!(
+        only(&["vectors"]).expect_err("not there").to_string(),
+        "there is no target `vectors`; the targets are `rust`, `mine`"
+    );
+}
+
+/// Each target holds what its own audience has.
+#[test]
+fn a_target_is_made_for_its_audience() {
+    let yaml = "targets: { rust: { audience: product_app }, typescript: , mine: { plugin: x, out: a, audience: debugging_app } }";
+    let targets = Targets::read(yaml).expect("sound");
+    let model = good_spec::model();
+    targets.check_audiences(&model).expect("both are declared");
+    let artifacts = generate(&model, &targets).expect("made");
+    let says = |target: &str, text: &str| {
+        let mut artifacts = artifacts.iter();
+        artifacts.any(|it| it.target == target && it.contents.contains(text))
+    };
+    assert!(says("rust", "pub x: f64") && !says("rust", "pub y: Option<f64>"));
+    assert!(says("typescript", "\"y\""));
+    let audiences = targets.plugins().iter().map(|it| it.audience.as_deref());
+    assert_eq!(audiences.collect::<Vec<_>>(), [Some("debugging_app")]);
+
+    let targets = Targets::read("targets: { rust: { audience: nobody } }").expect("sound");
+    let message = "there is no audience `nobody`; the spec declares `product_app`, `debugging_app`";
+    let checked = targets.check_audiences(&model).expect_err("unknown");
+    assert_eq!(checked.to_string(), message);
+    let made = generate(&model, &targets).expect_err("unknown");
+    assert_eq!(made.to_string(), message);
+}
+
+/// A page shows the packages that the project has, made this time or not, and no other.
+#[test]
+fn pages_show_the_languages_of_the_project() {
+    let tabs = |yaml: &str, only: &[&str]| {
+        let only: Vec<_> = only.iter().map(ToString::to_string).collect();
+        let targets = Targets::read(yaml).expect("sound");
+        let targets = targets.only(&only).expect("there");
+        let artifacts = generate(&good_spec::model(), &targets).expect("made");
+        let page = "d/en/reference/commands/get_thing.md";
+        let page = artifacts.iter().find(|artifact| artifact.path == page);
+        let lines = page.expect("made").contents.lines();
+        let tabs = lines.filter_map(|line| line.strip_prefix("```")?.split_once(" ["));
+        let tabs: Vec<_> = tabs.map(|(_, title)| title.to_owned()).collect();
+        tabs.join(" ")
+    };
+    let all = "targets: { rust: , typescript: { out: t }, python: , markdown: { out: d } }";
+    let both = "Rust] TypeScript] Python] Rust] TypeScript] Python]";
+    assert_eq!(tabs(all, &[]), both);
+    assert_eq!(tabs(all, &["markdown"]), both);
+    let kotlin = "targets: { kotlin: { out: k }, rust: , markdown: { out: d } }";
+    assert_eq!(tabs(kotlin, &[]), "Rust] Kotlin] Rust] Kotlin]");
+    let python = "targets: { python: , markdown: { out: d } }";
+    assert_eq!(tabs(python, &[]), "Python] Python]");
+    assert_eq!(tabs("targets: { markdown: { out: d } }", &[]), "");
+}

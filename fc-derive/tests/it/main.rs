@@ -1,0 +1,20 @@
+//! The integration tests of fc-derive, in one program: a program per file would link the crate each time. `ui` needs a process of its own.
+
+#![allow(
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::struct_field_names,
+    clippy::too_many_lines,
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "tests"
+)]
+
+mod condition;
+mod header;
+mod id;
+mod message;
+mod open_enum;
+mod redacted;
+mod service;
+mod wire_number;

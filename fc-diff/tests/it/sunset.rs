@@ -1,0 +1,26 @@
+//! What goes before the day that was promised.
+
+use crate::support::{base, model};
+use fc_diff::gone_early;
+
+#[test]
+fn what_is_gone_before_its_last_day_was_not_announced() {
+    let old = model(&base()).expect("the spec");
+    let withdrawn = old.operations.iter().find_map(|it| {
+        let sunset = it.deprecated.as_ref()?.sunset.clone()?;
+        Some((it.name.clone(), sunset))
+    });
+    let (name, sunset) = withdrawn.expect("an operation with a sunset");
+    assert_eq!(sunset, "2027-06");
+    let mut new = old.clone();
+    new.operations.retain(|it| it.name != name);
+
+    let early = gone_early(&old, &new, "2027-06-30");
+    let early: Vec<_> = early
+        .iter()
+        .map(|it| (it.rule.number, it.subject.as_str()))
+        .collect();
+    assert_eq!(early, [(63, name.as_str())]);
+    assert!(gone_early(&old, &new, "2027-07-01").is_empty());
+    assert!(gone_early(&old, &old, "2027-06-30").is_empty());
+}

@@ -1,0 +1,99 @@
+//! The projects of the guide "Use it in your project", as somebody outside makes them: they build with
+//! the lines of their `Cargo.toml` and no others, and do what they say.
+
+use crate::support::nested;
+use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+/// What the robot of the guide says it is.
+const NUMBER: &str = "100132007654321";
+
+/// Each project, the name of its program, and whether tokio may be in it.
+const PROJECTS: [(&str, &str, bool); 4] = [
+    ("app", "my-app", true),
+    ("robot", "my-robot", true),
+    ("codec", "my-codec", false),
+    ("blocking", "my-tool", true),
+];
+
+/// A robot that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Builds a project in a folder of its own; answers its program.
+fn build(folder: &Path, name: &str, program: &str, has_tokio: bool) -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let from = here.join("tests/projects").join(name);
+    let project = folder.join(name);
+    fs::create_dir_all(project.join("src")).unwrap();
+    fs::copy(from.join("main.rs"), project.join("src/main.rs")).unwrap();
+    let manifest = fs::read_to_string(from.join("Cargo.toml")).unwrap();
+    let path = "path = \"../protocol/fc-generated\"";
+    assert!(manifest.contains(path), "{name}: {manifest}");
+    let manifest = manifest.replace(path, &format!("path = {:?}", here.to_string_lossy()));
+    let rest = "\n[workspace]\n\n[lints.rust]\nwarnings = \"deny\"\n";
+    fs::write(project.join("Cargo.toml"), manifest + rest).unwrap();
+    // The versions that are there, so that nothing has to be fetched.
+    fs::copy(here.join("../Cargo.lock"), project.join("Cargo.lock")).unwrap();
+
+    let target = nested::target();
+    let cargo = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO"))
+            .args(arguments)
+            .arg("--offline")
+            .current_dir(&project)
+            .env("CARGO_TARGET_DIR", &target)
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{name}: {errors}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    cargo(&["build"]);
+    let tree = cargo(&["tree", "--edges", "normal", "--prefix", "none"]);
+    let holds_tokio = tree.lines().any(|line| line.starts_with("tokio v"));
+    assert_eq!(holds_tokio, has_tokio, "{name}: {tree}");
+    target
+        .join("debug")
+        .join(format!("{program}{}", std::env::consts::EXE_SUFFIX))
+}
+
+fn output(program: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(program).args(arguments).output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}: {errors}", program.display());
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+#[ignore = "compiles projects of its own"]
+fn the_projects_of_the_guide_build_and_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let [app, robot, codec, blocking] =
+        PROJECTS.map(|(name, program, has_tokio)| build(folder.path(), name, program, has_tokio));
+
+    let shown = output(&codec, &[]);
+    assert!(shown.contains("GetRobotSnRequest"), "{shown}");
+
+    let child = Command::new(robot)
+        .arg("0")
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut robot = Running(child);
+    let mut address = String::new();
+    let mut lines = BufReader::new(robot.0.stdout.take().unwrap());
+    lines.read_line(&mut address).unwrap();
+    let (_, port) = address.trim().rsplit_once(':').expect("an address");
+    for program in [app, blocking] {
+        assert_eq!(output(&program, &[port]).trim(), NUMBER);
+    }
+}

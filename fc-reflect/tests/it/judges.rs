@@ -1,0 +1,318 @@
+//! Decoders in other languages make the same of the same bytes as the one in Rust.
+//!
+//! `FC_JUDGES='python=stubs/python/run judge;cpp=stubs/cpp/run judge'` names them, each with its command from the
+//! project's root. `FC_FRAMES` and `FC_SEED` are as in `agreement`.
+//!
+//! A judge reads frames, each in hex on a line of its own, and answers each with a line, a list in JSON:
+//!
+//! - `["refused", "out_of_range", "data.mode"]`: the error's name, and the path in the body, empty for the frame's own;
+//! - `["message", 0, 1, 2564, 7, "{…}"]`: 1 for a response, kind, code and id of the header, and the message as it is
+//!   written again;
+//! - `["bytes", 0, 3, 513, 7, "0a0b"]`: the same of what has no message: its data in hex.
+
+use crate::mutate::{self, Random, Seeds};
+use crate::support::typed::{Typed, Verdict};
+use crate::support::{self, hex, number};
+use fc_generated::{Fc, FrameHeader};
+use fc_reflect::Reflector;
+use fc_runtime::{Header as _, Protocol as _};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::Value;
+use serde_json::value::RawValue;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
+use std::iter::zip;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::thread;
+
+#[test]
+fn judges_agree() {
+    let Ok(judges) = std::env::var("FC_JUDGES") else {
+        println!("skipped: FC_JUDGES names no decoder in another language");
+        return;
+    };
+    let model = support::specs::model();
+    let reflector = Reflector::new(&model);
+    let seeds = mutate::seeds(&support::vectors(), &reflector);
+    let typed = Typed::new(&model);
+    let count = number("FC_FRAMES", 20_000);
+    let first = number("FC_SEED", 0).wrapping_mul(1 << 32);
+    for judge in judges.split(';') {
+        let (name, command) = judge.split_once('=').expect("name=command");
+        let mut child = start(command);
+        let frames = child.stdin.take().expect("a pipe");
+        let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+        let mut found: BTreeMap<&str, u64> = BTreeMap::new();
+        // The first of each kind of disagreement, and how many there are of it.
+        let mut faults: BTreeMap<String, (String, u64)> = BTreeMap::new();
+        thread::scope(|scope| {
+            let (seeds, reflector) = (&seeds, &reflector);
+            let mut listening = Listening {
+                judge: &mut child,
+                is_content: false,
+            };
+            scope.spawn(move || send(frames, first..first + count, seeds, reflector));
+            for seed in first..first + count {
+                let bytes = mutate::frame(&mut Random(seed), seeds, reflector);
+                let wanted = typed.verdict(&bytes, Fc::DEFAULTS.limits.json());
+                *found.entry(wanted.name()).or_default() += 1;
+                let answer = answers.next().map(|line| line.expect("a line of text"));
+                if answer
+                    .as_ref()
+                    .is_some_and(|line| agrees(&wanted, line, packed(&bytes)))
+                {
+                    continue;
+                }
+                let said = answer.as_deref().map_or_else(|| "nothing".into(), summary);
+                let kind = format!("{}, where {name} says {said}", wanted.name());
+                let first = || {
+                    let bytes = hex(&bytes);
+                    format!("seed {seed}: {answer:?}\nwanted {wanted:?}\nof {bytes}")
+                };
+                faults.entry(kind).or_insert_with(|| (first(), 0)).1 += 1;
+                if answer.is_none() {
+                    break;
+                }
+            }
+            listening.is_content = faults.is_empty();
+        });
+        for (kind, (first, times)) in &faults {
+            println!("{times} times {kind}, first with {first}\n");
+        }
+        assert!(faults.is_empty(), "{name} disagrees");
+        assert!(child.wait().expect("it ends").success(), "{name}");
+        println!("{name}: {count} frames: {found:?}");
+        assert!(found["taken"] * 10 > count && found.len() > 20, "{found:?}");
+    }
+}
+
+/// Ends a judge that disagrees, also where its answer is no text at all: it may not read on, and then nobody could go on
+/// writing.
+struct Listening<'c> {
+    judge: &'c mut Child,
+    is_content: bool,
+}
+
+impl Drop for Listening<'_> {
+    fn drop(&mut self) {
+        if !self.is_content {
+            // Where it has ended, there is nothing to end.
+            let _ = self.judge.kill();
+        }
+    }
+}
+
+fn start(command: &str) -> Child {
+    let mut shell = Command::new("bash");
+    shell
+        .args(["-c", command])
+        .current_dir(support::specs::root());
+    let piped = shell.stdin(Stdio::piped()).stdout(Stdio::piped());
+    piped.spawn().expect("bash")
+}
+
+/// Ends early where nobody reads any more; the reason shows in the answers.
+fn send(
+    pipe: ChildStdin,
+    numbers: impl Iterator<Item = u64>,
+    seeds: &Seeds,
+    reflector: &Reflector<'_>,
+) {
+    let mut pipe = BufWriter::new(pipe);
+    for seed in numbers {
+        let bytes = mutate::frame(&mut Random(seed), seeds, reflector);
+        if writeln!(pipe, "{}", hex(&bytes)).is_err() {
+            return;
+        }
+    }
+}
+
+/// What a judge's line says, without its details.
+fn summary(line: &str) -> String {
+    match serde_json::from_str::<Value>(line) {
+        Ok(Value::Array(answer)) => {
+            let word = |at: usize| answer.get(at).and_then(Value::as_str).unwrap_or_default();
+            word(usize::from(word(0) == "refused")).to_owned()
+        }
+        _ => "what is no list".into(),
+    }
+}
+
+/// Whether the data of a frame is said to be compressed.
+fn packed(bytes: &[u8]) -> bool {
+    FrameHeader::read(bytes).is_some_and(|header| Some(header.encoding()) == Fc::GZIP)
+}
+
+/// Whether a judge's line says what is wanted.
+fn agrees(wanted: &Verdict, line: &str, packed: bool) -> bool {
+    let Ok(Value::Array(answer)) = serde_json::from_str(line) else {
+        return false;
+    };
+    let word = |at: usize| answer.get(at).and_then(Value::as_str);
+    let int = |at: usize| answer.get(at).and_then(Value::as_u64);
+    match wanted {
+        Verdict::Refused(name, path, _) => {
+            // Of what is no JSON, a judge need not know where in the message it is. Here a key stands as it was written.
+            let knows_place = word(2) != Some("") && !path.contains('\\');
+            // What is too long and damaged besides may be called either: it depends on how far a library has unpacked it.
+            let name_agrees = word(1) == Some(name)
+                || (packed && *name == "plain_length_mismatch" && word(1) == Some("bad_gzip"));
+            word(0) == Some("refused") && name_agrees && (!knows_place || word(2) == Some(path))
+        }
+        Verdict::Taken {
+            response,
+            kind,
+            code,
+            id,
+            data,
+        } => {
+            let header = [
+                u64::from(*response),
+                (*kind).into(),
+                (*code).into(),
+                (*id).into(),
+            ];
+            let same = (1..)
+                .zip(header)
+                .all(|(at, wanted)| int(at) == Some(wanted));
+            let text = word(5).unwrap_or_default();
+            same && match word(0) {
+                Some("message") => same_text(data, text.as_bytes()),
+                Some("bytes") => hex(data) == text,
+                _ => false,
+            }
+        }
+    }
+}
+
+/// The same JSON, with its keys in the same order: numbers and texts may be spelled in other ways. What is passed on as it came
+/// may hold what no reader takes for a value, such as half of a surrogate pair, and a key twice.
+fn same_text(one: &[u8], other: &[u8]) -> bool {
+    let value = |bytes| serde_json::from_slice::<&RawValue>(bytes).ok();
+    one == other || value(one).is_some_and(|one| value(other).is_some_and(|other| same(one, other)))
+}
+
+fn same(one: &RawValue, other: &RawValue) -> bool {
+    /// Both as something, if they are that, and compared.
+    fn both<'r, T: Deserialize<'r>>(
+        one: &'r RawValue,
+        other: &'r RawValue,
+        are_same: impl Fn(&T, &T) -> bool,
+    ) -> bool {
+        let read = |raw: &'r RawValue| serde_json::from_str::<T>(raw.get());
+        matches!((read(one), read(other)), (Ok(one), Ok(other)) if are_same(&one, &other))
+    }
+
+    let first = |raw: &RawValue| raw.get().as_bytes()[0];
+    match (first(one), first(other)) {
+        (b'{', b'{') => both(one, other, |Entries(one), Entries(other)| {
+            all_same(one, other)
+        }),
+        (b'[', b'[') => both(one, other, |one: &Vec<_>, other| all_same(one, other)),
+        (b'"', b'"') => both(one, other, |Text(one), Text(other)| one == other),
+        // Words, too: they are the same if they are spelled so.
+        _ => same_number(one.get(), other.get()),
+    }
+}
+
+fn all_same(one: &[&RawValue], other: &[&RawValue]) -> bool {
+    one.len() == other.len() && zip(one, other).all(|(one, other)| same(one, other))
+}
+
+/// 10 is 10.0 and 1e1. Past what a double tells from its neighbours, integers are compared by their digits.
+fn same_number(one: &str, other: &str) -> bool {
+    let is_float = |number: &str| number.contains(['.', 'e', 'E']);
+    let value = |number: &str| number.parse().ok().filter(|value: &f64| value.is_finite());
+    one == other
+        || ((is_float(one) || is_float(other))
+            && value(one).is_some_and(|one| value(other) == Some(one)))
+}
+
+/// The keys and values of an object, one after the other, as they stand.
+struct Entries<'r>(Vec<&'r RawValue>);
+
+impl<'r> Deserialize<'r> for Entries<'r> {
+    fn deserialize<D: Deserializer<'r>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Seen;
+        impl<'r> Visitor<'r> for Seen {
+            type Value = Entries<'r>;
+
+            fn expecting(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+                text.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'r>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut entries = Vec::new();
+                while let Some((key, value)) = map.next_entry()? {
+                    entries.extend::<[&RawValue; 2]>([key, value]);
+                }
+                Ok(Entries(entries))
+            }
+        }
+        deserializer.deserialize_map(Seen)
+    }
+}
+
+/// What a text stands for, in WTF-8, which has room for halves of pairs.
+struct Text(Vec<u8>);
+
+impl<'r> Deserialize<'r> for Text {
+    fn deserialize<D: Deserializer<'r>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Seen;
+        impl Visitor<'_> for Seen {
+            type Value = Text;
+
+            fn expecting(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+                text.write_str("a text")
+            }
+
+            fn visit_bytes<E>(self, bytes: &[u8]) -> Result<Text, E> {
+                Ok(Text(bytes.to_vec()))
+            }
+        }
+        deserializer.deserialize_bytes(Seen)
+    }
+}
+
+#[test]
+fn the_same_json_may_be_spelled_otherwise() {
+    for (one, other) in [
+        (
+            r#"{"a": [1, 10.0], "b": null}"#,
+            r#"{"a":[1.0,1e1],"b":null}"#,
+        ),
+        (r#"{"\u0061":"\u00e9\/\n"}"#, r#"{"a":"é/\u000a"}"#),
+        (r#"["\ud83d\ude00", "\uD83D"]"#, r#"["😀","\ud83d"]"#),
+        (
+            r#"{"\udc00":18446744073709551617}"#,
+            r#"{"\uDC00":18446744073709551617}"#,
+        ),
+        ("[1e400, 0.1]", "[1e400,0.10]"),
+        (r#"{"k":1,"k":2}"#, r#"{"k":1,"k":2}"#),
+    ] {
+        assert!(same_text(one.as_bytes(), other.as_bytes()), "{one} {other}");
+    }
+    for (one, other) in [
+        ("9007199254740993", "9007199254740992"),
+        ("1e400", "1e401"),
+        ("1", "2"),
+        ("1", r#""1""#),
+        ("true", "false"),
+        ("[]", "{}"),
+        ("[1,2]", "[1]"),
+        ("[1]", "[[1]]"),
+        (r#"{"a":1,"b":2}"#, r#"{"b":2,"a":1}"#),
+        (r#"{"k":1,"k":2}"#, r#"{"k":1}"#),
+        (r#"{"k":1,"k":2}"#, r#"{"k":2,"k":1}"#),
+        (r#""\ud83d""#, r#""\ud83c""#),
+        (r#"{"\ud83d":1}"#, r#"{"\ud83c":1}"#),
+        (r#""\ud83d""#, r#""\ufffd""#),
+        ("[1", "[1 "),
+    ] {
+        assert!(
+            !same_text(one.as_bytes(), other.as_bytes()),
+            "{one} {other}"
+        );
+    }
+}

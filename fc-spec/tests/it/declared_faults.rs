@@ -1,0 +1,116 @@
+//! At which keys of the language the faults of a spec lie, and whether the keys say so.
+
+use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults};
+use fc_spec::load::{Role, Site, sites};
+use fc_spec::schema::{Part, reference};
+use fc_spec::syntax::{Sources, parse};
+use std::collections::BTreeSet;
+
+/// Keys under which a body stands, which are checked alike wherever it is.
+const BODIES: [&str; 5] = ["request", "response", "body", "fields", "items"];
+
+/// A part of the language, one of its keys, and a fault that lies there.
+pub type Raised = BTreeSet<(&'static str, &'static str, FaultCode)>;
+
+/// Whether it is one of YAML itself, which may lie anywhere, or of an item as a whole, of whose list no site tells.
+fn has_no_key(code: FaultCode) -> bool {
+    code.as_str().starts_with("FC00") || code == FaultCode::SplitItem
+}
+
+/// Whether it is one of the shape, which follows from the kind of a key.
+fn is_of_shape(code: FaultCode) -> bool {
+    code.as_str().starts_with("FC01")
+}
+
+/// The part and the key under which a fault lies. Of a whole mapping it is the key under which that stands; of a key that
+/// the part does not have there is none.
+fn place(sources: &Sources, fault: &Diagnostic) -> Option<(&'static str, Option<&'static str>)> {
+    let span = fault.primary.span;
+    let (id, file) = sources.iter().find(|(id, _)| *id == span.file)?;
+    let tree = parse(id, &file.text, &mut Faults::new())?;
+    let mut found = ("file", None);
+    let mut see = |site: Site<'_>| {
+        let at = site.node.span();
+        let is_whole = site.role == Role::Key && at.start == span.start && at.end < span.end;
+        if at.start <= span.start && !is_whole {
+            found = (site.part, site.key);
+        }
+    };
+    sites(tree.root(), &mut see);
+    Some(found)
+}
+
+/// Adds where the faults of a spec lie; gives those of which the reference of the language does not say that they may.
+pub fn undeclared(
+    what: &str,
+    sources: &Sources,
+    faults: &Faults,
+    raised: &mut Raised,
+) -> Vec<String> {
+    let parts = reference();
+    let part = |id: &str| parts.iter().find(|part| part.id == id);
+    let says = |id: &str, name: Option<&'static str>, code: FaultCode| {
+        let of_whole = |part: &Part| part.faults.contains(&code);
+        let Some(part_of) = part(id) else {
+            return false;
+        };
+        let Some(name) = name else {
+            return of_whole(part_of);
+        };
+        part_of.keys.iter().any(|key| {
+            let mut inner = key.takes.iter().flat_map(|takes| &takes.parts);
+            key.name == name
+                && (key.faults.contains(&code)
+                    || of_whole(part_of)
+                    || inner.any(|id| part(id).is_some_and(of_whole)))
+        })
+    };
+    let mut missing = Vec::new();
+    for fault in faults {
+        let Some((part, key)) = place(sources, fault).filter(|_| !has_no_key(fault.code)) else {
+            continue;
+        };
+        raised.extend(key.map(|key| (part, key, fault.code)));
+        if !says(part, key, fault.code) {
+            missing.push(format!(
+                "{what}: {} at {part}.{}",
+                fault.code,
+                key.unwrap_or("?")
+            ));
+        }
+    }
+    missing
+}
+
+/// Faults that a key is said to raise and that nothing of what has been read has raised at a key of that name, those
+/// excepted of which it is known.
+pub fn unraised(raised: &Raised, known: &[(&str, &str)]) -> Vec<String> {
+    let kin = |name: &'static str| if BODIES.contains(&name) { "body" } else { name };
+    let raised: BTreeSet<_> = raised
+        .iter()
+        .map(|(_, key, code)| (kin(key), *code))
+        .collect();
+    let declared = reference().into_iter().flat_map(|part| part.keys);
+    let declared: BTreeSet<_> = declared
+        .flat_map(|key| {
+            key.faults
+                .into_iter()
+                .map(move |code| (kin(key.name), code))
+        })
+        .filter(|(_, code)| !is_of_shape(*code))
+        .collect();
+    let is_known = |key: &str, code: FaultCode| known.contains(&(key, code.as_str()));
+    let unraised = declared.difference(&raised);
+    let mut wrong: Vec<String> = unraised
+        .filter(|(key, code)| !is_known(key, *code))
+        .map(|(key, code)| format!("nothing raises {code} at `{key}`"))
+        .collect();
+    // What is an exception no longer goes.
+    let is_idle = |(key, code): &&(&str, &str)| {
+        let pair = |(name, it): &(&str, FaultCode)| name == key && it.as_str() == *code;
+        raised.iter().any(pair) || !declared.iter().any(pair)
+    };
+    let idle = known.iter().filter(is_idle);
+    wrong.extend(idle.map(|(key, code)| format!("{code} at `{key}` is no exception any more")));
+    wrong
+}

@@ -1,0 +1,94 @@
+//! The schema of the spec language against the loader: what the loader takes the schema takes, and what is
+//! wrong with the shape both refuse.
+
+use crate::good_spec;
+use crate::json_schema::Validator;
+use crate::yaml_as_json;
+use fc_spec::schema::schema;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn check(text: &str) -> bool {
+    let root: Value = serde_json::from_str(&schema()).expect("the schema is JSON");
+    Validator { root: &root }.accepts(&root, &yaml_as_json::parse(text))
+}
+
+#[test]
+fn good_files_are_accepted() {
+    for path in good_spec::FILES {
+        assert!(check(&good_spec::file(path)), "{path}");
+    }
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec");
+    for folder in [spec.clone(), spec.join("commands")] {
+        for entry in fs::read_dir(folder).expect("the spec can be read") {
+            let path = entry.expect("an entry").path();
+            if path
+                .extension()
+                .is_some_and(|extension| extension == "yaml")
+            {
+                let text = fs::read_to_string(&path).expect("the file can be read");
+                assert!(check(&text), "{}", path.display());
+            }
+        }
+    }
+}
+
+/// Faults of the shape that a schema can tell. The others need the spelling (`0x0a06`, `017`), which YAML readers do
+/// not keep, or more than one place.
+const SEEN_BY_SCHEMA: &[&str] = &[
+    "FC0101", "FC0102", "FC0103", "FC0104", "FC0107", "FC0108", "FC0109", "FC0110", "FC0111",
+    "FC0117", "FC0118", "FC0120", "FC0121", "FC0122", "FC0123",
+];
+
+#[test]
+fn files_with_faults_of_shape_are_refused() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad");
+    let mut seen = 0;
+    for entry in fs::read_dir(folder).expect("tests/bad can be read") {
+        let path = entry.expect("an entry").path();
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        if name
+            .get(..6)
+            .is_some_and(|code| SEEN_BY_SCHEMA.contains(&code))
+        {
+            let text = fs::read_to_string(&path).expect("the file can be read");
+            assert!(!check(&text), "{name} is accepted");
+            seen += 1;
+        }
+    }
+    assert!(seen >= SEEN_BY_SCHEMA.len(), "only {seen} fixtures");
+}
+
+#[test]
+fn every_definition_is_used() {
+    let text = schema();
+    let root: Value = serde_json::from_str(&text).expect("the schema is JSON");
+    for name in root["$defs"].as_object().expect("definitions").keys() {
+        assert!(text.contains(&format!("\"#/$defs/{name}\"")), "{name}");
+    }
+}
+
+/// An editor offers defaults and examples, so each is to be taken where it stands.
+#[test]
+fn what_is_offered_for_a_key_may_stand_there() {
+    let root: Value = serde_json::from_str(&schema()).expect("the schema is JSON");
+    let mut offers = 0;
+    for (name, definition) in root["$defs"].as_object().expect("definitions") {
+        let properties = definition["properties"].as_object();
+        for (key, place) in properties.into_iter().flatten() {
+            let examples = place["examples"].as_array().into_iter().flatten();
+            for offer in place.get("default").into_iter().chain(examples) {
+                let misfit = Validator { root: &root }.misfit(place, offer, key);
+                assert!(misfit.is_none(), "{name}: {offer} does not fit: {misfit:?}");
+                offers += 1;
+            }
+        }
+    }
+    assert!(offers > 50, "only {offers}");
+    let optional = &root["$defs"]["field"]["properties"]["optional"];
+    assert_eq!(optional["default"], Value::Bool(false), "{optional}");
+}

@@ -1,0 +1,100 @@
+//! Where a spec names its things: every name leads to what it names, and every thing that has to be named is.
+
+use crate::good_spec;
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::{Trees, places, site_at, uses};
+use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
+use std::path::Path;
+
+/// The small spec, and the one that uses every corner of the language.
+fn specs() -> [Sources; 2] {
+    let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
+    let docs = fc_spec::syntax::read_dir(&docs, Path::new("spec"), &mut Faults::new());
+    [Sources::from_texts(good), docs]
+}
+
+#[test]
+fn every_name_leads_to_what_it_names() {
+    for sources in specs() {
+        let (places, uses) = (places(&sources), uses(&sources));
+        assert!(uses.iter().count() > 0);
+        for sought in uses.iter() {
+            let text = sources.slice(sought.span);
+            assert_eq!(text, sought.name, "{sought:?}");
+            let (item, place) = sought.found(&places).expect("the spec has it");
+            assert!(sought.is(&item), "{sought:?}");
+            assert_eq!(places.get(&item), Some(place));
+        }
+    }
+}
+
+/// Of these the spec says itself that something has to name them.
+#[test]
+fn every_thing_that_has_to_be_named_is() {
+    for sources in specs() {
+        let (places, uses) = (places(&sources), uses(&sources));
+        let declared = places.iter().filter(|(item, place)| {
+            let is_declared = item.owner.is_none() && sources.slice(place.key) == item.name;
+            is_declared
+                && (item.is_type() || ["entity", "store", "coordinate system"].contains(&item.kind))
+        });
+        for (item, _) in declared {
+            assert!(uses.of(item).next().is_some(), "{item}");
+        }
+    }
+}
+
+#[test]
+fn no_offset_of_a_file_is_too_odd() {
+    for sources in specs() {
+        for (id, file) in sources.iter() {
+            let tree = parse(id, &file.text, &mut Faults::new()).expect("a tree");
+            for offset in (0..file.text.len() + 2).step_by(7) {
+                if let Some(site) = site_at(tree.root(), offset) {
+                    let span = site.node.span();
+                    assert!(span.start <= offset && offset <= span.end);
+                    let _ = (site.words(), site.other_keys(), site.names(), site.sought());
+                }
+            }
+        }
+    }
+    let empty = parse(FileId(0), "", &mut Faults::new());
+    assert!(empty.is_none());
+}
+
+/// A file that has changed, that has become no YAML, and that is as it was again: each time it is as if all were read anew.
+#[test]
+fn trees_that_stay_say_what_new_ones_do() {
+    for sources in specs() {
+        let mut trees = Trees::new(&sources);
+        let files: Vec<_> = sources.iter().map(|(_, file)| file.clone()).collect();
+        for file in files {
+            let broken = file.text.replacen(": ", ": [", 1);
+            let moved = format!("# 在前\n{}", file.text.replacen("u16", "u61", 1));
+            for text in [moved, broken, file.text.clone()] {
+                let mut changed = sources.clone();
+                changed.replace(SourceFile::new(file.path.as_str(), text));
+                trees = trees.with(&changed);
+                let new = Trees::new(&changed);
+                let faults = [&trees, &new].map(|trees| {
+                    let mut faults = Faults::new();
+                    let _ = trees.load(&mut faults);
+                    faults.iter().cloned().collect::<Vec<_>>()
+                });
+                assert_eq!(faults[0], faults[1], "{}", file.path);
+                let (kept, read) = (trees.places(), new.places());
+                assert!(kept.iter().eq(read.iter()), "{}", file.path);
+                for (id, _) in changed.iter() {
+                    let own = read.iter().filter(|(_, place)| place.key.file == id);
+                    let own: Vec<_> = own.collect();
+                    let mut found: Vec<_> = kept.in_file(id).collect();
+                    found.retain(|(item, place)| read.get(item) == Some(place));
+                    found.sort_by_key(|(item, _)| *item);
+                    assert_eq!(found, own);
+                }
+                assert!(trees.uses().iter().eq(new.uses().iter()));
+            }
+        }
+    }
+}
