@@ -1,4 +1,4 @@
-//! The integration tests of fc-cli, in one program: a program per file would link the crate each time.
+//! The integration tests, as one program: a program per file would link the crate each time.
 
 #![allow(
     clippy::expect_used,

@@ -1,4 +1,4 @@
-//! The integration tests of fc-derive, in one program: a program per file would link the crate each time. `ui` needs a process of its own.
+//! The integration tests, as one program: a program per file would link the crate each time. `ui` compiles programs.
 
 #![allow(
     clippy::indexing_slicing,

@@ -1,6 +1,6 @@
-//! The integration tests of fc-diff, in one program: a program per file would link the crate each time.
+//! The integration tests, as one program: a program per file would link the crate each time.
 
-#![allow(clippy::expect_used, clippy::panic, dead_code, reason = "tests")]
+#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod edits;
 mod execution;

@@ -1,4 +1,4 @@
-//! The integration tests of fc-generated, in one program: a program per file would link the crate each time. `samples` needs a process of its own.
+//! The integration tests, as one program: a program per file would link the crate each time. `samples` is generated.
 
 #![allow(
     clippy::expect_used,

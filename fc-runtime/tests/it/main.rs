@@ -1,4 +1,5 @@
-//! The integration tests of fc-runtime, in one program: a program per file would link the crate each time. `memory`, `network`, `restarts` need processes of their own.
+//! The integration tests, as one program: a program per file would link the crate each time. `memory`, `network` and `restarts`
+//! need a process each.
 
 #![allow(
     clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! The integration tests of fc-spec, in one program: a program per file would link the crate each time. `syntax_memory` needs a process of its own.
+//! The integration tests, as one program: a program per file would link the crate each time. `syntax_memory` needs a process of its own.
 
 #![allow(
     clippy::cast_precision_loss,
