@@ -4,14 +4,11 @@ use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
-use quote::{quote, quote_spanned};
+use quote::{format_ident, quote, quote_spanned};
 use syn::ext::IdentExt as _;
 use syn::{Data, DeriveInput, Fields, GenericArgument, Ident, PathArguments, Type};
 
-/// Arguments from which on clippy wants a struct: which this is.
-const MANY: usize = 8;
-
-/// Writes `new` and the setters, or the faults.
+/// Writes `new`, the setters and, for two or more required fields, the struct that names them; or the faults.
 pub fn expand(input: TokenStream) -> TokenStream {
     let input: DeriveInput = match syn::parse2(input) {
         Ok(input) => input,
@@ -39,12 +36,13 @@ pub fn expand(input: TokenStream) -> TokenStream {
 
 /// A field and where its value comes from.
 struct Field<'a> {
+    of: &'a syn::Field,
     ident: &'a Ident,
     value: Value<'a>,
 }
 
 enum Value<'a> {
-    /// An argument of `new`.
+    /// Given to `new`.
     Required(&'a Type),
     /// A setter; absent until then.
     Optional(&'a Type),
@@ -68,7 +66,11 @@ impl<'a> Field<'a> {
             (None, None) => Value::Required(&field.ty),
         };
         let ident = field.ident.as_ref()?;
-        Some(Self { ident, value })
+        Some(Self {
+            of: field,
+            ident,
+            value,
+        })
     }
 }
 
@@ -99,16 +101,18 @@ fn taken(ty: &Type, name: &Ident) -> (TokenStream, TokenStream) {
 fn code(input: &DeriveInput, fields: &[Field<'_>]) -> TokenStream {
     let DeriveInput { ident, vis, .. } = input;
     let (parameters, generics, bounds) = input.generics.split_for_impl();
-    let mut arguments = Vec::new();
+    let (companion, given) = required(input, fields);
     let mut values = Vec::new();
     let mut setters = Vec::new();
-    for Field { ident: name, value } in fields {
+    for Field {
+        ident: name, value, ..
+    } in fields
+    {
         let value = match value {
-            Value::Required(ty) => {
-                let (ty, value) = taken(ty, name);
-                arguments.push(quote!(#name: #ty));
-                value
-            }
+            Value::Required(ty) => match &companion {
+                Some(_) => quote!(required.#name),
+                None => taken(ty, name).1,
+            },
             Value::Optional(ty) => {
                 let (ty, value) = taken(ty, name);
                 let plain = name.unraw();
@@ -129,19 +133,58 @@ fn code(input: &DeriveInput, fields: &[Field<'_>]) -> TokenStream {
         };
         values.push(quote!(#name: #value));
     }
-    let many = (arguments.len() >= MANY).then(|| quote!(#[allow(clippy::too_many_arguments)]));
     quote! {
+        #companion
+
         #[automatically_derived]
         impl #parameters #ident #generics #bounds {
-            /// With what is required, in the order of the fields. What may be absent is.
+            /// Takes the required fields; optional fields are absent.
             #[inline]
             #[must_use]
-            #many
-            #vis fn new(#(#arguments),*) -> Self {
+            #vis fn new(#given) -> Self {
                 Self { #(#values),* }
             }
 
             #(#setters)*
+        }
+    }
+}
+
+/// The struct that names the required fields, if there are several, and the parameter of `new`. Several values of one
+/// type in a row could be swapped without a word from the compiler.
+fn required(input: &DeriveInput, fields: &[Field<'_>]) -> (Option<TokenStream>, TokenStream) {
+    let DeriveInput { ident, vis, .. } = input;
+    let required: Vec<_> = fields
+        .iter()
+        .filter_map(|field| match field.value {
+            Value::Required(ty) => Some((field, ty)),
+            Value::Optional(_) | Value::Extra => None,
+        })
+        .collect();
+    match required.as_slice() {
+        [] => (None, TokenStream::new()),
+        [(field, ty)] => {
+            let (name, (ty, _)) = (field.ident, taken(ty, field.ident));
+            (None, quote!(#name: #ty))
+        }
+        several => {
+            let name = format_ident!("{}Fields", ident.unraw(), span = span_of(ident));
+            let docs = format!("The required fields of [`{ident}`], by name.");
+            let fields = several.iter().map(|(Field { of, ident, .. }, ty)| {
+                let docs = of.attrs.iter().filter(|it| it.path().is_ident("doc"));
+                let vis = &of.vis;
+                quote!(#(#docs)* #vis #ident: #ty)
+            });
+            let (generics, bounds) = (&input.generics, &input.generics.where_clause);
+            let (_, arguments, _) = input.generics.split_for_impl();
+            let companion = quote! {
+                #[doc = #docs]
+                #[allow(missing_debug_implementations)]
+                #vis struct #name #generics #bounds {
+                    #(#fields),*
+                }
+            };
+            (Some(companion), quote!(required: #name #arguments))
         }
     }
 }

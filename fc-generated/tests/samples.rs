@@ -31,8 +31,16 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(ListIotDevicesResponse::new(
             vec![
-                IotDevice::new("xxx", "001", 20),
-                IotDevice::new("xxx", "002", 20),
+                IotDevice::new(IotDeviceFields {
+                    address: "xxx".to_owned(),
+                    id: "001".to_owned(),
+                    com_address: 20,
+                }),
+                IotDevice::new(IotDeviceFields {
+                    address: "xxx".to_owned(),
+                    id: "002".to_owned(),
+                    com_address: 20,
+                }),
             ],
         ))
     }
@@ -43,9 +51,9 @@ impl Robot for SampleRobot {
         request: GetFloorsRequest,
     ) -> Result<GetFloorsResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetFloorsResponse::new(
-            26, // num_floors
-            vec![
+        Ok(GetFloorsResponse::new(GetFloorsResponseFields {
+            num_floors: 26,
+            act_floors: vec![
                 "-3".to_owned(),
                 "-2".to_owned(),
                 "-1".to_owned(),
@@ -73,7 +81,7 @@ impl Robot for SampleRobot {
                 "21".to_owned(),
                 "22".to_owned(),
             ],
-            vec![
+            flg_floors: vec![
                 1,
                 2,
                 3,
@@ -101,7 +109,7 @@ impl Robot for SampleRobot {
                 25,
                 26,
             ],
-        ))
+        }))
     }
 
     async fn get_cell_config(
@@ -111,19 +119,35 @@ impl Robot for SampleRobot {
     ) -> Result<GetCellConfigResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetCellConfigResponse::new(
-            GetCellConfigResponseData::new(
-                4,
-                vec![
-                    Cell::new(1, CellType::Small, vec![1])
-                        .with_cell_location(CellLocation::LeftTop),
-                    Cell::new(2, CellType::Small, vec![2])
-                        .with_cell_location(CellLocation::RightTop),
-                    Cell::new(3, CellType::Small, vec![3])
-                        .with_cell_location(CellLocation::LeftBottom),
-                    Cell::new(4, CellType::Small, vec![4])
-                        .with_cell_location(CellLocation::RightBottom),
+            GetCellConfigResponseData::new(GetCellConfigResponseDataFields {
+                cell_count: 4,
+                cells: vec![
+                    Cell::new(CellFields {
+                        cell_id: 1,
+                        cell_type: CellType::Small,
+                        door_ids: vec![1],
+                    })
+                    .with_cell_location(CellLocation::LeftTop),
+                    Cell::new(CellFields {
+                        cell_id: 2,
+                        cell_type: CellType::Small,
+                        door_ids: vec![2],
+                    })
+                    .with_cell_location(CellLocation::RightTop),
+                    Cell::new(CellFields {
+                        cell_id: 3,
+                        cell_type: CellType::Small,
+                        door_ids: vec![3],
+                    })
+                    .with_cell_location(CellLocation::LeftBottom),
+                    Cell::new(CellFields {
+                        cell_id: 4,
+                        cell_type: CellType::Small,
+                        door_ids: vec![4],
+                    })
+                    .with_cell_location(CellLocation::RightBottom),
                 ],
-            ),
+            }),
         ))
     }
 
@@ -183,14 +207,18 @@ impl Robot for SampleRobot {
         request: GetMapImageRequest,
     ) -> Result<GetMapImageResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetMapImageResponse::new(
-            "", // image
-            10.0, // resolution
-            GetMapImageResponseOrigin::new(1.0, 1.0, 1.0), // origin
-            10.0, // occupied_thresh
-            10.0, // free_thresh
-            Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()), // png_map_bytes
-        ))
+        Ok(GetMapImageResponse::new(GetMapImageResponseFields {
+            image: String::new(),
+            resolution: 10.0,
+            origin: GetMapImageResponseOrigin::new(GetMapImageResponseOriginFields {
+                x: 1.0,
+                y: 1.0,
+                yaw: 1.0,
+            }),
+            occupied_thresh: 10.0,
+            free_thresh: 10.0,
+            png_map_bytes: Bytes64(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00:~\x9bU\x00\x00\x00\nIDATx\xdac8\x0b\x00\x00\xcf\x00\xce\rvS\xdd\x00\x00\x00\x00IEND\xaeB`\x82".to_vec()),
+        }))
     }
 
     async fn list_maps(
@@ -201,16 +229,16 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(ListMapsResponse::new(
             vec![
-                MapInfo::new(
-                    1_234_567_890, // id
-                    "地图名称", // name
-                    "地图图片路径", // png_path
-                    "", // pgm_path
-                    "", // yaml_path
-                    "", // pb_stream_path
-                    "", // config_path
-                    1, // active
-                )
+                MapInfo::new(MapInfoFields {
+                    id: 1_234_567_890,
+                    name: "地图名称".to_owned(),
+                    png_path: "地图图片路径".to_owned(),
+                    pgm_path: String::new(),
+                    yaml_path: String::new(),
+                    pb_stream_path: String::new(),
+                    config_path: String::new(),
+                    active: 1,
+                })
                 .with_building_id(1_234_567_890)
                 .with_floor_id(1_234_567_890)
                 .with_tower("A1 栋")
@@ -291,10 +319,10 @@ impl Robot for SampleRobot {
     ) -> Result<GetRechargeStatusResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetRechargeStatusResponse::new(
-            GetRechargeStatusResponseData::new(
-                RechargeStatus::AtUndockPoint,
-                RechargeError::Ok,
-            ),
+            GetRechargeStatusResponseData::new(GetRechargeStatusResponseDataFields {
+                recharge_status: RechargeStatus::AtUndockPoint,
+                error_status: RechargeError::Ok,
+            }),
         ))
     }
 
@@ -361,7 +389,12 @@ impl Robot for SampleRobot {
     ) -> Result<GetPositions0314Response, Refusal> {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetPositions0314Response::new(
-            vec![StationRef::new(1_667_823_500_544, 1_667_823_500_544)],
+            vec![
+                StationRef::new(StationRefFields {
+                    map_id: 1_667_823_500_544,
+                    station_id: 1_667_823_500_544,
+                }),
+            ],
         ))
     }
 
@@ -372,14 +405,14 @@ impl Robot for SampleRobot {
     ) -> Result<GetStationResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetStationResponse::new(
-            GetStationResponseData::new(
-                "hhh", // station_name
-                0, // station_id
-                StationType::Navigation, // station_type
-                0.5, // x
-                0.6, // y
-                0.2, // yaw
-            ),
+            GetStationResponseData::new(GetStationResponseDataFields {
+                station_name: "hhh".to_owned(),
+                station_id: 0,
+                station_type: StationType::Navigation,
+                x: 0.5,
+                y: 0.6,
+                yaw: 0.2,
+            }),
         ))
     }
 
@@ -427,16 +460,16 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(ListFaultsResponse::new(
             vec![
-                Fault::new(
-                    320_001, // code
-                    1_701_247_598, // trigger_time_stamp_ms
-                    "xxx", // description
-                    "xxx", // guidance
-                    "recharge_failed_after_retry", // name
-                    FaultLevel::Fatal, // level
-                    "controller", // source
-                    "xxx", // cause
-                ),
+                Fault::new(FaultFields {
+                    code: 320_001,
+                    trigger_time_stamp_ms: 1_701_247_598,
+                    description: "xxx".to_owned(),
+                    guidance: "xxx".to_owned(),
+                    name: "recharge_failed_after_retry".to_owned(),
+                    level: FaultLevel::Fatal,
+                    source: "controller".to_owned(),
+                    cause: "xxx".to_owned(),
+                }),
             ],
         ))
     }
@@ -449,10 +482,10 @@ impl Robot for SampleRobot {
         println!("{} asks: {request:?}", context.peer);
         Ok(GetSelfCheckResponse::new(
             vec![
-                SelfCheckItem::new(
-                    SelfCheckName::Node,
-                    SelfCheckStatus::Abnormal,
-                )
+                SelfCheckItem::new(SelfCheckItemFields {
+                    item_name: SelfCheckName::Node,
+                    item_status: SelfCheckStatus::Abnormal,
+                })
                 .with_item_info("xxx"),
             ],
         ))
@@ -464,7 +497,10 @@ impl Robot for SampleRobot {
         request: CreateTaskRequest,
     ) -> Result<CreateTaskResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(CreateTaskResponse::new("task_1", 1_695_733_900_004))
+        Ok(CreateTaskResponse::new(CreateTaskResponseFields {
+            task_name: "task_1".to_owned(),
+            task_id: 1_695_733_900_004,
+        }))
     }
 
     async fn get_task_status(
@@ -500,11 +536,16 @@ impl Robot for SampleRobot {
         request: GetUpperBodyStatusRequest,
     ) -> Result<GetUpperBodyStatusResponse, Refusal> {
         println!("{} asks: {request:?}", context.peer);
-        Ok(GetUpperBodyStatusResponse::new(
-            PushRodStatus::Retracted, // box_push_status
-            0, // select_cell_id
-            vec![DoorLockInfo::new(1, DoorLockStatus::Closed)], // door_lock_info_list
-        ))
+        Ok(GetUpperBodyStatusResponse::new(GetUpperBodyStatusResponseFields {
+            box_push_status: PushRodStatus::Retracted,
+            select_cell_id: 0,
+            door_lock_info_list: vec![
+                DoorLockInfo::new(DoorLockInfoFields {
+                    lock_id: 1,
+                    lock_status: DoorLockStatus::Closed,
+                }),
+            ],
+        }))
     }
 }
 
@@ -594,12 +635,15 @@ async fn call_get_map_info(client: &Client) -> Result<(), Box<dyn std::error::Er
 }
 
 async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = SaveMapRequest::new("地图名称", 2.1)
-        .with_body_msg_id(90_842_323)
-        .with_building_id(1_234_567_890)
-        .with_floor_id(1_234_567_890)
-        .with_tower("A1 栋")
-        .with_level("B1");
+    let request = SaveMapRequest::new(SaveMapRequestFields {
+        name: "地图名称".to_owned(),
+        resolution: 2.1,
+    })
+    .with_body_msg_id(90_842_323)
+    .with_building_id(1_234_567_890)
+    .with_floor_id(1_234_567_890)
+    .with_tower("A1 栋")
+    .with_level("B1");
     let answer = client.save_map(&request).await?;
     println!("{answer:?}");
     Ok(())
@@ -608,11 +652,11 @@ async fn call_save_map(client: &Client) -> Result<(), Box<dyn std::error::Error>
 async fn call_download_maps(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = DownloadMapsRequest::new(
         vec![
-            MapDownload::new(
-                1_234_567_890, // map_id
-                "地图名称", // map_name
-                "https://cloud.tencent.com/xxx.zip", // map_url
-            ),
+            MapDownload::new(MapDownloadFields {
+                map_id: 1_234_567_890,
+                map_name: "地图名称".to_owned(),
+                map_url: "https://cloud.tencent.com/xxx.zip".to_owned(),
+            }),
         ],
     )
     .with_body_msg_id(90_842_323);
@@ -684,11 +728,11 @@ async fn call_switch_environment(client: &Client) -> Result<(), Box<dyn std::err
 async fn call_set_standby_position(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetStandbyPositionRequest::new(
         vec![
-            StandbyPosition::new(
-                1_667_823_500_544, // map_id
-                1_667_823_500_544, // station_id
-                StationType::Standby, // station_type
-            ),
+            StandbyPosition::new(StandbyPositionFields {
+                map_id: 1_667_823_500_544,
+                station_id: 1_667_823_500_544,
+                station_type: StationType::Standby,
+            }),
         ],
     );
     let answer = client.set_standby_position(&request).await?;
@@ -706,10 +750,10 @@ async fn call_get_standby_position(client: &Client) -> Result<(), Box<dyn std::e
 async fn call_set_positions_0313(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
     let request = SetPositions0313Request::new(
         vec![
-            StationRef::new(
-                1_667_823_500_544,
-                1_667_823_500_544,
-            ),
+            StationRef::new(StationRefFields {
+                map_id: 1_667_823_500_544,
+                station_id: 1_667_823_500_544,
+            }),
         ],
     );
     let answer = client.set_positions_0313(&request).await?;
@@ -739,12 +783,12 @@ async fn call_upload_map_stations(client: &Client) -> Result<(), Box<dyn std::er
 }
 
 async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = AddStationRequest::new(
-        1_671_124_918_288, // map_id
-        "turtlebot3_world", // map_name
-        "gate1", // station_name
-        StationType::Elevator, // station_type
-    )
+    let request = AddStationRequest::new(AddStationRequestFields {
+        map_id: 1_671_124_918_288,
+        map_name: "turtlebot3_world".to_owned(),
+        station_name: "gate1".to_owned(),
+        station_type: StationType::Elevator,
+    })
     .with_device_id("FC1689322656488")
     .with_station_pos(StationPos::Outside);
     let answer = client.add_station(&request).await?;
@@ -753,23 +797,23 @@ async fn call_add_station(client: &Client) -> Result<(), Box<dyn std::error::Err
 }
 
 async fn call_delete_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = DeleteStationRequest::new(
-        1_671_124_918_288, // map_id
-        1_671_124_918_008, // station_id
-        StationType::Navigation, // station_type
-    );
+    let request = DeleteStationRequest::new(DeleteStationRequestFields {
+        map_id: 1_671_124_918_288,
+        station_id: 1_671_124_918_008,
+        station_type: StationType::Navigation,
+    });
     let answer = client.delete_station(&request).await?;
     println!("{answer:?}");
     Ok(())
 }
 
 async fn call_rename_station(client: &Client) -> Result<(), Box<dyn std::error::Error>> {
-    let request = RenameStationRequest::new(
-        1_671_124_918_288, // map_id
-        1_671_124_918_008, // station_id
-        StationType::Navigation, // station_type
-        "gate2", // new_name
-    );
+    let request = RenameStationRequest::new(RenameStationRequestFields {
+        map_id: 1_671_124_918_288,
+        station_id: 1_671_124_918_008,
+        station_type: StationType::Navigation,
+        new_name: "gate2".to_owned(),
+    });
     let answer = client.rename_station(&request).await?;
     println!("{answer:?}");
     Ok(())
@@ -836,13 +880,13 @@ async fn take_map_sync_progress(mut reports: Reports) -> Result<(), Box<dyn std:
 async fn push_map_sync_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = MapSyncProgress::new(
         vec![
-            MapSync::new(
-                "地图名称", // map_name
-                1_234_567_890, // map_id
-                MapSyncDirection::Upload, // direction
-                0, // progress
-                MapSyncResult::Pending, // result
-            ),
+            MapSync::new(MapSyncFields {
+                map_name: "地图名称".to_owned(),
+                map_id: 1_234_567_890,
+                direction: MapSyncDirection::Upload,
+                progress: 0,
+                result: MapSyncResult::Pending,
+            }),
         ],
     )
     .with_body_msg_id(90_842_323);
@@ -863,10 +907,10 @@ async fn take_recharge_progress(mut reports: Reports) -> Result<(), Box<dyn std:
 
 async fn push_recharge_progress(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = RechargeProgress::new(
-        RechargeProgressData::new(
-            RechargeStatus::AtUndockPoint,
-            RechargeError::Ok,
-        ),
+        RechargeProgressData::new(RechargeProgressDataFields {
+            recharge_status: RechargeStatus::AtUndockPoint,
+            error_status: RechargeError::Ok,
+        }),
     );
     for acknowledgement in reporter.recharge_progress(Audience::All, &report).await? {
         println!("{acknowledgement:?}");
@@ -885,11 +929,11 @@ async fn take_robot_status(mut reports: Reports) -> Result<(), Box<dyn std::erro
 
 async fn push_robot_status(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>> {
     let report = RobotStatus::new(
-        RobotStatusData::new(
-            UpperStatus::Task, // upper_status
-            LowerStatus::Arrived, // lower_status
-            123_456, // broke_code
-        ),
+        RobotStatusData::new(RobotStatusDataFields {
+            upper_status: UpperStatus::Task,
+            lower_status: LowerStatus::Arrived,
+            broke_code: 123_456,
+        }),
     );
     for acknowledgement in reporter.robot_status(Audience::All, &report).await? {
         println!("{acknowledgement:?}");

@@ -103,6 +103,13 @@ pub enum Shape<'m> {
 }
 
 impl<'m> Item<'m> {
+    /// Whether it is a struct with several required fields: a list of values could be given in a wrong order.
+    #[must_use]
+    pub fn has_field_type(&self) -> bool {
+        let required = self.fields().iter().filter(|field| !field.optional);
+        required.count() > 1
+    }
+
     /// Its fields, if it is a struct.
     #[must_use]
     pub fn fields(&self) -> &[Spelled<'m, Field>] {
@@ -166,6 +173,12 @@ impl<'m> Package<'m> {
             }
         });
         let items: Vec<_> = items.collect();
+        let named = |item: &&Item<'_>| language.has_field_types && item.has_field_type();
+        for item in items.iter().filter(named) {
+            let words = format!("{}_fields", item.ty.of.name);
+            let who = Named::alone(kind(item.ty.of), &item.ty.of.name);
+            types.claim_made(&words, who, &mut names.clashes);
+        }
         let errors = declaring(model).map(|command| {
             let words = format!("{}_error", command.name);
             let who = Named::alone(command.kind().name(), &command.name);

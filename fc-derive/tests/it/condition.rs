@@ -44,7 +44,13 @@ struct Order {
 }
 
 fn order(mode: Mode) -> Order {
-    Order::new(mode, true, Place::Inside, -1, "")
+    Order::new(OrderFields {
+        mode,
+        armed: true,
+        place: Place::Inside,
+        r#type: -1,
+        label: String::new(),
+    })
 }
 
 fn fault(order: Order) -> Option<(&'static str, ConditionErrorKind)> {

@@ -73,9 +73,12 @@ fn an_id_travels_as_what_it_holds() {
         }
     }
     let tour: Tour = read(r#"{"stationId":7,"next":"4","others":[1,2],"guide":"anna"}"#).unwrap();
-    let expected = Tour::new(StationId(7), vec![StationId(1), StationId(2)])
-        .with_next(StationId(4))
-        .with_guide("anna".into());
+    let expected = Tour::new(TourFields {
+        station: StationId(7),
+        others: vec![StationId(1), StationId(2)],
+    })
+    .with_next(StationId(4))
+    .with_guide("anna".into());
     assert_eq!(tour, expected);
 }
 
@@ -94,6 +97,9 @@ fn an_id_is_shown_compared_and_taken_apart() {
         ids.into_iter().map(i64::from).collect::<Vec<_>>(),
         [1, 2, 3]
     );
-    let tour = Tour::new(StationId(1), Vec::new());
+    let tour = Tour::new(TourFields {
+        station: StationId(1),
+        others: Vec::new(),
+    });
     assert_eq!(tour.next_or_default(), StationId(3));
 }

@@ -3,21 +3,22 @@
 #![allow(missing_docs, reason = "a test")]
 
 use fc_generated::{
-    AnyReport, Client, Colour, LevelChanged, Phase, SetLevelRequest, SetLevelRequestData,
+    AnyReport, Client, Colour, ColourFields, LevelChanged, LevelChangedFields, Phase,
+    SetLevelRequest, SetLevelRequestData, SetLevelRequestDataFields,
 };
 use fc_runtime::{CallError, Message, RawReport};
 
 fn request() -> SetLevelRequest {
-    let colour = Colour::new(1, 2).with_gamma(0.5);
-    let mut data = SetLevelRequestData::new(
-        40,
-        0.25,
-        true,
-        "lamp",
-        "AB",
-        vec![colour],
-        Phase::Burning,
-    )
+    let colour = Colour::new(ColourFields { red: 1, green: 2 }).with_gamma(0.5);
+    let mut data = SetLevelRequestData::new(SetLevelRequestDataFields {
+        level: 40,
+        ratio: 0.25,
+        armed: true,
+        title: "lamp".to_owned(),
+        serial: "AB".to_owned(),
+        colours: vec![colour],
+        phase: Phase::Burning,
+    })
     .with_old(7);
     data.level = 41;
     SetLevelRequest::new(data)
@@ -37,7 +38,13 @@ fn level(report: AnyReport) -> Option<i32> {
 }
 
 fn changed() -> LevelChanged {
-    LevelChanged::new(3, Phase::from(4), false, "", 2)
+    LevelChanged::new(LevelChangedFields {
+        level: 3,
+        pace: Phase::from(4),
+        sudden: false,
+        reason: String::new(),
+        glow: 2,
+    })
 }
 
 #[test]
@@ -48,10 +55,7 @@ fn messages_are_made_and_taken_apart() {
         request().data.colours.first().map(|colour| colour.green),
         Some(2)
     );
-    assert_eq!(
-        level(AnyReport::LevelChanged(changed())),
-        Some(3)
-    );
+    assert_eq!(level(AnyReport::LevelChanged(changed())), Some(3));
     let raw = RawReport {
         code: 0,
         id: 0,

@@ -4,16 +4,16 @@
 
 use fc_generated::{
     Band, Client, CloseSwitchError, CloseSwitchRequest, CloseSwitchResponse, FrameHeader, Load,
-    Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse, Readings, Reporter,
-    ResultCode, RobotService, SetTariffError, SetTariffRequest, StreamCode, Streamer, Streams,
-    Switch, SwitchMoved, WatchLoadRequest, WatchLoadResponse,
+    LoadFields, Meter, Operator, PartialRobot, Phase, ReadPowerRequest, ReadPowerResponse,
+    Readings, Reporter, ResultCode, RobotService, SetTariffError, SetTariffRequest, StreamCode,
+    Streamer, Streams, Switch, SwitchMoved, SwitchMovedFields, WatchLoadRequest, WatchLoadResponse,
 };
 use fc_runtime::digest::{Crc32, DigestAlgorithm as _};
 use fc_runtime::{
-    AcceptedIn as _, AcceptedStates, Allowance, Audience, Cadence, CallError, ClientConfig, Command as _,
-    ConditionErrorKind, Context, DataError, DeclaredError as _, Followed, Handling, Header as _, Message as _,
-    Preconditions, PreparedResponse, Protocol as _, PushError, Refusal, Request, Server, ServerConfig, ServerHandle,
-    Service, States, StreamItem, read_enveloped,
+    AcceptedIn as _, AcceptedStates, Allowance, Audience, Cadence, CallError, ClientConfig,
+    Command as _, ConditionErrorKind, Context, DataError, DeclaredError as _, Followed, Handling,
+    Header as _, Message as _, Preconditions, PreparedResponse, Protocol as _, PushError, Refusal,
+    Request, Server, ServerConfig, ServerHandle, Service, States, StreamItem, read_enveloped,
 };
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -106,7 +106,13 @@ fn an_enum_knows_how_its_values_follow_each_other() {
 /// Whoever makes a report can have it checked; what is received is taken as it is.
 #[test]
 fn a_message_knows_which_of_its_fields_are_asked_for() {
-    let moved = |switch: Switch, by: u8| SwitchMoved::new(switch, by, 9);
+    let moved = |switch: Switch, by: u8| {
+        SwitchMoved::new(SwitchMovedFields {
+            switch,
+            by,
+            speed: 9,
+        })
+    };
     let fault = |report: SwitchMoved| {
         let error = report.checked().err();
         error.map(|error| (error.key(), error.kind(), error.to_string()))
@@ -234,8 +240,18 @@ async fn a_movement_is_followed_to_its_final_state_and_no_other() {
     let request = CloseSwitchRequest::new();
     let mut first = client.close_switch(&request).follow().await.unwrap();
     let mut second = client.close_switch(&request).follow().await.unwrap();
-    assert_eq!((first.answer().job, second.answer().job), (Some(5), Some(6)));
-    let moved = |state, job| SwitchMoved::new(state, 0, 9).with_job(job);
+    assert_eq!(
+        (first.answer().job, second.answer().job),
+        (Some(5), Some(6))
+    );
+    let moved = |state, job| {
+        SwitchMoved::new(SwitchMovedFields {
+            switch: state,
+            by: 0,
+            speed: 9,
+        })
+        .with_job(job)
+    };
     for (state, job) in [
         (Switch::Open, 5),
         (Switch::Open, 6),
@@ -244,7 +260,10 @@ async fn a_movement_is_followed_to_its_final_state_and_no_other() {
         // It skips a state.
         (Switch::Closed, 6),
     ] {
-        reporter.switch_moved(Audience::All, &moved(state, job)).await.unwrap();
+        reporter
+            .switch_moved(Audience::All, &moved(state, job))
+            .await
+            .unwrap();
     }
     for next in [
         Followed::Going(moved(Switch::Open, 5)),
@@ -534,14 +553,24 @@ async fn streams_go_both_ways_as_their_types() {
 
     let app = Audience::One(firmware.connection);
     let streamer = Streamer::new(handle.clone());
-    let content = Load::new(2.5, Band::Day);
+    let content = Load::new(LoadFields {
+        watts: 2.5,
+        band: Band::Day,
+    });
     assert_eq!(streamer.send_load(app, 9, &content).await, Ok(1));
     assert_eq!(streamer.send_waveform(app, 10, &[0, 0xFF]).await, Ok(1));
     assert_eq!(load.recv().await, Ok(StreamItem { id: 9, content }));
     let wave = waveform.recv().await.unwrap();
     assert_eq!((wave.id, &*wave.content), (10, &[0, 0xFF][..]));
     let less = streamer
-        .send_load(app, 11, &Load::new(-1.0, Band::Day))
+        .send_load(
+            app,
+            11,
+            &Load::new(LoadFields {
+                watts: -1.0,
+                band: Band::Day,
+            }),
+        )
         .await;
     assert!(matches!(less, Err(PushError::Invalid(_))));
     assert_eq!(

@@ -36,7 +36,10 @@ impl Robot for MyLamp {
         _request: GetLightRequest,
     ) -> Result<GetLightResponse, Refusal> {
         let light = self.light.borrow();
-        Ok(GetLightResponse::new(light.brightness, light.mood.clone()))
+        Ok(GetLightResponse::new(GetLightResponseFields {
+            brightness: light.brightness,
+            mood: light.mood.clone(),
+        }))
     }
 
     async fn set_light(
@@ -68,7 +71,10 @@ pub async fn report(reporter: Reporter, mut light: watch::Receiver<LightChanged>
 #[allow(dead_code, reason = "the test has no use for it")]
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {
-    let (light, watched) = watch::channel(LightChanged::new(0, Mood::Warm));
+    let (light, watched) = watch::channel(LightChanged::new(LightChangedFields {
+        brightness: 0,
+        mood: Mood::Warm,
+    }));
     let server = Server::bind(ServerConfig::new(), RobotService::new(MyLamp::new(light))).await?;
     println!(
         "commands {} data {}",

@@ -13,7 +13,10 @@ use tokio::sync::watch;
 
 #[tokio::test(flavor = "current_thread")]
 async fn an_app_sets_the_light_and_is_told_of_it() -> Result<(), Box<dyn Error>> {
-    let (light, watched) = watch::channel(LightChanged::new(0, Mood::Warm));
+    let (light, watched) = watch::channel(LightChanged::new(LightChangedFields {
+        brightness: 0,
+        mood: Mood::Warm,
+    }));
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)

@@ -13,8 +13,8 @@ const WIDTH: usize = 72;
 /// Columns that a list may take on one line inside a struct that is written out.
 const LIST_WIDTH: usize = 50;
 
-/// Arguments up to which nobody asks which is which.
-const FEW: usize = 2;
+/// Columns that named fields may take on one line, as rustfmt has it.
+const FIELDS_WIDTH: usize = 18;
 
 /// Where a constant stands, which decides how its structs are made.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ enum Spelling {
     List(Vec<Spelling>, Place),
     /// `Name { field: value }`.
     Literal(String, Fields),
-    /// `Name::new(a).with_b(b)`: what `new` takes, and the fields that are set besides.
+    /// `Name::new(a).with_b(b)`, with several required fields `Name::new(NameFields { a, c })`: those, and the optional ones.
     Made(String, Fields, Fields),
 }
 
@@ -110,19 +110,20 @@ impl Spelling {
                 Self::Literal(name, fields.chain([extra]).collect())
             }
             Place::Outside => {
+                let by_name = record.item.has_field_type();
                 let (mut required, mut optional) = (Vec::new(), Vec::new());
                 for (field, value) in members {
                     let Some(value) = value else { continue };
                     let value = match value {
-                        // Taken as it is where a text is wanted.
-                        Expr::Text(text) => Self::Atom(literal(text)),
+                        // `new` and setters take a literal; a field does not.
+                        Expr::Text(text) if field.optional || !by_name => Self::Atom(literal(text)),
                         value => Self::of(value, place),
                     };
-                    let name = field.name.trim_start_matches("r#").to_owned();
                     if field.optional {
-                        optional.push((name, value));
+                        let name = field.name.trim_start_matches("r#");
+                        optional.push((name.to_owned(), value));
                     } else {
-                        required.push((name, value));
+                        required.push((field.name.to_string(), value));
                     }
                 }
                 Self::Made(name, required, optional)
@@ -149,10 +150,7 @@ impl Spelling {
             }
             Self::Literal(..) => None,
             Self::Made(name, required, optional) => {
-                let mut out = format!(
-                    "{name}::new({})",
-                    joined(&mut required.iter().map(|(_, value)| value))?
-                );
+                let mut out = format!("{name}::new({})", given(name, required)?);
                 for (field, value) in optional {
                     out.extend([".with_", field, "(", &value.flat()?, ")"]);
                 }
@@ -199,28 +197,41 @@ impl Spelling {
     }
 }
 
+/// The argument of `new` on one line; `None` where rustfmt takes several.
+fn given(name: &str, required: &Fields) -> Option<String> {
+    match required.as_slice() {
+        [] => Some(String::new()),
+        [(_, only)] => only.flat(),
+        several => {
+            let fields: Option<Vec<_>> = several
+                .iter()
+                .map(|(field, value)| Some(format!("{field}: {}", value.flat()?)))
+                .collect();
+            let fields = fields?.join(", ");
+            (fields.len() <= FIELDS_WIDTH).then(|| format!("{name}Fields {{ {fields} }}"))
+        }
+    }
+}
+
 /// A struct on several lines, as rustfmt lays out a chain of calls.
 fn made(name: &str, required: &Fields, optional: &Fields, used: usize) -> String {
-    let arguments: Vec<String> = required
-        .iter()
-        .map(|(_, value)| value.flat().unwrap_or_default())
-        .collect();
-    let arguments = arguments.join(", ");
     let mut out = format!("{name}::new(");
-    let is_short = used + out.len() + arguments.len() < WIDTH;
-    if is_short {
-        out.push_str(&arguments);
-    } else {
-        let mut inside = String::new();
-        for (field, value) in required {
-            let value = value.laid_out(used + 4);
-            inside.extend([&value, ","]);
-            if required.len() > FEW && !value.contains('\n') {
-                inside.extend([" // ", field]);
-            }
-            inside.push('\n');
+    let short = given(name, required).filter(|it| used + out.len() + it.len() < WIDTH);
+    let is_short = short.is_some();
+    match (short, required.as_slice()) {
+        (Some(given), _) => out.push_str(&given),
+        (None, [(_, only)]) => {
+            let value = only.laid_out(used + 4);
+            out.extend(["\n", &*indented(&format!("{value},\n"))]);
         }
-        out.extend(["\n", &indented(&inside)]);
+        (None, several) => {
+            let mut inside = String::new();
+            for (field, value) in several {
+                let value = value.laid_out(used + field.len() + 6);
+                inside.extend([field, ": ", &value, ",\n"]);
+            }
+            out.extend([name, "Fields {\n", &indented(&inside), "}"]);
+        }
     }
     out.push(')');
     let mut setters = String::new();

@@ -32,4 +32,5 @@ pub static CPP: Language = Language {
     group_types: &[],
     has_file_per_type: false,
     has_id_types: false,
+    has_field_types: false,
 };

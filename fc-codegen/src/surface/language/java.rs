@@ -31,4 +31,5 @@ pub static JAVA: Language = Language {
     group_types: &[],
     has_file_per_type: true,
     has_id_types: false,
+    has_field_types: false,
 };

@@ -51,4 +51,5 @@ pub static KOTLIN: Language = Language {
     ],
     has_file_per_type: false,
     has_id_types: false,
+    has_field_types: false,
 };

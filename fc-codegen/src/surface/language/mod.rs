@@ -130,6 +130,8 @@ pub struct Language {
     pub has_file_per_type: bool,
     /// Whether the ids of each entity have a type of their own.
     pub has_id_types: bool,
+    /// Whether several required fields of a struct have a type of their own, which ends in `Fields`.
+    pub has_field_types: bool,
 }
 
 impl Language {

@@ -46,5 +46,6 @@ const fn rust(has_id_types: bool) -> Language {
         group_types: &[],
         has_file_per_type: false,
         has_id_types,
+        has_field_types: true,
     }
 }

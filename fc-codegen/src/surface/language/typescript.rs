@@ -46,4 +46,5 @@ pub static TYPESCRIPT: Language = Language {
     group_types: &[],
     has_file_per_type: false,
     has_id_types: false,
+    has_field_types: false,
 };
