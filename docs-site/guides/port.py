@@ -14,7 +14,7 @@ import sys
 import zlib
 from pathlib import Path
 
-# What `fc inspect` prints says how a frame is laid out, so nothing of it is copied here.
+# What `fcproto inspect` prints says how a frame is laid out, so nothing of it is copied here.
 PROTOCOL = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))["protocol"]
 FRAME, LIMITS = PROTOCOL["frame"], PROTOCOL["limits"]
 

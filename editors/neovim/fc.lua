@@ -11,8 +11,8 @@ vim.api.nvim_create_autocmd('FileType', {
     end
     local root = found:gsub('/fc%.yaml$', ''):gsub('/spec/protocol%.yaml$', '')
     vim.lsp.start({
-      name = 'fc',
-      cmd = { 'fc', 'lsp' },
+      name = 'fcproto',
+      cmd = { 'fcproto', 'lsp' },
       root_dir = root,
       init_options = { lang = vim.env.LANG },
     })

@@ -1,4 +1,4 @@
-// Starts `fc lsp` and lets the editor talk to it.
+// Starts `fcproto lsp` and lets the editor talk to it.
 
 'use strict'
 
@@ -33,7 +33,7 @@ async function start() {
   const lang = settings.get('lang')
   client = new LanguageClient(
     'fc',
-    'fc',
+    'fcproto',
     { command: settings.get('path'), args: ['lsp'] },
     {
       documentSelector: [{ scheme: 'file', language: 'yaml' }],

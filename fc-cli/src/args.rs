@@ -22,25 +22,25 @@ const STYLES: Styles = Styles::styled()
 /// documentation in Chinese and English, golden frames and a JSON Schema for editors. `fc.yaml` says which
 /// of them are made, and where.
 #[derive(Debug, Parser)]
-#[command(name = "fc", version, styles = STYLES, max_term_width = 100)]
+#[command(name = "fcproto", version, styles = STYLES, max_term_width = 100)]
 #[command(after_long_help = "\
 Exit status:
   0  success
-  1  the spec has errors, or generated files are stale, or the spec is not laid out as `fc fmt` does it
+  1  the spec has errors, or generated files are stale, or the spec is not laid out as `fcproto fmt` does it
   2  wrong usage, or a file that cannot be read or written
 
 Examples:
-  fc init lamp                begin a project in a directory of its own
-  fc check                    find all errors in the spec
-  fc explain FC0012           read what an error means
-  fc fmt                      lay out the files of the spec
-  fc lint                     find what is not wrong but could be better
-  fc new get_battery --group status
+  fcproto init lamp           begin a project in a directory of its own
+  fcproto check               find all errors in the spec
+  fcproto explain FC0012      read what an error means
+  fcproto fmt                 lay out the files of the spec
+  fcproto lint                find what is not wrong but could be better
+  fcproto new get_battery --group status
                               add a command with the next free code
-  fc questions                list what the owner of the protocol has still to say
-  fc diff git:main            show what this working tree changes, and for whom it breaks
-  fc generate                 write all generated files
-  fc generate --check         fail if a generated file is stale, and write nothing")]
+  fcproto questions           list what the owner of the protocol has still to say
+  fcproto diff git:main       show what this working tree changes, and for whom it breaks
+  fcproto generate            write all generated files
+  fcproto generate --check    fail if a generated file is stale, and write nothing")]
 pub struct Args {
     /// Where the project is.
     #[command(flatten)]

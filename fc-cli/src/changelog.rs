@@ -1,4 +1,4 @@
-//! `fc changelog`.
+//! `fcproto changelog`.
 
 use fc_diff::{Version, section};
 use fc_spec::model::Model;
@@ -12,13 +12,13 @@ use crate::versions::{Shelf, today};
 /// Print what has changed, for those who write apps and robots.
 ///
 /// What breaks, what is new and what else programs notice, as a section of Markdown; texts and examples are counted only. Versions are
-/// named as for `fc diff`. With `--for` both are cut down to what that audience has, so that it reads of nothing else.
+/// named as for `fcproto diff`. With `--for` both are cut down to what that audience has, so that it reads of nothing else.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc changelog                what the next release brings
-  fc changelog 1.0 2.0 --lang zh
-  fc changelog --for product_app")]
+  fcproto changelog           what the next release brings
+  fcproto changelog 1.0 2.0 --lang zh
+  fcproto changelog --for product_app")]
 pub struct Options {
     /// The old version [default: the last release]
     #[arg(value_name = "OLD")]

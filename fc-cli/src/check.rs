@@ -1,4 +1,4 @@
-//! `fc check`.
+//! `fcproto check`.
 
 use std::fmt::Write as _;
 
@@ -22,17 +22,17 @@ use crate::spec::{Spec, show_faults};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc check
-  fc check --format json | jq -r .message
-  fc check --format sarif > fc.sarif
-  fc check --fix --dry-run       show the fixes that leave no choice
-  fc check -q --deny warnings    for a hook: silent unless there is something to fix")]
+  fcproto check
+  fcproto check --format json | jq -r .message
+  fcproto check --format sarif > fc.sarif
+  fcproto check --fix --dry-run     show the fixes that leave no choice
+  fcproto check -q --deny warnings  for a hook: silent unless there is something to fix")]
 #[command(after_long_help = "\
 Examples:
-  fc check
-  fc check --format json | jq -r .message
-  fc check --format sarif > fc.sarif
-  fc check -q --deny warnings    for a hook: silent unless there is something to fix
+  fcproto check
+  fcproto check --format json | jq -r .message
+  fcproto check --format sarif > fc.sarif
+  fcproto check -q --deny warnings  for a hook: silent unless there is something to fix
 
 JSON:
   Each line is one error or warning: code, severity (error or warning), title (of the code), message,
@@ -51,7 +51,7 @@ Paths:
   current directory.
 
 Warnings:
-  For example a text that `fc new` has left to be written. They change the exit status only with `--deny warnings`.")]
+  For example a text that `fcproto new` has left to be written. They change the exit status only with `--deny warnings`.")]
 pub struct Options {
     /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]

@@ -1,4 +1,4 @@
-//! `fc codes`.
+//! `fcproto codes`.
 
 use clap::ValueEnum;
 use fc_codegen::codes::CodeMap;
@@ -17,9 +17,9 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc codes                    the whole map
-  fc codes 0x0123 0x0456      whether they are free, and who has them if not
-  fc codes --format json | jq -r .next_command")]
+  fcproto codes                the whole map
+  fcproto codes 0x0123 0x0456  whether they are free, and who has them if not
+  fcproto codes --format json | jq -r .next_command")]
 pub struct Options {
     /// Codes, such as 0x0123 [default: all]
     #[arg(value_name = "CODE", value_parser = code)]

@@ -1,4 +1,4 @@
-//! `fc diff`.
+//! `fcproto diff`.
 
 use clap::ValueEnum;
 use fc_diff::{Finding, render};
@@ -12,10 +12,10 @@ use crate::versions::{Shelf, day, today};
 
 /// Show what changed between two versions of the spec, and for whom it breaks.
 ///
-/// A version is the directory of a project or of a spec, a file that `fc inspect` has printed, the number of a release, or
+/// A version is the directory of a project or of a spec, a file that `fcproto inspect` has printed, the number of a release, or
 /// git:REF for what git has of this project's spec. Each change is judged by a rule: whether old apps and new robots, or new apps and old robots,
 /// misunderstand each other, in which languages sources stop compiling, and whether programs behave differently. What no
-/// rule judges is listed as well, so that no changes means that the two say the same. `fc explain FC0731` explains a rule.
+/// rule judges is listed as well, so that no changes means that the two say the same. `fcproto explain FC0731` explains a rule.
 ///
 /// A change that breaks something on purpose is accepted by an entry under `waivers` in the spec, with the number that stands
 /// beside it here, a reason, who has accepted it, and until when. It is listed from then on, but does not count. A waiver that
@@ -23,20 +23,20 @@ use crate::versions::{Shelf, day, today};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc diff                     what has changed since the last release
-  fc diff git:main            what this working tree changes
-  fc diff git:v1 git:v2 --format markdown --lang zh
-  fc diff --fail-on breaking  for continuous integration: fails if old and new apps and robots would
-                              misunderstand each other, and no waiver accepts it
-  fc diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'")]
+  fcproto diff                     what has changed since the last release
+  fcproto diff git:main            what this working tree changes
+  fcproto diff git:v1 git:v2 --format markdown --lang zh
+  fcproto diff --fail-on breaking  for continuous integration: fails if old and new apps and robots
+                                   would misunderstand each other, and no waiver accepts it
+  fcproto diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'")]
 #[command(after_long_help = "\
 Examples:
-  fc diff                     what has changed since the last release
-  fc diff git:main            what this working tree changes
-  fc diff git:v1 git:v2 --format markdown --lang zh
-  fc diff --fail-on breaking  for continuous integration: fails if old and new apps and robots would
-                              misunderstand each other, and no waiver accepts it
-  fc diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'
+  fcproto diff                     what has changed since the last release
+  fcproto diff git:main            what this working tree changes
+  fcproto diff git:v1 git:v2 --format markdown --lang zh
+  fcproto diff --fail-on breaking  for continuous integration: fails if old and new apps and robots
+                                   would misunderstand each other, and no waiver accepts it
+  fcproto diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'
 
 JSON:
   A list of objects: rule (its name), number (of the rule), subject, wire (old_app_new_robot and new_app_old_robot,

@@ -1,4 +1,4 @@
-//! `fc explain`.
+//! `fcproto explain`.
 
 use std::fmt::Write as _;
 
@@ -10,14 +10,14 @@ use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Show what an error code or a rule of `fc diff` or `fc lint` means, or list all codes.
+/// Show what an error code or a rule of `fcproto diff` or `fcproto lint` means, or list all codes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc explain              list all codes
-  fc explain FC0012       explain one of them; `12` or `fc0012` works as well
-  fc explain FC0731       explain a rule of `fc diff`
-  fc explain FC0802       explain a rule of `fc lint`; its name works as well")]
+  fcproto explain         list all codes
+  fcproto explain FC0012  explain one of them; `12` or `fc0012` works as well
+  fcproto explain FC0731  explain a rule of `fcproto diff`
+  fcproto explain FC0802  explain a rule of `fcproto lint`; its name works as well")]
 pub struct Options {
     /// The code, as shown in brackets in an error.
     code: Option<String>,
@@ -66,8 +66,8 @@ fn unknown(number: &str) -> String {
             "there is no error code `{number}`; did you mean `{code}`?"
         ),
         None => said!(
-            "没有错误码 `{number}`；`fc explain` 列出全部错误码",
-            "there is no error code `{number}`; `fc explain` lists them all"
+            "没有错误码 `{number}`；`fcproto explain` 列出全部错误码",
+            "there is no error code `{number}`; `fcproto explain` lists them all"
         ),
     }
 }

@@ -1,4 +1,4 @@
-//! `fc fmt`.
+//! `fcproto fmt`.
 
 use std::fmt::Write as _;
 use std::io::Read as _;
@@ -22,14 +22,14 @@ use crate::project::Project;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc fmt
-  fc fmt --check              for continuous integration: names what is not laid out
-  fc fmt spec/types.yaml --diff
-  fc fmt - < spec/types.yaml  for editors: the text comes back on standard output
+  fcproto fmt
+  fcproto fmt --check              for continuous integration: names what is not laid out
+  fcproto fmt spec/types.yaml --diff
+  fcproto fmt - < spec/types.yaml  for editors: the text comes back on standard output
 
 A hook for git, .git/hooks/pre-commit:
   #!/bin/sh
-  exec fc fmt --check")]
+  exec fcproto fmt --check")]
 pub struct Options {
     /// Files to lay out, `-` for standard input [default: all of the spec]
     #[arg(value_name = "FILES")]
@@ -93,8 +93,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if stale {
         let files = counted(run.changed, "文件", "file");
         print::message(&said!(
-            "{files}没有排好版：运行 `fc fmt`\n",
-            "{files} not laid out: run `fc fmt`\n"
+            "{files}没有排好版：运行 `fcproto fmt`\n",
+            "{files} not laid out: run `fcproto fmt`\n"
         ))?;
     }
     let mut codes = faults.iter().map(|fault| fault.code);
@@ -146,8 +146,8 @@ impl Run<'_> {
             Err(Refused::NotTheSame) => {
                 let path = &file.path;
                 let line = said!(
-                    "错误：`{path}` 保持不变：排版后含义会改变，这是 `fc fmt` 的缺陷",
-                    "error: `{path}` stays as it is: laid out, it would not say the same, which is a mistake of `fc fmt`"
+                    "错误：`{path}` 保持不变：排版后含义会改变，这是 `fcproto fmt` 的缺陷",
+                    "error: `{path}` stays as it is: laid out, it would not say the same, which is a mistake of `fcproto fmt`"
                 );
                 self.mistakes += &(print::leveled(&line) + "\n");
             }

@@ -1,4 +1,4 @@
-//! `fc generate`.
+//! `fcproto generate`.
 
 use std::fmt::Write as _;
 use std::io::Read as _;
@@ -33,15 +33,15 @@ const NAMED: usize = 10;
 #[derive(Debug, Default, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc generate
-  fc generate --only rust,vectors
-  fc generate --for product_app --out ../product
+  fcproto generate
+  fcproto generate --only rust,vectors
+  fcproto generate --for product_app --out ../product
                               what the product app has, in a directory of its own
-  fc generate --as-of 2026.12 --out ../released
+  fcproto generate --as-of 2026.12 --out ../released
                               what a release said
-  fc generate --watch         while you edit, until Ctrl-C
-  fc generate --check         for continuous integration: fails if a file is stale
-  fc inspect > model.json && fc generate --from model.json --root elsewhere
+  fcproto generate --watch    while you edit, until Ctrl-C
+  fcproto generate --check    for continuous integration: fails if a file is stale
+  fcproto inspect > model.json && fcproto generate --from model.json --root elsewhere
                               the same files without the YAML")]
 pub struct Options {
     /// Write nothing; show how stale files differ and exit with 1 if there are any.
@@ -59,7 +59,7 @@ pub struct Options {
     /// Put the files below this directory instead of the project's; it gets an `fc-manifest.json` of its own.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Generate from what `fc inspect` has printed, instead of from the YAML; `-` reads standard input.
+    /// Generate from what `fcproto inspect` has printed, instead of from the YAML; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
     /// Generate what this release said, such as 2026.12.
@@ -100,7 +100,7 @@ fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
 }
 
-/// The model that `fc inspect` has written.
+/// The model that `fcproto inspect` has written.
 fn dumped(path: &Path) -> Result<Model, Failure> {
     let name = path.display();
     let cannot = |error: std::io::Error| {
@@ -254,7 +254,7 @@ fn summary(plan: &Plan) -> String {
 
 /// The command that fixes what `--check` found, as it was called.
 fn command(place: &Place, options: &Options) -> String {
-    let mut command = "fc generate".to_owned();
+    let mut command = "fcproto generate".to_owned();
     if !options.only.is_empty() {
         let _ = write!(command, " --only {}", options.only.join(","));
     }

@@ -1,4 +1,4 @@
-//! `fc init`.
+//! `fcproto init`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::{generate, print};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc init lamp
+  fcproto init lamp
   cd lamp && cargo test")]
 pub struct Options {
     /// Where it is to be; made if it is not there, and empty if it is.
@@ -68,8 +68,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let directory = &options.directory;
     if place.root.is_some() || place.spec.is_some() {
         return Err(said!(
-            "`fc init DIR` 在 DIR 中建立项目；它没有 --root 和 --spec",
-            "`fc init DIR` makes a project in DIR; it has no --root and no --spec"
+            "`fcproto init DIR` 在 DIR 中建立项目；它没有 --root 和 --spec",
+            "`fcproto init DIR` makes a project in DIR; it has no --root and no --spec"
         )
         .into());
     }

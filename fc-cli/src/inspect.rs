@@ -1,4 +1,4 @@
-//! `fc inspect`.
+//! `fcproto inspect`.
 
 use clap::ValueEnum;
 use fc_codegen::target::part;
@@ -15,11 +15,11 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc inspect --format json | jq '.operations[].name'
-  fc inspect --format yaml
-  fc inspect --for product_app
-                              only what the product app has
-  fc inspect > model.json     all that `fc generate --from model.json` needs")]
+  fcproto inspect --format json | jq '.operations[].name'
+  fcproto inspect --format yaml
+  fcproto inspect --for product_app
+                                only what the product app has
+  fcproto inspect > model.json  all that `fcproto generate --from model.json` needs")]
 pub struct Options {
     /// How to print it.
     #[arg(long, value_name = "FORMAT", default_value = "json")]

@@ -1,4 +1,4 @@
-//! `fc lint`.
+//! `fcproto lint`.
 
 use fc_codegen::target::FILE;
 use fc_spec::diagnostic::Faults;
@@ -18,17 +18,17 @@ use crate::versions::{day, today};
 ///
 /// Rules are of categories: MINIMAL is what no protocol should have, STANDARD (which contains it) what makes one easy to use, DOCS is about
 /// texts, WIRE about values that some receivers cannot keep, SUNSET about dates of what is deprecated. `lint` in fc.yaml sets their
-/// levels, and has the rules of the project itself. `fc explain FC0802` explains a rule.
+/// levels, and has the rules of the project itself. `fcproto explain FC0802` explains a rule.
 ///
 /// A finding that is to stay is accepted by an entry under `waivers` in the spec, with the id that stands below it, a reason, who
 /// has accepted it, and until when. A waiver that has expired, or that accepts nothing, is an error.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc lint
-  fc lint --deny warnings     for continuous integration: fails on warnings as well
-  fc lint --today 2027-01-01  what will have to be gone by then
-  fc lint --format sarif > fc.sarif
+  fcproto lint
+  fcproto lint --deny warnings     for continuous integration: fails on warnings as well
+  fcproto lint --today 2027-01-01  what will have to be gone by then
+  fcproto lint --format sarif > fc.sarif
 
 Levels and rules of the project, in fc.yaml:
   lint:
@@ -41,7 +41,7 @@ Levels and rules of the project, in fc.yaml:
         where: { effect: motion }
         require: { accepted: present }
 
-Formats and their paths are those of `fc check`.")]
+Formats and their paths are those of `fcproto check`.")]
 pub struct Options {
     /// Output format.
     #[arg(long, value_name = "FORMAT", default_value = "text")]

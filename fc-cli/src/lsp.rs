@@ -1,4 +1,4 @@
-//! `fc lsp`.
+//! `fcproto lsp`.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::versions::today;
 /// Serve an editor over standard input and output, by the Language Server Protocol.
 ///
 /// Editors start it by themselves. The project is that of the directory which the editor has open, or of the first file
-/// that is opened; faults are those of `fc check`, for texts that are not saved yet, too.
+/// that is opened; faults are those of `fcproto check`, for texts that are not saved yet, too.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 How editors are told of it: docs-site/en/guides/editors.md")]

@@ -1,4 +1,4 @@
-//! The `fc` command: checks a protocol spec and generates what follows from it.
+//! The `fcproto` command: checks a protocol spec and generates what follows from it.
 //!
 //! One file per subcommand; what they do is in `fc_codegen`, here is only what is said about it.
 

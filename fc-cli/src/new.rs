@@ -1,4 +1,4 @@
-//! `fc new`.
+//! `fcproto new`.
 
 use fc_codegen::output::replace_spec_file;
 use fc_spec::model::Kind;
@@ -18,10 +18,10 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc new get_battery --group status
-  fc new battery_low --group status --report
-  fc new battery_curve --group status --stream --started-by get_battery
-  fc new set_volume --group settings --code 0x0A20")]
+  fcproto new get_battery --group status
+  fcproto new battery_low --group status --report
+  fcproto new battery_curve --group status --stream --started-by get_battery
+  fcproto new set_volume --group settings --code 0x0A20")]
 pub struct Options {
     /// Its name in `snake_case`, such as `get_battery`.
     #[arg(value_name = "NAME")]
@@ -87,8 +87,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let began = print::good(&said!("已加入", "began"));
     let (name, path, line) = (&options.name, &new.path, new.line);
     print::done(&said!(
-        "{began} {name}，{code}，在 {path}:{line}\n在那里写明它的作用，再运行 `fc generate`\n",
-        "{began} {name} {code} in {path}:{line}\nsay what it does there, then run `fc generate`\n"
+        "{began} {name}，{code}，在 {path}:{line}\n在那里写明它的作用，再运行 `fcproto generate`\n",
+        "{began} {name} {code} in {path}:{line}\nsay what it does there, then run `fcproto generate`\n"
     ))?;
     Ok(Status::Fine)
 }

@@ -1,4 +1,4 @@
-//! `fc where`.
+//! `fcproto where`.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place as Written, load, places};
@@ -17,9 +17,9 @@ use crate::project::Project;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc where get_battery        an operation, or anything else of that name
-  fc where 0x0123             the operations with this code
-  fc where Station.name       a field, an enum value or a variant of a type")]
+  fcproto where get_battery   an operation, or anything else of that name
+  fcproto where 0x0123        the operations with this code
+  fcproto where Station.name  a field, an enum value or a variant of a type")]
 pub struct Options {
     /// Its name, with or without that of what it is part of, or a code.
     #[arg(value_name = "NAME")]
@@ -46,8 +46,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let near = near.map(|near| said!("；是否想写 `{near}`？", "; did you mean `{near}`?"));
         let cause = || {
             said!(
-                "；规范有错误，`fc check` 会列出",
-                "; the spec has errors, which `fc check` shows"
+                "；规范有错误，`fcproto check` 会列出",
+                "; the spec has errors, which `fcproto check` shows"
             )
         };
         let cause = near.or(faults.has_errors().then(cause));

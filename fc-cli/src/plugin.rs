@@ -17,7 +17,7 @@ const LONGEST: u64 = 256 * 1024 * 1024;
 
 /// Runs the program of a target in the project's root and takes its files.
 ///
-/// It gets what `fc inspect` prints, for the target's audience if it has one, with the target's `options` as one more key, on standard input. What it says
+/// It gets what `fcproto inspect` prints, for the target's audience if it has one, with the target's `options` as one more key, on standard input. What it says
 /// on standard error goes to the user.
 pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>, Failure> {
     let (program, target) = (&plugin.program, &plugin.name);

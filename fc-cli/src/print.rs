@@ -116,7 +116,7 @@ pub fn diff(text: &str) -> String {
     out
 }
 
-/// Whether a command failed because its output is not read any more (`fc explain | head`).
+/// Whether a command failed because its output is not read any more (`fcproto explain | head`).
 pub fn is_closed_pipe(failure: &(dyn Error + 'static)) -> bool {
     failure
         .downcast_ref::<io::Error>()

@@ -1,4 +1,4 @@
-//! `fc questions`.
+//! `fcproto questions`.
 
 use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
@@ -17,11 +17,11 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc questions                            what is open, by what it holds up
-  fc questions C040                       one of them, with the lines to edit
-  fc questions --group task --lang zh     those of one group, in Chinese
-  fc questions --format csv --lang zh > questions.csv
-                                          a sheet for the owner; `fc settle --from` reads it")]
+  fcproto questions                         what is open, by what it holds up
+  fcproto questions C040                    one of them, with the lines to edit
+  fcproto questions --group task --lang zh  those of one group, in Chinese
+  fcproto questions --format csv --lang zh > questions.csv
+                                            a sheet for the owner; `fcproto settle --from` reads it")]
 pub struct Options {
     /// Ids of questions or conflicts [default: all]
     #[arg(value_name = "ID")]
@@ -102,8 +102,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let list = List::new(model, lang, by, |question| options.wants(question));
     if list.is_empty() && !options.ids.is_empty() {
         return Err(said!(
-            "没有问题 {ids}；`fc questions --state all --decisions` 列出全部问题",
-            "there is no question {ids}; `fc questions --state all --decisions` lists them",
+            "没有问题 {ids}；`fcproto questions --state all --decisions` 列出全部问题",
+            "there is no question {ids}; `fcproto questions --state all --decisions` lists them",
             ids = Text::listed(&options.ids)
         )
         .into());

@@ -1,4 +1,4 @@
-//! `fc release`.
+//! `fcproto release`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -21,9 +21,9 @@ use crate::versions::{Shelf, day, today};
 
 /// Freeze the spec under a number, and write the changelog.
 ///
-/// The spec gets the number as its version. What it says is frozen under `releases/` beside it, as a dump like that of `fc inspect`, and what
-/// has changed since the last release becomes a section of the changelogs there, in Chinese and in English. `fc diff` compares with the last
-/// release from then on, and `fc generate --as-of` makes the files of any. Waivers have served by then, and are taken out: their reasons
+/// The spec gets the number as its version. What it says is frozen under `releases/` beside it, as a dump like that of `fcproto inspect`, and what
+/// has changed since the last release becomes a section of the changelogs there, in Chinese and in English. `fcproto diff` compares with the last
+/// release from then on, and `fcproto generate --as-of` makes the files of any. Waivers have served by then, and are taken out: their reasons
 /// are in the changelogs.
 ///
 /// The number has to move far enough for what has changed. By the calendar (2026.12) any later one does, but each change that
@@ -32,9 +32,9 @@ use crate::versions::{Shelf, day, today};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc release 2026.12 --dry-run
+  fcproto release 2026.12 --dry-run
                               whether that can be released, and what the changelogs will say
-  fc release 2026.12 && fc generate")]
+  fcproto release 2026.12 && fcproto generate")]
 pub struct Options {
     /// Its number, such as 2026.12 or 2.1.0.
     #[arg(value_name = "NUMBER")]
@@ -123,8 +123,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         );
     }
     text += &said!(
-        "运行 `fc generate`，提交，再给提交打上标签\n",
-        "run `fc generate`, commit, and tag the commit\n"
+        "运行 `fcproto generate`，提交，再给提交打上标签\n",
+        "run `fcproto generate`, commit, and tag the commit\n"
     );
     print::done(&text)?;
     Ok(Status::Fine)
@@ -217,8 +217,8 @@ fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<St
     text += &said!("{number} 没有发布", "{number} is not released");
     if let Some((last, _)) = shelf.releases.last() {
         text += &said!(
-            "；`fc diff` 会列出自 {last} 以来的变更",
-            "; `fc diff` shows what has changed since {last}"
+            "；`fcproto diff` 会列出自 {last} 以来的变更",
+            "; `fcproto diff` shows what has changed since {last}"
         );
     }
     print::message(&(text + "\n"))?;

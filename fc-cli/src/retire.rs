@@ -1,4 +1,4 @@
-//! `fc retire`.
+//! `fcproto retire`.
 
 use std::fmt::Write as _;
 
@@ -22,8 +22,8 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc retire get_battery --zh 由状态上报代替 --en 'Replaced by the status report'
-  fc retire get_battery --zh 由状态上报代替 --en 'Replaced by the status report' --dry-run")]
+  fcproto retire get_battery --zh 由状态上报代替 --en 'Replaced by the status report'
+  fcproto retire get_battery --zh 由状态上报代替 --en 'Replaced by the status report' --dry-run")]
 pub struct Options {
     /// Its name, such as `get_battery`.
     #[arg(value_name = "NAME")]
@@ -93,8 +93,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     print::done(
         &(text
             + &said!(
-                "\n运行 `fc generate`，把它从由规范生成的所有内容中去掉\n",
-                "\nrun `fc generate` to take it out of everything that is made of the spec\n"
+                "\n运行 `fcproto generate`，把它从由规范生成的所有内容中去掉\n",
+                "\nrun `fcproto generate` to take it out of everything that is made of the spec\n"
             )),
     )?;
     Ok(Status::Fine)

@@ -1,19 +1,19 @@
-//! `fc schema`.
+//! `fcproto schema`.
 
 use clap::ValueEnum;
 
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Print the JSON Schema of the spec language, or of what `fc inspect` prints.
+/// Print the JSON Schema of the spec language, or of what `fcproto inspect` prints.
 ///
-/// Editors with a YAML language server use that of the language to complete and check spec files; `fc generate`
+/// Editors with a YAML language server use that of the language to complete and check spec files; `fcproto generate`
 /// also writes it next to the spec. That of the dump is for plugins and other programs.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc schema
-  fc schema dump > dump.schema.json")]
+  fcproto schema
+  fcproto schema dump > dump.schema.json")]
 pub struct Options {
     /// What it describes.
     #[arg(value_name = "WHAT", default_value = "spec")]
@@ -25,7 +25,7 @@ pub struct Options {
 enum Of {
     /// The spec language
     Spec,
-    /// What `fc inspect` prints
+    /// What `fcproto inspect` prints
     Dump,
 }
 

@@ -1,4 +1,4 @@
-//! `fc settle`.
+//! `fcproto settle`.
 
 use std::path::PathBuf;
 
@@ -21,14 +21,14 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc settle C012 --code 0x1234 --by 张伟
-  fc settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'
-  fc settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟
-  fc settle get_battery.response --response body.yaml --by 张伟
-  fc settle battery_low.code --confirm --by 张伟
+  fcproto settle C012 --code 0x1234 --by 张伟
+  fcproto settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'
+  fcproto settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟
+  fcproto settle get_battery.response --response body.yaml --by 张伟
+  fcproto settle battery_low.code --confirm --by 张伟
                               the inference is right as it is
-  fc settle --from answers.csv
-                              a sheet of `fc questions --format csv`, filled in")]
+  fcproto settle --from answers.csv
+                              a sheet of `fcproto questions --format csv`, filled in")]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["id", "from"])))]
 #[command(group(clap::ArgGroup::new("said").multiple(true)))]
 pub struct Options {
@@ -169,8 +169,8 @@ fn rest(model: &Model, ids: &[String]) -> String {
     };
     let left = counted(open.len(), "待确认的问题", "open question");
     said!(
-        "还有 {left}{also}\n运行 `fc generate`，并重读前后文字中与它有关的说明\n",
-        "{left} left{also}\nrun `fc generate`, and read again what the texts around say of it\n"
+        "还有 {left}{also}\n运行 `fcproto generate`，并重读前后文字中与它有关的说明\n",
+        "{left} left{also}\nrun `fcproto generate`, and read again what the texts around say of it\n"
     )
 }
 

@@ -1,4 +1,4 @@
-//! `fc completions` and `fc man`: what a shell and its reader want to know of the command line.
+//! `fcproto completions` and `fcproto man`: what a shell and its reader want to know of the command line.
 
 use std::path::PathBuf;
 
@@ -14,19 +14,19 @@ use crate::print;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc completions bash > ~/.local/share/bash-completion/completions/fc
-  fc completions zsh > ~/.zfunc/_fc     with ~/.zfunc in $fpath
-  fc completions fish > ~/.config/fish/completions/fc.fish")]
+  fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto
+  fcproto completions zsh > ~/.zfunc/_fcproto     with ~/.zfunc in $fpath
+  fcproto completions fish > ~/.config/fish/completions/fcproto.fish")]
 pub struct Completions {
     /// Which shell.
     shell: Shell,
 }
 
-/// Write the manual pages, one of `fc` and one of each command.
+/// Write the manual pages, one of `fcproto` and one of each command.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc man ~/.local/share/man/man1 && man fc-generate")]
+  fcproto man ~/.local/share/man/man1 && man fcproto-generate")]
 pub struct Man {
     /// Where to; it is made if it is not there.
     #[arg(value_name = "DIR")]
@@ -35,7 +35,7 @@ pub struct Man {
 
 pub fn completions(options: &Completions) -> Result<Status, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut command(), "fc", &mut script);
+    clap_complete::generate(options.shell, &mut command(), "fcproto", &mut script);
     print::result(&String::from_utf8_lossy(&script))?;
     Ok(Status::Fine)
 }

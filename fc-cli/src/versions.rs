@@ -62,8 +62,8 @@ impl Shelf {
             Some((number, _)) => Ok(number.to_string()),
             None => Err(
                 said!(
-                    "没有可供比较的发布版本；请写明版本，例如 git:main，或用 `fc release` 发布第一个版本",
-                    "there is no release to compare with; name a version, such as git:main, or make the first release with `fc release`"
+                    "没有可供比较的发布版本；请写明版本，例如 git:main，或用 `fcproto release` 发布第一个版本",
+                    "there is no release to compare with; name a version, such as git:main, or make the first release with `fcproto release`"
                 )
                 .into(),
             ),

@@ -1,4 +1,4 @@
-//! `fc generate --watch`.
+//! `fcproto generate --watch`.
 //!
 //! What the file system tells says only that something may have changed: what has is found out by reading the spec again. So
 //! neither an editor that saves by renaming, nor a directory that comes back, nor what is generated into the spec's own

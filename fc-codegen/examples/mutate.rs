@@ -76,7 +76,7 @@ fn main() -> ExitCode {
     let sources = syntax::read_dir(Path::new("."), Path::new("spec"), &mut faults);
     let trees = Trees::new(&sources);
     let Some(model) = trees.load(&mut faults).model() else {
-        eprintln!("the spec has faults; run `fc check`");
+        eprintln!("the spec has faults; run `fcproto check`");
         return ExitCode::from(2);
     };
     let mutations = mutations(&trees).into_iter();

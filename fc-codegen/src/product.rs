@@ -1,6 +1,6 @@
 //! What can be made of a model, and the files that it comes to.
 
-/// A kind of output; `fc generate --only` names them.
+/// A kind of output; `fcproto generate --only` names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Product {
     /// The generated crate's sources.

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
-//! `fc inspect` prints and answers with files ([`Plugin`]). A project without the file, or without `targets` in it, has every product at its
+//! `fcproto inspect` prints and answers with files ([`Plugin`]). A project without the file, or without `targets` in it, has every product at its
 //! usual place. `lint` is read by `fc_spec::lint`. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
 //! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
 //! that language.

@@ -322,7 +322,7 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
     let log = json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
-        "runs": [{ "tool": { "driver": { "name": "fc diff", "rules": rules } }, "results": results }],
+        "runs": [{ "tool": { "driver": { "name": "fcproto diff", "rules": rules } }, "results": results }],
     });
     serde_json::to_string_pretty(&log).unwrap_or_default() + "\n"
 }

@@ -82,8 +82,8 @@ impl VersionError {
                 "git does not give `{name}`: {why}"
             ),
             Self::NoSpec(name) => text!(
-                "`{name}` 不是有规范的目录，不是 `fc inspect` 的输出，不是发布版本，也不是 git:REF",
-                "`{name}` is neither a directory with a spec, nor what `fc inspect` prints, nor a release, nor git:REF"
+                "`{name}` 不是有规范的目录，不是 `fcproto inspect` 的输出，不是发布版本，也不是 git:REF",
+                "`{name}` is neither a directory with a spec, nor what `fcproto inspect` prints, nor a release, nor git:REF"
             ),
             Self::NoRelease(error) => error.text(),
             Self::TooLarge(name) => {
@@ -106,7 +106,7 @@ impl fmt::Display for VersionError {
 impl std::error::Error for VersionError {}
 
 impl Version {
-    /// Reads a version: a project's or a spec's directory, a file that `fc inspect` has printed, the number of a release of
+    /// Reads a version: a project's or a spec's directory, a file that `fcproto inspect` has printed, the number of a release of
     /// the spec in `project`, which counts before a file of that name, or `git:REF` for what git has of it; `spec` leads from
     /// there to the spec's directory.
     ///

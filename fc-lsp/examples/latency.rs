@@ -109,7 +109,7 @@ fn median(mut once: impl FnMut() -> Duration) -> Duration {
     times[TIMES / 2]
 }
 
-/// Checks the spec as `fc check` does; the number of its operations.
+/// Checks the spec as `fcproto check` does; the number of its operations.
 fn checked(sources: &Sources) -> usize {
     let mut faults = Faults::new();
     let checked = check(sources, &Targets::default().languages(), &mut faults);

@@ -9,7 +9,7 @@ use gen_lsp_types as lsp;
 use std::collections::BTreeMap;
 
 /// Who says so.
-const SOURCE: &str = "fc";
+const SOURCE: &str = "fcproto";
 
 /// What is wrong in each file of which anything is, by what the client calls it: in those of the spec, and where the project says
 /// what the lint is to look for.

@@ -1,4 +1,4 @@
-//! A file laid out as `fc fmt` does it.
+//! A file laid out as `fcproto fmt` does it.
 
 use crate::snapshot::Snapshot;
 use fc_spec::format::format;

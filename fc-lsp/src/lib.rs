@@ -1,4 +1,4 @@
-//! A language server for protocol specs: what an editor asks while one types, answered by what `fc` knows anyway.
+//! A language server for protocol specs: what an editor asks while one types, answered by what `fcproto` knows anyway.
 //!
 //! ```text
 //! editor ──messages──► serve ──► Workspace: the project's files, those that are open as the editor has them

@@ -54,7 +54,7 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
         .map_err(|error| ServeError(error.to_string()))?;
     let settings = Arc::new(Settings::read(&params));
     let info = lsp::ServerInfo {
-        name: "fc".to_owned(),
+        name: "fcproto".to_owned(),
         version: Some(env!("CARGO_PKG_VERSION").to_owned()),
     };
     let result = lsp::InitializeResult {

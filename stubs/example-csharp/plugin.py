@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""C# of a spec: gets what `fc inspect` prints, with the target's options, and answers with files.
+"""C# of a spec: gets what `fcproto inspect` prints, with the target's options, and answers with files.
 
 `fc.yaml` names it. What all messages have in common is in `runtime`; this program says of each type what it is called
 in C#, and names each field once. Standard library only.
@@ -461,7 +461,7 @@ class Package:
         version = self.dump["protocol"]["version"]
         for path, lines in made.items():
             opening = [
-                f"// Made by `fc generate` of version {version} of the spec. Change the spec instead.",
+                f"// Made by `fcproto generate` of version {version} of the spec. Change the spec instead.",
                 # The fields of what is deprecated are read and written all the same.
                 "#pragma warning disable 612, 618",
                 "using System.Collections.Generic;",

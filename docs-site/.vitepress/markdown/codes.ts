@@ -68,7 +68,7 @@ export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
     const use = protocol.ranges.find((range) => range.first === low)?.use
     const all = Array.from({ length: high - low + 1 }, (_, offset) => low + offset)
     const free = all.filter((code) => !taken.has(code))
-    // After the largest that is taken, or the first gap once the end is reached, as `fc new` does it.
+    // After the largest that is taken, or the first gap once the end is reached, as `fcproto new` does it.
     const next = free.find((code) => !all.some((other) => other > code && taken.has(other))) ?? free[0]
     const open = (use === 'commands' || use === 'reports') && next !== undefined
     const code = open ? `\`${hexNumber(next, 4)}\`` : '—'

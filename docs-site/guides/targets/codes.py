@@ -7,7 +7,7 @@ dump = json.load(sys.stdin)
 prefix = dump["options"]["prefix"]
 
 lines = [
-    f"/* {dump['protocol']['en']}, version {dump['protocol']['version']}. Made by `fc generate`. */",
+    f"/* {dump['protocol']['en']}, version {dump['protocol']['version']}. Made by `fcproto generate`. */",
     f"#ifndef {prefix}_CODES_H",
     f"#define {prefix}_CODES_H",
 ]

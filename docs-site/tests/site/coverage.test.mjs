@@ -10,7 +10,7 @@ import { dist, needs, obligatory, root } from '../support.mjs'
 const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built site (npm run build)')
 
 function inspect() {
-  const command = ['run', '--quiet', ...(obligatory ? ['--locked'] : []), '--bin', 'fc', '--', 'inspect', '--format', 'json']
+  const command = ['run', '--quiet', ...(obligatory ? ['--locked'] : []), '--bin', 'fcproto', '--', 'inspect', '--format', 'json']
   return JSON.parse(execFileSync('cargo', command, { cwd: root, encoding: 'utf8', maxBuffer: 1 << 28 }))
 }
 

@@ -54,8 +54,8 @@ test('the server is started as the settings say', async () => {
     Object.entries(manifest.contributes.configuration.properties).map(([key, it]) => [key.replace('fc.', ''), it.default]),
   )
   for (const [settings, command, lang] of [
-    [defaults, 'fc', 'zh-cn'],
-    [{ path: '/opt/fc', lang: 'en' }, '/opt/fc', 'en'],
+    [defaults, 'fcproto', 'zh-cn'],
+    [{ path: '/opt/fcproto', lang: 'en' }, '/opt/fcproto', 'en'],
   ]) {
     const { did, extension } = load(settings)
     await extension.activate({ subscriptions: [] })
@@ -69,7 +69,7 @@ test('the server is started as the settings say', async () => {
 })
 
 test('every command of the manifest is there, and a change of the settings starts another server', async () => {
-  const { did, extension } = load({ path: 'fc', lang: 'auto' })
+  const { did, extension } = load({ path: 'fcproto', lang: 'auto' })
   await extension.activate({ subscriptions: [] })
   for (const { command } of manifest.contributes.commands) assert.ok(did.commands[command], command)
   await did.configure({ affectsConfiguration: (name) => name === 'other' })
@@ -79,7 +79,7 @@ test('every command of the manifest is there, and a change of the settings start
 })
 
 test('a lens shows its references', async () => {
-  const { did, extension } = load({ path: 'fc', lang: 'auto' })
+  const { did, extension } = load({ path: 'fcproto', lang: 'auto' })
   await extension.activate({ subscriptions: [] })
   did.commands['fc.showReferences']('file:///a.yaml', { line: 1 }, [{ uri: 'file:///b.yaml' }])
   assert.deepEqual(did.executed, [

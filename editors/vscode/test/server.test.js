@@ -13,13 +13,13 @@ const { pathToFileURL } = require('node:url')
 const lsp = require('vscode-languageserver-protocol/node')
 
 const root = resolve(__dirname, '../../..')
-const fc = process.env.FC ?? join(root, 'target/debug/fc')
+const fcproto = process.env.FC ?? join(root, 'target/debug/fcproto')
 
 test('faults, a fix and an explanation reach the client', async (t) => {
   const project = mkdtempSync(join(tmpdir(), 'fc-editor-'))
   t.after(() => rmSync(project, { recursive: true }))
   cpSync(join(root, 'fc-codegen/tests/docs/spec'), join(project, 'spec'), { recursive: true })
-  const server = spawn(fc, ['lsp'], { stdio: ['pipe', 'pipe', 'inherit'] })
+  const server = spawn(fcproto, ['lsp'], { stdio: ['pipe', 'pipe', 'inherit'] })
   const ended = new Promise((done) => server.on('close', done))
   const client = lsp.createProtocolConnection(server.stdout, server.stdin)
   const told = []

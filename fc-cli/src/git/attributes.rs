@@ -1,4 +1,4 @@
-//! What `.gitattributes` has to say so that git calls `fc`.
+//! What `.gitattributes` has to say so that git calls `fcproto`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

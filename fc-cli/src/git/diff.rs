@@ -1,4 +1,4 @@
-//! `fc git diff`.
+//! `fcproto git diff`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,13 +24,13 @@ const NOTHING: &str = "/dev/null";
 
 /// Say for git what a change of a file of the spec means and for whom it breaks, as its diff driver.
 ///
-/// It says of the one file what `fc diff` says of all of them. The rest of the spec is the working tree's where both versions of
+/// It says of the one file what `fcproto diff` says of all of them. The rest of the spec is the working tree's where both versions of
 /// the file fit it, else that of the commits which have them. Where there is no spec that a version fits, or nothing
 /// but comments and layout has changed, lines are compared.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  git diff                    after `fc git setup`
+  git diff                    after `fcproto git setup`
   git log --patch --ext-diff -- spec
   git diff --no-ext-diff      the lines")]
 pub struct Options {

@@ -1,4 +1,4 @@
-//! `fc git merge`.
+//! `fcproto git merge`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::project::Project;
 /// Merge a file for git, as its merge driver.
 ///
 /// A generated file is never left in conflict: where both sides have changed the same lines, those of this branch
-/// stand until the file is generated again, which `fc git stage` does. In a file of the spec, what both sides have added at
+/// stand until the file is generated again, which `fcproto git stage` does. In a file of the spec, what both sides have added at
 /// the same place is kept: commands, reports, streams, types, values of an enum, changes. Where both have changed the same
 /// thing, and in all other files, the conflict is git's own.
 #[derive(Debug, clap::Args)]

@@ -1,4 +1,4 @@
-//! `fc git`: what git does better when it is told of the spec.
+//! `fcproto git`: what git does better when it is told of the spec.
 
 mod attributes;
 pub mod diff;
@@ -17,13 +17,13 @@ use crate::project::Project;
 
 /// Let git merge the spec and what is generated from it, and say what a change of the spec means.
 ///
-/// `fc git setup` tells a clone of it once; the other commands are those that git calls, but for `stage`.
+/// `fcproto git setup` tells a clone of it once; the other commands are those that git calls, but for `stage`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc git setup                once in a clone: merge and compare files of the spec with `fc`
-  fc git setup --hooks        the same, and check each commit
-  fc git stage                generate, and stage what has changed")]
+  fcproto git setup           once in a clone: merge and compare files of the spec with `fcproto`
+  fcproto git setup --hooks   the same, and check each commit
+  fcproto git stage           generate, and stage what has changed")]
 pub struct Options {
     #[command(subcommand)]
     command: Action,

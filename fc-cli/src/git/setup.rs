@@ -1,4 +1,4 @@
-//! `fc git setup`.
+//! `fcproto git setup`.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -12,15 +12,15 @@ use crate::place::Place;
 use crate::print;
 use crate::project::Project;
 
-/// Tell this clone to merge and compare files with `fc`.
+/// Tell this clone to merge and compare files with `fcproto`.
 ///
 /// It writes to the configuration of the clone alone, and says which lines the project's `.gitattributes` lacks, which is
 /// committed and says for which files that holds. A clone that was not told merges and compares them as any others.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc git setup
-  fc git setup --hooks
+  fcproto git setup
+  fcproto git setup --hooks
 
 Hooks:
   pre-commit   stops a commit if the spec is not laid out, has errors or warnings, or if what is generated is stale.
@@ -33,7 +33,10 @@ pub struct Options {
 }
 
 /// The line by which a hook is known to be ours.
-const MARK: &str = "# Written by `fc git setup --hooks`.";
+const MARK: &str = "# Written by `fcproto git setup --hooks`.";
+
+/// The same line in hooks from when the program was called `fc`: they call it by a path where nothing is now.
+const OLD_MARK: &str = "# Written by `fc git setup --hooks`.";
 
 /// Hooks and what they do; `FC` stands for the command.
 const HOOKS: [(&str, &str); 2] = [
@@ -106,7 +109,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// This program, as a shell calls it. By its path: in some shells `fc` is a command of the shell's own.
+/// This program, as a shell calls it. By its path: git may be called where it is not on the `PATH`.
 fn this_command() -> Result<String, Failure> {
     let path = std::env::current_exe().map_err(|error| {
         said!(
@@ -135,9 +138,10 @@ fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> 
     let mut hooks = Vec::new();
     for (name, action) in HOOKS {
         let path = directory.join(name);
-        let is_other = fs::read_to_string(&path).is_ok_and(|text| !text.contains(MARK));
+        let is_other = fs::read_to_string(&path)
+            .is_ok_and(|text| !text.contains(MARK) && !text.contains(OLD_MARK));
         if is_other {
-            let action = action.replace("FC", "fc");
+            let action = action.replace("FC", "fcproto");
             let (path, action) = (path.display(), action.trim_end());
             return Err(said!(
                 "已有钩子 `{path}`；把它移走，或在其中加入：\n{action}",

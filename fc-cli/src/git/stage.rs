@@ -1,4 +1,4 @@
-//! `fc git stage`.
+//! `fcproto git stage`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,13 +14,13 @@ use crate::project::Project;
 /// Generate, and stage what has changed: the generated files alone, and none that git ignores.
 ///
 /// While git merges, no file of the spec is complete yet, so generated files are written afterwards. After a merge the
-/// hook of `fc git setup --hooks` does it. For `git rebase` and `git cherry-pick` git has no such hook.
+/// hook of `fcproto git setup --hooks` does it. For `git rebase` and `git cherry-pick` git has no such hook.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  fc git stage && git commit
-  git rebase main --exec 'fc git stage --amend'
-  git cherry-pick topic && fc git stage --amend")]
+  fcproto git stage && git commit
+  git rebase main --exec 'fcproto git stage --amend'
+  git cherry-pick topic && fcproto git stage --amend")]
 pub struct Options {
     /// Put what has changed, and what is staged already, into the last commit.
     #[arg(long)]
@@ -82,7 +82,7 @@ fn amend(root: &Path) -> Result<(), Failure> {
     let message = line(of_last("%B")?) + "\n";
     let last = line(git(root, &["rev-parse", "HEAD"], "")?);
     let commit = line(git_with(root, &make, &message, &author)?);
-    let why = "fc git stage --amend";
+    let why = "fcproto git stage --amend";
     git(root, &["update-ref", "-m", why, "HEAD", &commit, &last], "")?;
     Ok(())
 }

@@ -32,7 +32,7 @@ fn what_an_audience_has_goes_into_a_directory_of_its_own() {
     };
     check("user_app").expect(0);
     let run = check("tester_app").expect(1);
-    let fix = "run `fc generate --for tester_app --out user`";
+    let fix = "run `fcproto generate --for tester_app --out user`";
     assert!(run.stderr.contains(fix), "{run:#?}");
     project.fc(&["generate", "--check"]).expect(0);
     let after = project.files("");

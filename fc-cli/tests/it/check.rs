@@ -1,4 +1,4 @@
-//! `fc check` and what all commands have in common.
+//! `fcproto check` and what all commands have in common.
 
 use std::process::Stdio;
 
@@ -30,7 +30,7 @@ fn faults_are_shown_for_people() {
         "error[FC0012]: the key `twice` occurs twice",
         &format!("--> spec/protocol.yaml:{line}:5\n"),
         &format!("{line} | 回充: [ 甲\n"),
-        "run `fc explain FC",
+        "run `fcproto explain FC",
     ] {
         assert!(run.stderr.contains(part), "{part:?} in {}", run.stderr);
     }
@@ -166,7 +166,7 @@ fn help_says_how_it_ends() {
     for part in [
         "Exit status:",
         "Examples:",
-        "fc generate --check",
+        "fcproto generate --check",
         "--root <DIR>",
     ] {
         assert!(run.stdout.contains(part), "{part:?} in {}", run.stdout);
@@ -181,7 +181,7 @@ fn help_says_how_it_ends() {
     }
 }
 
-/// A reader that goes away (`fc explain | head`) is no failure.
+/// A reader that goes away (`fcproto explain | head`) is no failure.
 #[test]
 fn nobody_reads_the_rest() {
     let mut command = support::command(&["explain"]);

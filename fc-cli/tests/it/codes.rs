@@ -1,4 +1,4 @@
-//! `fc codes`.
+//! `fcproto codes`.
 
 use crate::support::Project;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! `fc diff`.
+//! `fcproto diff`.
 
 use crate::support;
 use crate::support::Project;
@@ -204,7 +204,7 @@ fn what_cannot_be_compared_is_said() {
     let project = project();
     for (old, status, said) in [
         ("nowhere", 2, "cannot read `nowhere`"),
-        ("spec/protocol.yaml", 2, "not a dump of `fc inspect`"),
+        ("spec/protocol.yaml", 2, "not a dump of `fcproto inspect`"),
         ("spec/commands", 2, "neither a directory with a spec"),
     ] {
         let run = project.fc(&["diff", old]).expect(status);

@@ -1,4 +1,4 @@
-//! `fc explain`, `fc inspect`, `fc schema`.
+//! `fcproto explain`, `fcproto inspect`, `fcproto schema`.
 
 use crate::support::Project;
 use serde_json::Value;
@@ -12,7 +12,7 @@ fn every_listed_code_can_be_explained() {
         let (code, title) = line.split_once("  ").expect("a code and its title");
         let text = project.fc(&["explain", code]).expect(0).stdout;
         assert!(text.starts_with(&format!("{code}: {title}\n\n")), "{text}");
-        // A fault has examples; a rule of `fc diff` says whom it breaks, one of `fc lint` how it is set.
+        // A fault has examples; a rule of `fcproto diff` says whom it breaks, one of `fcproto lint` how it is set.
         let has_examples = text.contains(" bad\n") && text.contains(" good\n");
         let is_of_diff = text.contains("\n- Wire: ");
         assert!(
@@ -37,7 +37,7 @@ fn an_unknown_code_has_a_neighbor() {
     assert!(run.stderr.contains("did you mean `FC0012`?"), "{run:#?}");
     let run = project.fc(&["explain", "hello"]).expect(2);
     assert!(
-        run.stderr.contains("`fc explain` lists them all"),
+        run.stderr.contains("`fcproto explain` lists them all"),
         "{run:#?}"
     );
 }

@@ -1,4 +1,4 @@
-//! `fc fmt`.
+//! `fcproto fmt`.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -82,7 +82,7 @@ fn a_check_names_the_files_and_writes_nothing() {
     let before = project.files("spec");
     let run = project.fc(&["fmt", "--check"]).expect(1);
     assert_eq!(run.stdout, "spec/commands/lamp.yaml\n");
-    assert_eq!(run.stderr, "1 file not laid out: run `fc fmt`\n");
+    assert_eq!(run.stderr, "1 file not laid out: run `fcproto fmt`\n");
     let named = project.fc(&["fmt", "--check", "spec/protocol.yaml"]);
     assert_eq!(named.expect(0).stdout, "");
     assert_eq!(project.files("spec"), before);

@@ -1,4 +1,4 @@
-//! `fc generate`.
+//! `fcproto generate`.
 
 use crate::support::Project;
 
@@ -36,7 +36,10 @@ fn check_shows_what_is_stale_and_writes_nothing() {
         "{run:#?}"
     );
     assert!(run.stdout.contains("\n-// by hand\n"), "{run:#?}");
-    assert_eq!(run.stderr, "error: 1 file is stale; run `fc generate`\n");
+    assert_eq!(
+        run.stderr,
+        "error: 1 file is stale; run `fcproto generate`\n"
+    );
     assert_eq!(project.files(""), before);
 
     let run = project.fc(&["generate"]).expect(0);
@@ -78,7 +81,7 @@ fn the_command_to_run_is_the_one_that_was_run() {
         .expect(1);
     assert!(
         run.stderr
-            .contains("run `fc generate --only rust,vectors --root .`"),
+            .contains("run `fcproto generate --only rust,vectors --root .`"),
         "{run:#?}"
     );
 }
@@ -108,8 +111,9 @@ fn from_a_dump_all_products_are_the_same() {
     ]))
     .expect(2);
     assert!(
-        run.stderr
-            .contains("`elsewhere/model.json`: not a dump of `fc inspect`: unknown variant `hash`"),
+        run.stderr.contains(
+            "`elsewhere/model.json`: not a dump of `fcproto inspect`: unknown variant `hash`"
+        ),
         "{run:#?}"
     );
     assert!(!project.path("elsewhere/fc-manifest.json").exists());
@@ -138,7 +142,8 @@ fn from_a_dump_all_products_are_the_same() {
     project.write("fc-generated/src/lib.rs", "");
     let run = (project.fc(&["generate", "--check", "--from", "model.json"])).expect(1);
     assert!(
-        run.stderr.contains("run `fc generate --from model.json`"),
+        run.stderr
+            .contains("run `fcproto generate --from model.json`"),
         "{run:#?}"
     );
 }

@@ -1,4 +1,4 @@
-//! `fc git diff`: what git shows of a change of the spec.
+//! `fcproto git diff`: what git shows of a change of the spec.
 
 use crate::support::Project;
 use crate::support::git::git;

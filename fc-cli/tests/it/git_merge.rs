@@ -1,4 +1,4 @@
-//! `fc git`: two branches that each add a command to one group, at the same place.
+//! `fcproto git`: two branches that each add a command to one group, at the same place.
 
 use crate::support;
 use crate::support::Project;
@@ -159,7 +159,7 @@ fn a_rebase_ends_whole_at_each_commit() {
     let project = project();
     set_up(&project, &[]);
     branches(&project);
-    let stage = format!("{} -q git stage --amend", env!("CARGO_BIN_EXE_fc"));
+    let stage = format!("{} -q git stage --amend", env!("CARGO_BIN_EXE_fcproto"));
     git(&project, &["rebase", "--quiet", "apple", "--exec", &stage]);
     is_whole(&project);
 }
@@ -194,7 +194,7 @@ fn what_both_have_changed_is_for_people_to_decide_and_is_the_only_conflict() {
     git(&project, &["checkout", "--quiet", "--theirs", GROUP]);
     git(&project, &["add", GROUP]);
     let (committed, text) = run_git(&project, &["commit", "--no-edit"]);
-    assert!(!committed && text.contains("fc generate"), "{text}");
+    assert!(!committed && text.contains("fcproto generate"), "{text}");
     project.fc(&["git", "stage"]).expect(0);
     git(&project, &["commit", "--quiet", "--no-edit"]);
     assert_eq!(git(&project, &["status", "--porcelain"]), "");
@@ -230,9 +230,24 @@ fn a_hook_of_somebody_else_stays() {
     let project = project();
     project.write(".git/hooks/pre-commit", "#!/bin/sh\necho mine\n");
     let run = project.fc(&["git", "setup", "--hooks"]).expect(2);
-    assert!(run.stderr.contains("fc generate --check"), "{run:#?}");
+    assert!(run.stderr.contains("fcproto generate --check"), "{run:#?}");
     assert!(project.read(".git/hooks/pre-commit").contains("mine"));
     assert!(!project.path(".git/hooks/post-merge").exists());
+}
+
+/// The program was called `fc`, and its hooks call it by its path.
+#[test]
+fn hooks_that_call_the_old_name_are_written_anew() {
+    let project = project();
+    set_up(&project, &["--hooks"]);
+    let hooks = [".git/hooks/pre-commit", ".git/hooks/post-merge"];
+    let written = hooks.map(|hook| project.read(hook));
+    for (hook, text) in hooks.iter().zip(&written) {
+        project.write(hook, &text.replace("fcproto", "fc"));
+    }
+    assert_ne!(hooks.map(|hook| project.read(hook)), written);
+    project.fc(&["git", "setup", "--hooks"]).expect(0);
+    assert_eq!(hooks.map(|hook| project.read(hook)), written);
 }
 
 #[test]

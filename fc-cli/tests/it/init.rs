@@ -1,4 +1,4 @@
-//! `fc init`.
+//! `fcproto init`.
 
 use std::path::Path;
 use std::process::Command;

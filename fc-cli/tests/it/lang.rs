@@ -1,4 +1,4 @@
-//! In which language `fc` speaks.
+//! In which language `fcproto` speaks.
 
 use crate::support::{Project, Run, command};
 

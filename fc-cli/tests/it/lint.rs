@@ -1,4 +1,4 @@
-//! `fc lint` and `fc check --fix`.
+//! `fcproto lint` and `fcproto check --fix`.
 
 use crate::support::{Project, Run};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! `fc new`.
+//! `fcproto new`.
 
 use crate::support::Project;
 
@@ -179,7 +179,7 @@ fn the_examples_of_the_help_run() {
     let help = project.fc(&["new", "--help"]).expect(0).stdout;
     let examples: Vec<Vec<&str>> = help
         .lines()
-        .filter_map(|line| line.trim().strip_prefix("fc new "))
+        .filter_map(|line| line.trim().strip_prefix("fcproto new "))
         .map(|arguments| arguments.split(' ').collect())
         .collect();
     assert!(examples.len() >= 3, "{help}");

@@ -4,19 +4,13 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::support::git::git;
-use crate::support::{Project, Run};
+use crate::support::{Project, Run, path_to_command};
 
 /// Runs all hooks of a project, as a commit would.
 fn hooks(project: &Project, home: &Project) -> Run {
-    let fc = Path::new(env!("CARGO_BIN_EXE_fc")).parent();
-    let paths = std::env::var_os("PATH").unwrap_or_default();
-    let paths = fc
-        .map(Path::to_owned)
-        .into_iter()
-        .chain(std::env::split_paths(&paths));
     let output = Command::new("pre-commit")
         .args(["run", "--all-files", "--color=never"])
-        .env("PATH", std::env::join_paths(paths).expect("paths"))
+        .env("PATH", path_to_command())
         .env("PRE_COMMIT_HOME", home.path(""))
         .env("GIT_CONFIG_GLOBAL", "")
         .env_remove("GIT_DIR")

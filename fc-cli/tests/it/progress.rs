@@ -27,9 +27,9 @@ fn waiting() -> Project {
     project
 }
 
-/// Runs `fc generate` on a terminal, opens the gate once this has been shown, or at once; gives all that it printed.
+/// Runs `fcproto generate` on a terminal, opens the gate once this has been shown, or at once; gives all that it printed.
 fn on_a_terminal(project: &Project, options: &str, wanted: Option<&str>) -> String {
-    let command = format!("{} generate {options}", env!("CARGO_BIN_EXE_fc"));
+    let command = format!("{} generate {options}", env!("CARGO_BIN_EXE_fcproto"));
     let mut child = Command::new("script")
         .args([
             "--quiet",

@@ -1,4 +1,4 @@
-//! `fc questions` and `fc settle`.
+//! `fcproto questions` and `fcproto settle`.
 
 use crate::support::Project;
 

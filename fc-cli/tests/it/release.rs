@@ -1,4 +1,4 @@
-//! `fc release`, and what stands on it: `fc diff` without a version, waivers, `fc changelog`, `fc generate --as-of`.
+//! `fcproto release`, and what stands on it: `fcproto diff` without a version, waivers, `fcproto changelog`, `fcproto generate --as-of`.
 
 use crate::support::Project;
 use serde_json::Value;
@@ -92,7 +92,7 @@ released 7.1
   spec/releases/CHANGELOG.md
   spec/releases/CHANGELOG.en.md
   spec/protocol.yaml
-run `fc generate`, commit, and tag the commit
+run `fcproto generate`, commit, and tag the commit
 "
     );
     assert_eq!(

@@ -1,4 +1,4 @@
-//! `fc retire`.
+//! `fcproto retire`.
 
 use crate::support::Project;
 

@@ -1,6 +1,9 @@
 //! What the command is to a shell: completions, manual pages, silence, exit statuses.
 
-use crate::support::Project;
+use std::io::ErrorKind;
+use std::process::Command;
+
+use crate::support::{Project, Run, path_to_command};
 
 /// The commands, as the help lists them.
 fn commands(project: &Project) -> Vec<String> {
@@ -34,13 +37,13 @@ fn each_command_has_a_manual_page() {
     let commands = commands(&project);
     let pages = project.files("share/man1").len();
     assert_eq!(run.stdout, format!("wrote {pages} pages in share/man1\n"));
-    // `fc git` has commands of its own.
+    // `fcproto git` has commands of its own.
     assert!(pages > commands.len() + 1, "{pages}");
     for command in commands {
-        let page = project.read(&format!("share/man1/fc-{command}.1"));
+        let page = project.read(&format!("share/man1/fcproto-{command}.1"));
         assert!(page.contains(".SH SYNOPSIS"), "{command}");
     }
-    assert!(project.read("share/man1/fc.1").contains("EXTRA"));
+    assert!(project.read("share/man1/fcproto.1").contains("EXTRA"));
     project.write("file", "");
     let run = project.fc(&["man", "file"]).expect(2);
     assert!(run.stderr.contains("cannot write to `file`"), "{run:#?}");
@@ -83,5 +86,50 @@ fn warnings_change_the_status_for_who_denies_them() {
     for format in ["text", "json", "sarif", "github"] {
         let run = project.fc(&[&deny[..], &["--format", format]].concat());
         run.expect(1);
+    }
+}
+
+/// What a shell makes of a script in a project, with the command on the `PATH`; nothing where there is no such shell.
+fn script(shell: &str, project: &Project, text: &str) -> Option<Run> {
+    let output = Command::new(shell)
+        .args(["-c", text])
+        .env("PATH", path_to_command())
+        .env("LC_ALL", "C")
+        // Nobody's own start-up files.
+        .env("ZDOTDIR", project.path(""))
+        .env_remove("BASH_ENV")
+        .env_remove("ENV")
+        .current_dir(project.path(""))
+        .output();
+    match output {
+        Ok(output) => Some(Run::new(&output)),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => panic!("{shell}: {error}"),
+    }
+}
+
+/// A name that a shell has for itself would be the shell's: `fc check` of bash succeeds, whatever the spec says.
+#[test]
+fn no_script_goes_past_a_broken_spec() {
+    const SCRIPT: &str = "set -e; fcproto check; echo reached";
+    let good = Project::new();
+    let broken = Project::new();
+    let types = broken.read("spec/types.yaml");
+    broken.write("spec/types.yaml", &types.replacen("unit:", "unti:", 1));
+    for shell in ["bash", "zsh", "sh"] {
+        let Some(run) = script(shell, &broken, SCRIPT) else {
+            assert!(
+                std::env::var_os("FC_CI").is_none(),
+                "there is no {shell} here"
+            );
+            println!("skipped: {shell} is not there");
+            continue;
+        };
+        let run = run.expect(1);
+        assert!(run.stderr.contains("unti"), "{shell}: {run:#?}");
+        assert!(!run.stdout.contains("reached"), "{shell}: {run:#?}");
+        let run = script(shell, &good, SCRIPT).expect("the same shell");
+        let run = run.expect(0);
+        assert!(run.stdout.ends_with("reached\n"), "{shell}: {run:#?}");
     }
 }

@@ -1,4 +1,4 @@
-//! `fc generate --watch`, driven by what it says: no test waits for a time.
+//! `fcproto generate --watch`, driven by what it says: no test waits for a time.
 
 #![cfg(unix)]
 

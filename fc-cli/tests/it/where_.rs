@@ -1,4 +1,4 @@
-//! `fc where`.
+//! `fcproto where`.
 
 use crate::support::Project;
 
@@ -26,7 +26,7 @@ fn a_name_or_code_leads_to_its_place() {
     for name in ["get_lamp_colour", "0x7F01"] {
         let run = project.fc(&["where", name]).expect(0);
         assert_eq!(run.stdout, operation, "{name}");
-        // The code may be in no range: that is for `fc check` to say.
+        // The code may be in no range: that is for `fcproto check` to say.
         assert_eq!(run.stderr, "", "{name}");
     }
     for name in ["lampHue", "GetLampColourResponse.lampHue"] {

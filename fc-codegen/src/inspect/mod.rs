@@ -1,5 +1,5 @@
-//! A dump of the resolved model, for other programs: `fc inspect --format json` or `yaml`. It is all that
-//! `fc generate --from` needs, whatever the product; `fc schema dump` is its JSON Schema.
+//! A dump of the resolved model, for other programs: `fcproto inspect --format json` or `yaml`. It is all that
+//! `fcproto generate --from` needs, whatever the product; `fcproto schema dump` is its JSON Schema.
 //!
 //! # Format 3
 //!
@@ -24,7 +24,7 @@
 //! - `result_codes`: `{ code, name, role, zh, en, about }`, by number; `role` says when the engine itself
 //!   answers with it
 //! - `ranges`: `{ from, to, from_spelling, to_spelling, use, next, zh, en }`, by number, both ends included; `use` is
-//!   `pass_through`, `commands`, `reports`, `reserved` or `historic`, `next` the code that `fc new` gives next
+//!   `pass_through`, `commands`, `reports`, `reserved` or `historic`, `next` the code that `fcproto new` gives next
 //!   from `commands` and `reports`, `null` elsewhere and where none is left
 //! - `retired_codes`: `{ code, spelling, zh, en }`
 //! - `tables`: `{ id, row, rows, kept, zh, en, about, place }`, the rows in wire form
@@ -35,7 +35,7 @@
 //! - `availability`: `{ audiences, hardware, releases }`, lists of `{ name, zh, en, place }`: the words of `available`
 //! - `glossary`: `{ id, zh, en, means, also, place }`, the terms of the protocol; `means` is a text, `also` `{ zh, en }`,
 //!   lists of other forms
-//! - `waivers`: `{ id, zh, en, by, until, place }`, findings of `fc diff` that are accepted for a time; `zh` and `en` say why
+//! - `waivers`: `{ id, zh, en, by, until, place }`, findings of `fcproto diff` that are accepted for a time; `zh` and `en` say why
 //! - `conflicts`: `{ id, category, severity, zh, en }`, what the source lacks or contradicts
 //! - `answers`: `{ ids, kind, subject, zh, en, about, runtime, confirmed, place }`, what the spec answers to them;
 //!   `about` are the facts that it governs, `{ path, meanwhile }`, `runtime` says that no value of the spec changes it, and

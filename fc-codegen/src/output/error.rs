@@ -32,7 +32,7 @@ pub enum OutputError {
     /// Files stand where artifacts belong, hold something else, and are not the generator's.
     #[error(
         "{} would have to be overwritten, but `{MANIFEST}` does not list {}: move or delete {} and \
-         run `fc generate` again",
+         run `fcproto generate` again",
         list(.paths),
         if .paths.len() == 1 { "it" } else { "them" },
         if .paths.len() == 1 { "it" } else { "them" },
@@ -82,7 +82,7 @@ impl OutputError {
                     _ => String::new(),
                 };
                 format!(
-                    "必须覆盖 {named}{more}，但 `{MANIFEST}` 中没有列出：请移走或删除，再运行 `fc generate`"
+                    "必须覆盖 {named}{more}，但 `{MANIFEST}` 中没有列出：请移走或删除，再运行 `fcproto generate`"
                 )
             }
             Self::Manifest { why } => format!(

@@ -71,7 +71,7 @@ impl Manifest {
             (
                 "about".to_owned(),
                 text(
-                    "Files that `fc generate` wrote and may overwrite or remove; it touches no others.",
+                    "Files that `fcproto generate` wrote and may overwrite or remove; it touches no others.",
                 ),
             ),
             ("products".to_owned(), Value::Object(products.collect())),

@@ -53,7 +53,7 @@ impl<'m> List<'m> {
         self.questions.is_empty()
     }
 
-    /// As they are in `fc inspect`, as one JSON document.
+    /// As they are in `fcproto inspect`, as one JSON document.
     #[must_use]
     pub fn json(&self) -> String {
         // Nothing of a question has keys that are no texts, which is all that can fail.

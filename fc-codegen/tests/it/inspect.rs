@@ -1,4 +1,4 @@
-//! What `fc inspect` tells of the small good spec.
+//! What `fcproto inspect` tells of the small good spec.
 
 use crate::good_spec;
 use crate::json_schema::Validator;
@@ -304,7 +304,7 @@ fn named<'d>(dump: &'d mut serde_json::Value, list: &str, name: &str) -> &'d mut
 #[test]
 fn what_is_no_dump_is_refused_with_a_reason() {
     let text = inspect::json(&good_spec::model());
-    assert!(refused("[]").starts_with("not a dump of `fc inspect`: "));
+    assert!(refused("[]").starts_with("not a dump of `fcproto inspect`: "));
     assert!(refused(&text[..text.len() / 2]).contains("EOF while parsing"));
     let other = text.replacen("\"format\": 3", "\"format\": 1", 1);
     assert!(matches!(Dump::read(&other), Err(DumpError::Format(1))));

@@ -62,8 +62,8 @@ rules! {
         title: ["this change cannot be waived", "这种变更不能豁免"],
         text: [
             "A retired code that is used again means something else to every peer that still knows it, and nothing fails. No date makes \
-             that safe; choose another code, `fc codes` shows which are free.",
-            "重新使用停用的功能码后，仍认得旧含义的一方会按旧含义处理，而且不会报错。到什么日期都不安全，请换一个功能码，空闲的见 `fc codes`。",
+             that safe; choose another code, `fcproto codes` shows which are free.",
+            "重新使用停用的功能码后，仍认得旧含义的一方会按旧含义处理，而且不会报错。到什么日期都不安全，请换一个功能码，空闲的见 `fcproto codes`。",
         ],
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! Ranges: `FC00xx` YAML itself, `FC01xx` shape (unknown key, missing key, wrong kind, bad scalar), `FC02xx`
 //! names and references, `FC03xx` codes, `FC04xx` fields, constraints and examples, `FC05xx` frame,
-//! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fc diff`, `FC08xx` those of
+//! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fcproto diff`, `FC08xx` those of
 //! the lint, which are declared where they look for what they find ([`Rule`]).
 
 use crate::lint::Rule;

@@ -66,9 +66,9 @@ pub(super) const SETTINGS: &Rule = &Rule {
         "无法使用的检查设置",
     ],
     text: [
-        "What stands under `lint` in `fc.yaml` has a key, a level, a path or a test that there is not. Paths are those of `fc inspect`. \
+        "What stands under `lint` in `fc.yaml` has a key, a level, a path or a test that there is not. Paths are those of `fcproto inspect`. \
          Nothing is checked until it is corrected: a rule that silently never finds anything would be worse than none.",
-        "`fc.yaml` 的 `lint` 中有不存在的键、级别、路径或判断方式。路径与 `fc inspect` 输出的一致。改正之前不作检查：一条永远不会有提示的规则比没有更糟。",
+        "`fc.yaml` 的 `lint` 中有不存在的键、级别、路径或判断方式。路径与 `fcproto inspect` 输出的一致。改正之前不作检查：一条永远不会有提示的规则比没有更糟。",
     ],
     find: None,
 };

@@ -21,7 +21,7 @@ pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     ])
 }
 
-/// The shape of what `fc inspect` prints of a kind of thing.
+/// The shape of what `fcproto inspect` prints of a kind of thing.
 pub(super) struct Shape(Schema);
 
 impl Shape {

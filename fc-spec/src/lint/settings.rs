@@ -238,8 +238,8 @@ impl Reader<'_> {
             self.faults.push(match nearest(name, known) {
                 Some(near) => fault.fix(span, near, meant(near)),
                 None => fault.note(text!(
-                    "`fc explain` 列出全部规则",
-                    "`fc explain` lists the rules"
+                    "`fcproto explain` 列出全部规则",
+                    "`fcproto explain` lists the rules"
                 )),
             });
         }

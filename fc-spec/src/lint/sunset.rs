@@ -15,8 +15,8 @@ pub(super) const RULES: &[Rule] = &[
         title: ["its last day is near", "停用日期临近"],
         text: [
             "What is deprecated goes in this month or in one of the next three. Programs that still use it have to move now; the owner \
-             either prepares the removal (`fc retire`) or agrees on a later date.",
-            "已停用的内容将在本月或之后三个月内移除。还在使用的一方现在就要改；负责人则准备移除（`fc retire`），或商定更晚的日期。",
+             either prepares the removal (`fcproto retire`) or agrees on a later date.",
+            "已停用的内容将在本月或之后三个月内移除。还在使用的一方现在就要改；负责人则准备移除（`fcproto retire`），或商定更晚的日期。",
         ],
         find: Some(sunset_near),
     },
@@ -27,9 +27,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Error,
         title: ["its last day has passed", "停用日期已过"],
         text: [
-            "The date that `sunset` promised is over, and it is still there. Remove it with `fc retire`, or agree on another date. A date that \
+            "The date that `sunset` promised is over, and it is still there. Remove it with `fcproto retire`, or agree on another date. A date that \
              nobody keeps teaches everybody not to believe the next one.",
-            "`sunset` 写明的日期已过，内容还在。请用 `fc retire` 移除，或商定新的日期。日期不算数，下一个日期就没有人信了。",
+            "`sunset` 写明的日期已过，内容还在。请用 `fcproto retire` 移除，或商定新的日期。日期不算数，下一个日期就没有人信了。",
         ],
         find: Some(sunset_passed),
     },

@@ -183,8 +183,8 @@ impl Reader<'_> {
                 return None;
             }
             let message = text!(
-                "`fc inspect` 的输出在这里没有键 `{part}`",
-                "`fc inspect` prints no key `{part}` there"
+                "`fcproto inspect` 的输出在这里没有键 `{part}`",
+                "`fcproto inspect` prints no key `{part}` there"
             );
             let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), key.span(), message);
             let near = nearest(part, keys.keys().copied());

@@ -102,8 +102,8 @@ impl SettleError {
                 "there is no question {id}; did you mean {nearest}?"
             ),
             Self::Unknown { id, nearest: None } => text!(
-                "没有问题 {id}；`fc questions --state all --decisions` 列出全部问题",
-                "there is no question {id}; `fc questions --state all --decisions` lists them"
+                "没有问题 {id}；`fcproto questions --state all --decisions` 列出全部问题",
+                "there is no question {id}; `fcproto questions --state all --decisions` lists them"
             ),
             Self::Several { id, questions } => text!(
                 "{id} 是几个问题：{questions}",

@@ -1,4 +1,4 @@
-//! The model as one document for other programs, and back: `fc inspect` and `fc generate --from`.
+//! The model as one document for other programs, and back: `fcproto inspect` and `fcproto generate --from`.
 //!
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
@@ -93,14 +93,14 @@ impl DumpError {
     pub fn text(&self) -> Text {
         match self {
             Self::Shape(error) => text!(
-                "不是 `fc inspect` 的输出：{error}",
-                "not a dump of `fc inspect`: {error}"
+                "不是 `fcproto inspect` 的输出：{error}",
+                "not a dump of `fcproto inspect`: {error}"
             ),
             Self::Format(found) => {
                 let format = Dump::FORMAT;
                 text!(
-                    "输出的格式是 {found}；这个版本读取的格式是 {format}：用这个 `fc inspect` 从规范重新输出",
-                    "a dump of format {found}; this version reads format {format}: print it again from its spec, with this `fc inspect`"
+                    "输出的格式是 {found}；这个版本读取的格式是 {format}：用这个 `fcproto inspect` 从规范重新输出",
+                    "a dump of format {found}; this version reads format {format}: print it again from its spec, with this `fcproto inspect`"
                 )
             }
             Self::Name(Unlinked { missing, user }) => text!(
@@ -171,7 +171,7 @@ impl Dump {
     /// # Errors
     ///
     /// [`DumpError`] for what is not a dump, is one of another format, or names what is not in it. What else
-    /// `fc check` demands of a spec was checked when the dump was made.
+    /// `fcproto check` demands of a spec was checked when the dump was made.
     pub fn read(json: &str) -> Result<Model, DumpError> {
         #[derive(Deserialize)]
         struct Head {

@@ -26,7 +26,7 @@ pub fn schema() -> String {
     out
 }
 
-/// The schema of what `fc inspect` prints and `fc generate --from` reads, indented, with a newline at its end. Keys that
+/// The schema of what `fcproto inspect` prints and `fcproto generate --from` reads, indented, with a newline at its end. Keys that
 /// are worked out from others for the reader's comfort are not in it.
 #[must_use]
 pub fn dump() -> String {

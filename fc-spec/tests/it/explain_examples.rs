@@ -1,4 +1,4 @@
-//! The examples of `fc explain`: the bad one raises its code, the good one in the same place does not.
+//! The examples of `fcproto explain`: the bad one raises its code, the good one in the same place does not.
 //!
 //! An example shows a few lines, as a reader meets them: fields, keys of a command, a section. The test
 //! puts them into a small sound spec (`good/`) wherever lines of that kind can stand, and asks for one

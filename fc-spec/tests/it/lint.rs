@@ -315,7 +315,7 @@ fn waivers_accept_a_finding_for_a_time() {
         find(&waiver(&id, "2026-11"), "2026-12-01").1,
         ["FC0817", "FC0891"]
     );
-    // A waiver of something else, and one that `fc diff` has to judge.
+    // A waiver of something else, and one that `fcproto diff` has to judge.
     let other = "FC0817-000000000000";
     assert_eq!(
         find(&waiver(other, "2026-11"), TODAY).1,

@@ -212,11 +212,13 @@ fn the_summary_counts() {
     ));
     assert_eq!(
         summary(&faults, Lang::En).as_deref(),
-        Some("warning: 1 warning in 1 file; run `fc explain FC0009` to read more about the first"),
+        Some(
+            "warning: 1 warning in 1 file; run `fcproto explain FC0009` to read more about the first"
+        ),
     );
     assert_eq!(
         summary(&faults, Lang::Zh).as_deref(),
-        Some("警告：1 个文件中有 1 个警告；运行 `fc explain FC0009` 查看第一个的详细说明"),
+        Some("警告：1 个文件中有 1 个警告；运行 `fcproto explain FC0009` 查看第一个的详细说明"),
     );
     assert!(!faults.has_errors());
     faults.push(Diagnostic::error(
@@ -232,14 +234,14 @@ fn the_summary_counts() {
     assert_eq!(
         summary(&faults, Lang::En).as_deref(),
         Some(
-            "error: 2 errors and 1 warning in 2 files; run `fc explain FC0017` to read more about \
+            "error: 2 errors and 1 warning in 2 files; run `fcproto explain FC0017` to read more about \
              the first"
         ),
     );
     assert_eq!(
         summary(&faults, Lang::Zh).as_deref(),
         Some(
-            "错误：2 个文件中有 2 个错误、1 个警告；运行 `fc explain FC0017` 查看第一个的详细说明"
+            "错误：2 个文件中有 2 个错误、1 个警告；运行 `fcproto explain FC0017` 查看第一个的详细说明"
         ),
     );
 }

@@ -15,7 +15,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 ROOT = HERE.parents[1]
-FC = os.environ.get("FC", str(ROOT / "target/debug/fc"))
+FC = os.environ.get("FC", str(ROOT / "target/debug/fcproto"))
 ODD = [ROOT / "fc-generated/tests/odd/spec"]
 
 # What is broken on purpose: the file of the runtime, what stands there, and what is written instead.

@@ -24,7 +24,7 @@ from golden import check
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.parents[1]
-FC = os.environ.get("FC", str(ROOT / "target/debug/fc"))
+FC = os.environ.get("FC", str(ROOT / "target/debug/fcproto"))
 PATIENCE = 60.0
 
 USER = """

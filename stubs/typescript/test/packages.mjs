@@ -14,7 +14,7 @@ export const repository = path.join(root, '../..')
 
 /** The generator, which the environment may name; null where it has not been built. */
 export const generator = (() => {
-  const usual = path.join(repository, 'target/debug/fc')
+  const usual = path.join(repository, 'target/debug/fcproto')
   return process.env.FC ?? (existsSync(usual) ? usual : null)
 })()
 

@@ -158,7 +158,7 @@ fn a_name_leads_to_what_it_names() {
         );
         let (file, _) = target.split_once(':').expect("a line");
         assert!(found[0].starts_with(file), "{marked}: {found:?}");
-        // And it is the place that `fc where` names.
+        // And it is the place that `fcproto where` names.
         let run = project.fc(&["where", name]);
         let (at, _) = found[0].split_once(' ').expect("a place");
         assert!(

@@ -18,7 +18,7 @@ fn faults_come_and_go_with_the_text() {
     assert_eq!(faults.len(), 1, "{faults:#?}");
     assert_eq!(editor.slice(TYPES, &faults[0]["range"]), "u61");
     assert_eq!(faults[0]["severity"], 1);
-    assert_eq!(faults[0]["source"], "fc");
+    assert_eq!(faults[0]["source"], "fcproto");
     project.fc(&["check"]).expect(0);
     editor.save();
     let run = project.fc(&["check", "--format", "json"]).expect(1);

@@ -1,4 +1,4 @@
-//! `fc lsp`, driven by an editor.
+//! `fcproto lsp`, driven by an editor.
 
 mod answers;
 mod completion;

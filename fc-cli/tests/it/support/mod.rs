@@ -2,6 +2,7 @@
 
 pub mod git;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -55,12 +56,12 @@ impl Project {
         self.write(path, &(self.read(path) + text));
     }
 
-    /// Runs `fc` in the project's root.
+    /// Runs `fcproto` in the project's root.
     pub fn fc(&self, args: &[&str]) -> Run {
         self.fc_in("", args)
     }
 
-    /// Runs `fc` in a directory of the project.
+    /// Runs `fcproto` in a directory of the project.
     pub fn fc_in(&self, directory: &str, args: &[&str]) -> Run {
         let output = command(args).current_dir(self.path(directory)).output();
         Run::new(&output.expect("the command can be run"))
@@ -93,7 +94,7 @@ impl Run {
 
 /// The command, without what the environment says about colors, the repository and the language.
 pub fn command(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fc"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fcproto"));
     command.args(args);
     for variable in [
         "NO_COLOR",
@@ -108,6 +109,16 @@ pub fn command(args: &[&str]) -> Command {
         command.env_remove(variable);
     }
     command
+}
+
+/// A `PATH` on which the command is found first.
+pub fn path_to_command() -> OsString {
+    let directory = Path::new(env!("CARGO_BIN_EXE_fcproto"))
+        .parent()
+        .expect("its directory");
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let all = std::iter::once(directory.to_owned()).chain(std::env::split_paths(&others));
+    std::env::join_paths(all).expect("paths")
 }
 
 /// Copies a directory.

@@ -23,7 +23,7 @@ pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
         "version": "2.1.0",
         "runs": [{
             "tool": { "driver": {
-                "name": "fc",
+                "name": "fcproto",
                 "version": env!("CARGO_PKG_VERSION"),
                 "rules": rules,
             }},
@@ -48,8 +48,8 @@ fn rule(code: FaultCode, lang: Lang) -> Value {
         "shortDescription": { "text": code.title(lang) },
         "help": {
             "text": match lang {
-                Lang::Zh => format!("运行 `fc explain {code}`。"),
-                Lang::En => format!("Run `fc explain {code}`."),
+                Lang::Zh => format!("运行 `fcproto explain {code}`。"),
+                Lang::En => format!("Run `fcproto explain {code}`."),
             },
             "markdown": code.explain(lang),
         },

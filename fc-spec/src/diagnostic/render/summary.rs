@@ -33,7 +33,7 @@ pub fn summary(faults: &Faults, lang: Lang) -> Option<String> {
                 _ => format!("，只显示前 {} 个", faults.len()),
             };
             format!(
-                "{level}：{files} 个文件中有 {counts}{shown}；运行 `fc explain {code}` 查看第一个的详细说明"
+                "{level}：{files} 个文件中有 {counts}{shown}；运行 `fcproto explain {code}` 查看第一个的详细说明"
             )
         }
         Lang::En => {
@@ -43,7 +43,7 @@ pub fn summary(faults: &Faults, lang: Lang) -> Option<String> {
             };
             let files = counted(files, "file", lang);
             format!(
-                "{level}: {counts} in {files}{shown}; run `fc explain {code}` to read more about the first"
+                "{level}: {counts} in {files}{shown}; run `fcproto explain {code}` to read more about the first"
             )
         }
     })

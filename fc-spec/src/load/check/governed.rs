@@ -97,7 +97,7 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                     );
                     faults.push(
                         Diagnostic::error(FaultCode::GovernedFact, governed.path.span(), message)
-                            .note(text!("`fc settle` 会写下负责人的答复和答复人；如果还没有人答复，就连同 `about:` 一起修改", "`fc settle` writes down the owner's answer and who gave it; if nobody has, change `about:` as well")),
+                            .note(text!("`fcproto settle` 会写下负责人的答复和答复人；如果还没有人答复，就连同 `about:` 一起修改", "`fcproto settle` writes down the owner's answer and who gave it; if nobody has, change `about:` as well")),
                     );
                 }
                 Some(_) if governed.is_untouched() => {

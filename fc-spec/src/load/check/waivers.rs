@@ -7,7 +7,7 @@ use crate::text;
 /// Hex digits of a fingerprint.
 const DIGITS: usize = 12;
 
-/// Each names a finding as `fc diff` and `fc lint` print it. Whether there is such a finding depends on what is compared.
+/// Each names a finding as `fcproto diff` and `fcproto lint` print it. Whether there is such a finding depends on what is compared.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     for Placed { item, place } in &draft.waivers {
         if !is_id(&item.id) {
@@ -18,7 +18,7 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
             );
             faults.push(
                 Diagnostic::error(FaultCode::BadWaiver, place.name(), message).note(
-                    text!("写 `fc diff` 给出的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the number of the rule and the fingerprint as `fc diff` prints them, such as `FC0725-1a2b3c4d5e6f`"),
+                    text!("写 `fcproto diff` 给出的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the number of the rule and the fingerprint as `fcproto diff` prints them, such as `FC0725-1a2b3c4d5e6f`"),
                 ),
             );
         }

@@ -39,8 +39,8 @@ grammar! {
     /// Who has a thing, and where; what is not said limits nothing.
     /// 哪些人、在哪里才有；没有写的不作限制。
     AVAILABLE: Available = "limit" "适用限制" {
-        /// Only these audiences have it; `fc generate --for` leaves it out for others.
-        /// 只面向这些受众；用 `fc generate --for` 为其他受众生成时不包含它。
+        /// Only these audiences have it; `fcproto generate --for` leaves it out for others.
+        /// 只面向这些受众；用 `fcproto generate --for` 为其他受众生成时不包含它。
         optional r#for: List<Name, 1>,
             example "[product_app]",
             faults [UnknownAvailability, LimitsNothing, LimitBeyondOperation];

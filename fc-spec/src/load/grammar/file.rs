@@ -89,8 +89,8 @@ grammar! {
         /// What the words of the protocol mean, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
-        /// Findings that are accepted for a time, by rule and fingerprint as `fc diff` prints them. At most one list in a spec.
-        /// 暂时接受的提示，以 `fc diff` 给出的规则号加指纹为键。整个规范最多一份。
+        /// Findings that are accepted for a time, by rule and fingerprint as `fcproto diff` prints them. At most one list in a spec.
+        /// 暂时接受的提示，以 `fcproto diff` 给出的规则号加指纹为键。整个规范最多一份。
         optional waivers: Entries<Str, Waiver>, faults [BadWaiver];
         /// Gaps and mistakes in the source document that the spec has to answer.
         /// 源文档中需要规范答复的缺失和错误。

@@ -4,8 +4,8 @@ use super::common::TEXT;
 use super::form::{Date, Str};
 
 grammar! {
-    /// A finding of `fc diff` or `fc lint` that is accepted until a date, and why. It does not apply to the protocol, only to its checks.
-    /// 暂时接受 `fc diff` 或 `fc lint` 的一处提示，写明理由和期限。只影响检查，不影响协议。
+    /// A finding of `fcproto diff` or `fcproto lint` that is accepted until a date, and why. It does not apply to the protocol, only to its checks.
+    /// 暂时接受 `fcproto diff` 或 `fcproto lint` 的一处提示，写明理由和期限。只影响检查，不影响协议。
     WAIVER: Waiver = "waiver" "豁免" {
         use TEXT.zh, TEXT.en;
         /// Who has accepted it.

@@ -1,4 +1,4 @@
-"""A small protocol, written by hand as `fc generate` writes them: one query, one command to follow, one report."""
+"""A small protocol, written by hand as `fcproto generate` writes them: one query, one command to follow, one report."""
 
 from __future__ import annotations
 

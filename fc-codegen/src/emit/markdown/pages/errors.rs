@@ -1,4 +1,4 @@
-//! The errors that the checks of the spec report, and the rules of the lint: the texts of `fc explain` as a page.
+//! The errors that the checks of the spec report, and the rules of the lint: the texts of `fcproto explain` as a page.
 
 use super::shared::Desk;
 use fc_spec::diagnostic::FaultCode;

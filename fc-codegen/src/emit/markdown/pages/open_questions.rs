@@ -209,7 +209,7 @@ fn command(question: &Question) -> String {
     if said.is_empty() {
         said.push("--confirm".to_owned());
     }
-    format!("fc settle {} {} --by …", question.id, said.join(" "))
+    format!("fcproto settle {} {} --by …", question.id, said.join(" "))
 }
 
 fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {
