@@ -173,8 +173,8 @@ impl<'m> Package<'m> {
             }
         });
         let items: Vec<_> = items.collect();
-        let named = |item: &&Item<'_>| language.has_field_types && item.has_field_type();
-        for item in items.iter().filter(named) {
+        let has_field_type = |item: &&Item<'_>| language.has_field_types && item.has_field_type();
+        for item in items.iter().filter(has_field_type) {
             let words = format!("{}_fields", item.ty.of.name);
             let who = Named::alone(kind(item.ty.of), &item.ty.of.name);
             types.claim_made(&words, who, &mut names.clashes);

@@ -1,5 +1,4 @@
 //! What `#[derive(Header)]` reads and writes.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::Header;
 use fc_runtime::Header as _;

@@ -1,5 +1,4 @@
 //! What `#[derive(Id)]` makes: a type of its own, which travels as what it holds.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::{Defaults, Id, Message, New};
 use fc_runtime::json::{from_str, to_vec};

@@ -1,5 +1,4 @@
 //! What `#[derive(Message)]` makes of each attribute.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{decode, to_vec};

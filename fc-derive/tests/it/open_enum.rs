@@ -1,5 +1,4 @@
 //! What `#[derive(OpenEnum)]` makes of open and closed enums.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::OpenEnum;
 use fc_runtime::State as _;

@@ -1,5 +1,4 @@
 //! What `#[derive(RedactedDebug)]` prints.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::{Message, RedactedDebug};
 use fc_runtime::Message as _;

@@ -1,5 +1,4 @@
 //! A hand-written protocol: envelopes, commands, reports and a service, from call to answer.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::{Command, Dispatch, Envelope, Header, Message, Report, dispatch};
 use fc_runtime::{

@@ -1,5 +1,4 @@
 //! What `wire = "number"` makes of a bool.
-#![deny(clippy::pedantic, missing_docs)]
 
 use fc_derive::Message;
 use fc_runtime::json::{decode, to_vec};

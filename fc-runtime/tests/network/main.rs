@@ -26,7 +26,12 @@
     reason = "a test may"
 )]
 
-#[allow(dead_code, reason = "a part of it is used here")]
+#[allow(
+    dead_code,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    reason = "a part of it is used here"
+)]
 #[path = "../it/common/mod.rs"]
 mod common;
 mod garbage;

@@ -23,7 +23,12 @@
 )]
 
 mod cable;
-#[allow(dead_code, reason = "a part of it is used here")]
+#[allow(
+    dead_code,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    reason = "a part of it is used here"
+)]
 #[path = "../it/common/mod.rs"]
 mod common;
 mod hour;

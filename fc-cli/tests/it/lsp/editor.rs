@@ -247,6 +247,20 @@ impl<'p> Editor<'p> {
         codes.map(|code| code.expect("a code").to_owned()).collect()
     }
 
+    /// Waits until nothing is found in a file as it is now. In between, the server may have checked it beside other files
+    /// of an edit that had not changed yet.
+    pub fn becomes_clean(&mut self, path: &str) {
+        let (uri, version) = (self.uri(path), self.open[path].0);
+        self.wait(|message| match message {
+            Message::Notification(it) => {
+                let params = &it.params;
+                let is_of_this = params["uri"] == uri.as_str() && params["version"] == version;
+                (is_of_this && params["diagnostics"] == json!([])).then_some(())
+            }
+            _ => None,
+        });
+    }
+
     /// The position right behind the `|` of a text that stands once in an open file, the `|` left out.
     pub fn position(&self, path: &str, marked: &str) -> Value {
         let (before, after) = marked.split_once('|').expect("a mark");
