@@ -50,6 +50,7 @@ const REFERENCE: [page: string, zh: string, en: string][] = [
   ['reference/open-questions', '疑问与决定', 'Open questions'],
   ['reference/language', '规范的写法', 'The spec language'],
   ['reference/errors', '规范检查错误', 'Errors in the spec'],
+  ['reference/cli', '命令行', 'Command line'],
   ['lab/', '帧实验室', 'Frame lab'],
 ]
 

@@ -3,63 +3,59 @@
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::lang::Language;
-use crate::place::{GLOBAL, Place};
+use crate::help::{Help, PageOptions, Part, global};
+use crate::lang::{Language, both};
+use crate::place::Place;
 use crate::{
     changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
     places, questions, release, retire, schema, settle, shell,
 };
 
-const STYLES: Styles = Styles::styled()
+/// Styles of help and usage errors.
+pub const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
     .usage(AnsiColor::Green.on_default().bold())
     .literal(AnsiColor::Cyan.on_default().bold())
     .placeholder(AnsiColor::Cyan.on_default());
 
-/// Checks a protocol spec written in YAML and generates code and documentation from it.
-///
-/// The spec is `spec/protocol.yaml` and the files next to it. It is the source of the Rust crate, the
-/// documentation in Chinese and English, golden frames and a JSON Schema for editors. `fc.yaml` says which
-/// of them are made, and where.
+/// The whole command line.
 #[derive(Debug, Parser)]
-#[command(name = "fcproto", version, styles = STYLES, max_term_width = 100)]
-#[command(after_long_help = "\
-Exit status:
-  0  success
-  1  the spec has errors, or generated files are stale, or the spec is not laid out as `fcproto fmt` does it
-  2  wrong usage, or a file that cannot be read or written
-
-Examples:
-  fcproto init lamp           begin a project in a directory of its own
-  fcproto check               find all errors in the spec
-  fcproto explain FC0012      read what an error means
-  fcproto fmt                 lay out the files of the spec
-  fcproto lint                find what is not wrong but could be better
-  fcproto new get_battery --group status
-                              add a command with the next free code
-  fcproto questions           list what the owner of the protocol has still to say
-  fcproto diff git:main       show what this working tree changes, and for whom it breaks
-  fcproto generate            write all generated files
-  fcproto generate --check    fail if a generated file is stale, and write nothing")]
+#[command(name = "fcproto", version, styles = STYLES)]
 pub struct Args {
-    /// Where the project is.
     #[command(flatten)]
     pub place: Place,
-    /// When to use colors.
-    #[arg(long, value_name = "WHEN", default_value = "auto", global = true, help_heading = GLOBAL)]
+    #[arg(
+        long,
+        value_name = "WHEN",
+        default_value = "auto",
+        global = true,
+        help_heading = global(),
+        help = both("何时使用颜色", "Use colors")
+    )]
     pub color: Color,
-    /// In which language [default: zh in a Chinese locale, else en]
-    #[arg(long, value_name = "LANGUAGE", global = true, help_heading = GLOBAL)]
+    #[arg(
+        long,
+        value_name = "LANG",
+        global = true,
+        help_heading = global(),
+        help = both("输出的语言 [默认：随系统语言]", "Language of output [default: by locale]")
+    )]
+    #[expect(dead_code, reason = "`lang::speak` reads it before the rest is parsed")]
     pub lang: Option<Language>,
-    /// Say nothing of what went well; results that were asked for, and what is wrong, are still printed.
-    #[arg(short, long, global = true, help_heading = GLOBAL)]
+    #[arg(
+        short,
+        long,
+        global = true,
+        help_heading = global(),
+        help = both("只输出错误和所要的结果", "Print errors and requested results only")
+    )]
     pub quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do. The options of each say what it does.
+/// A command with its options.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Init(init::Options),
@@ -85,16 +81,86 @@ pub enum Command {
     Lsp(lsp::Options),
     Completions(shell::Completions),
     Man(shell::Man),
+    #[command(hide = true)]
+    HelpPage(PageOptions),
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "检查机器人协议规范，并由它生成代码和文档",
+            "Check a robot protocol spec and generate code from it",
+        ),
+        details: vec![
+            Part::Text(both(
+                "规范是 `spec/protocol.yaml` 和它旁边的文件。`fcproto generate` 由它生成 Rust、TypeScript、Python、Kotlin/Java 和 C++ 的包，\
+                 中英文文档，标准帧，以及供编辑器使用的 JSON Schema。`fc.yaml` 列出生成的目标和目录。",
+                "The spec is `spec/protocol.yaml` and the files next to it. `fcproto generate` makes packages for Rust, \
+                 TypeScript, Python, Kotlin/Java and C++ from it, documentation in Chinese and English, golden frames, and a \
+                 JSON Schema for editors. `fc.yaml` lists the targets and their directories.",
+            )),
+            Part::Text(both(
+                "`fcproto` 从当前目录向上查找项目：最近的含有 `fc.yaml` 或 `spec/protocol.yaml` 的目录。`--root` 直接指定项目。",
+                "`fcproto` looks for the project from the current directory upwards: the nearest directory with `fc.yaml` or \
+                 `spec/protocol.yaml`. `--root` names it directly.",
+            )),
+            Part::Examples(vec![
+                (
+                    "fcproto init lamp",
+                    both("创建一个项目", "Create a project"),
+                ),
+                ("fcproto check", both("检查规范", "Check the spec")),
+                (
+                    "fcproto explain FC0012",
+                    both("解释一个错误", "Explain an error"),
+                ),
+                (
+                    "fcproto fmt",
+                    both("排版规范文件", "Format the files of the spec"),
+                ),
+                (
+                    "fcproto new get_battery --group status",
+                    both(
+                        "新增一条指令，取下一个空闲的功能码",
+                        "Add a command with the next free code",
+                    ),
+                ),
+                (
+                    "fcproto diff git:main",
+                    both(
+                        "显示与 main 分支的差异",
+                        "Compare the working tree with a branch",
+                    ),
+                ),
+                (
+                    "fcproto generate",
+                    both("重新生成全部文件", "Generate all files"),
+                ),
+                (
+                    "fcproto generate --check",
+                    both(
+                        "有文件过期就报错，什么也不写",
+                        "Fail if a file is stale, and write nothing",
+                    ),
+                ),
+            ]),
+        ],
+        fails: both(
+            "规范有错误、文件过期或未排版，或变更不被接受",
+            "Errors in the spec, stale or unformatted files, or changes that are not accepted",
+        ),
+        speaks: "",
+    }
 }
 
 /// When to use colors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Color {
-    /// On a terminal, unless disabled by the environment
+    #[value(help = both("在终端上使用，除非环境变量禁用", "On a terminal, unless the environment disables them"))]
     Auto,
-    /// Everywhere
+    #[value(help = both("总是使用", "Always"))]
     Always,
-    /// Nowhere
+    #[value(help = both("从不使用", "Never"))]
     Never,
 }
 

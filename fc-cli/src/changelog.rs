@@ -3,32 +3,63 @@
 use fc_diff::{Version, section};
 use fc_spec::model::Model;
 
-use crate::lang::lang;
+use crate::help::{Help, Part};
+use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::versions::{Shelf, today};
 
-/// Print what has changed, for those who write apps and robots.
-///
-/// What breaks, what is new and what else programs notice, as a section of Markdown; texts and examples are counted only. Versions are
-/// named as for `fcproto diff`. With `--for` both are cut down to what that audience has, so that it reads of nothing else.
+/// Options of `fcproto changelog`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto changelog           what the next release brings
-  fcproto changelog 1.0 2.0 --lang zh
-  fcproto changelog --for product_app")]
 pub struct Options {
-    /// The old version [default: the last release]
-    #[arg(value_name = "OLD")]
+    #[arg(
+        value_name = "OLD",
+        help = both("旧版本 [默认：上一次发布]", "Old version [default: the last release]")
+    )]
     old: Option<String>,
-    /// The new version [default: this project]
-    #[arg(value_name = "NEW")]
+    #[arg(
+        value_name = "NEW",
+        help = both("新版本 [默认：本项目]", "New version [default: this project]")
+    )]
     new: Option<String>,
-    /// Only what this audience has, as the spec names it under `availability`.
-    #[arg(long = "for", value_name = "AUDIENCE")]
+    #[arg(
+        long = "for",
+        value_name = "AUDIENCE",
+        help = both("只含规范中这个受众的内容", "Include only the part of this audience of the spec")
+    )]
     audience: Option<String>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "输出两个版本之间的变更记录",
+            "Print the changelog between two versions",
+        ),
+        details: vec![
+            Part::Text(both(
+                "供编写 app 和机器人程序的人阅读。输出一节 Markdown：不兼容的变更、新增内容和程序能察觉的其他变更。文字和示例的变更只计数。",
+                "The changelog is for people who write apps and robots. It is a section of Markdown with changes that break \
+                 something, additions, and other changes that programs notice. Changes of texts and examples are only counted.",
+            )),
+            Part::Text(both(
+                "版本的写法与 `fcproto diff` 相同。`--for` 把两个版本都限于这个受众，受众写在规范的 `availability` 中。",
+                "Versions are named as for `fcproto diff`. `--for` limits both versions to an audience that the spec names under \
+                 `availability`.",
+            )),
+            Part::Examples(vec![
+                (
+                    "fcproto changelog",
+                    both("下一次发布的变更", "Changes of the next release"),
+                ),
+                ("fcproto changelog 1.0 2.0 --lang zh", ""),
+                ("fcproto changelog --for product_app", ""),
+            ]),
+        ],
+        fails: both("某个版本的规范有错误", "Errors in the spec of a version"),
+        speaks: both("全部", "All of it"),
+    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

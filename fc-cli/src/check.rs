@@ -8,82 +8,152 @@ use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::fix::{Done, fix_all};
 use fc_spec::syntax::Sources;
 
-use crate::lang::{counted, lang, said};
+use crate::help::{Help, Part};
+use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, in_repository};
 use crate::spec::{Spec, show_faults};
 
-/// Find all errors in the spec.
-///
-/// All errors in all files are reported in one run. Text goes to standard error, the other formats to
-/// standard output.
+/// Options of `fcproto check`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto check
-  fcproto check --format json | jq -r .message
-  fcproto check --format sarif > fc.sarif
-  fcproto check --fix --dry-run     show the fixes that leave no choice
-  fcproto check -q --deny warnings  for a hook: silent unless there is something to fix")]
-#[command(after_long_help = "\
-Examples:
-  fcproto check
-  fcproto check --format json | jq -r .message
-  fcproto check --format sarif > fc.sarif
-  fcproto check -q --deny warnings  for a hook: silent unless there is something to fix
-
-JSON:
-  Each line is one error or warning: code, severity (error or warning), title (of the code), message,
-  primary (a place), secondary (places), notes (texts), fixes (message, replacement, place).
-  A place has path, line, column, end_line, end_column (counted from 1, in characters, end
-  exclusive), start, end (in bytes) and label. Every key is always present.
-
-Fixes:
-  `--fix` makes those that leave no choice: characters typed with a Chinese keyboard, tabs, a missing space after a colon,
-  quotes where a value is a text, yes for true, a date with other signs, and a key or word with one wrong letter. Files are
-  written only if fewer faults are left.
-
-Paths:
-  In text and json they are relative to the project root, in sarif and github to the repository
-  that contains it ($GITHUB_WORKSPACE, or the nearest directory upwards with a .git); without one, to the
-  current directory.
-
-Warnings:
-  For example a text that `fcproto new` has left to be written. They change the exit status only with `--deny warnings`.")]
 pub struct Options {
-    /// Output format.
-    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
     format: Shown,
-    /// What ends with status 1 although it is not an error.
-    #[arg(long, value_name = "WHAT")]
+    #[arg(
+        long,
+        value_name = "WHAT",
+        help = both("有这些内容时也以 1 退出", "Also exit with 1 for these")
+    )]
     deny: Option<Denied>,
-    /// Make the fixes that leave no choice, and check what is left.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("做无需选择的修改，再检查", "Apply the fixes that leave no choice, then check")
+    )]
     fix: bool,
-    /// Show what `--fix` would change as a unified diff, and write nothing.
-    #[arg(long, requires = "fix")]
+    #[arg(
+        long,
+        requires = "fix",
+        help = both("以 diff 显示 --fix 的修改，什么也不写", "Show the changes of --fix as a diff and write nothing")
+    )]
     dry_run: bool,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("检查规范中的错误", "Check the spec for errors"),
+        details: vec![
+            Part::Text(both(
+                "一次报告所有文件中的所有错误。`text` 格式写到标准错误，其他格式写到标准输出。",
+                "One run reports all errors in all files. The format `text` goes to standard error, the others go to standard \
+                 output.",
+            )),
+            Part::Text(both(
+                "警告不改变退出码，除非有 `--deny warnings`。例如 `fcproto new` 留下的待写文字是警告。",
+                "Warnings do not change the exit status without `--deny warnings`. An example is a text that `fcproto new` has \
+                 left to be written.",
+            )),
+            Part::Text(both(
+                "`--fix` 替换中文标点、制表符、写成 `yes` 的 `true` 和分隔符不对的日期，补上冒号后的空格和文字的引号，改正键或词中错了的一个字母。\
+                 只有修改后错误减少才写文件。",
+                "`--fix` replaces punctuation of a Chinese keyboard, tabs, `yes` for `true`, and dates with other separators. It adds \
+                 missing spaces after colons and missing quotes around texts. It corrects one wrong letter in a key or word. It writes \
+                 files only if fewer errors are left.",
+            )),
+            Part::Text(both(
+                "`text` 和 `json` 中的路径从项目目录算起。`sarif` 和 `github` 中的路径从仓库算起：`$GITHUB_WORKSPACE`，\
+                 或向上最近的含有 `.git` 的目录；两者都没有时从当前目录算起。",
+                "Paths in `text` and `json` are relative to the project. Paths in `sarif` and `github` are relative to the \
+                 repository: `$GITHUB_WORKSPACE`, or the nearest directory upwards with a `.git`. Without either, they are \
+                 relative to the current directory.",
+            )),
+            Part::Text(both(
+                "`json` 每行是一个错误或警告，下面的键始终都有。位置的行列从 1 计，以字符为单位，不含末尾；`start` 和 `end` 以字节为单位。",
+                "In `json`, each line is an error or a warning. All keys below are always present. Lines and columns count from 1, \
+                 in characters, end exclusive. `start` and `end` are in bytes.",
+            )),
+            Part::Terms(
+                both("`json` 的键", "Keys of `json`"),
+                vec![
+                    ("code", both("错误码", "Code of the error")),
+                    (
+                        "severity",
+                        both("`error` 或 `warning`", "`error` or `warning`"),
+                    ),
+                    ("title", both("错误码的标题", "Title of the code")),
+                    ("message", both("错误信息", "Message")),
+                    (
+                        "primary",
+                        both(
+                            "主要位置：path、line、column、end_line、end_column、start、end、label",
+                            "Main place: path, line, column, end_line, end_column, start, end, label",
+                        ),
+                    ),
+                    (
+                        "secondary",
+                        both("其他位置的列表", "List of other places, in the same form"),
+                    ),
+                    ("notes", both("说明的列表", "List of notes")),
+                    (
+                        "fixes",
+                        both(
+                            "修改建议的列表，每项有 message、replacement、place",
+                            "List of suggested fixes, each with message, replacement, place",
+                        ),
+                    ),
+                ],
+            ),
+            Part::Examples(vec![
+                ("fcproto check", ""),
+                ("fcproto check --format json | jq -r .message", ""),
+                ("fcproto check --format sarif > fc.sarif", ""),
+                (
+                    "fcproto check --fix --dry-run",
+                    both("显示无需选择的修改", "Show the fixes that leave no choice"),
+                ),
+                (
+                    "fcproto check -q --deny warnings",
+                    both(
+                        "用于钩子：没有问题就不输出",
+                        "For a hook: silent if there is nothing to fix",
+                    ),
+                ),
+            ]),
+        ],
+        fails: both(
+            "规范有错误；有 `--deny warnings` 时也包括警告",
+            "Errors in the spec; with `--deny warnings` also warnings",
+        ),
+        speaks: both(
+            "所有格式中的错误和警告",
+            "Errors and warnings in every format",
+        ),
+    }
 }
 
 /// What `--deny` takes for errors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Denied {
-    /// Every warning
+    #[value(help = both("所有警告", "Every warning"))]
     Warnings,
 }
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Shown {
-    /// With excerpts from the spec, for people
+    #[value(help = both("带规范摘录，供人阅读", "With excerpts from the spec, for people"))]
     Text,
-    /// One JSON object per line
+    #[value(help = both("每行一个 JSON 对象", "One JSON object per line"))]
     Json,
-    /// A SARIF 2.1.0 log, for code hosts and editors
+    #[value(help = both("SARIF 2.1.0 日志，供代码托管平台和编辑器使用", "A SARIF 2.1.0 log, for code hosts and editors"))]
     Sarif,
-    /// Annotations of a GitHub pull request
+    #[value(help = both("GitHub 合并请求的注释", "Annotations of a GitHub pull request"))]
     Github,
 }
 

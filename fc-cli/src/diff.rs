@@ -3,86 +3,185 @@
 use clap::ValueEnum;
 use fc_diff::{Finding, render};
 
-use crate::lang::lang;
+use crate::help::{Help, Part};
+use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::in_repository;
 use crate::versions::{Shelf, day, today};
 
-/// Show what changed between two versions of the spec, and for whom it breaks.
-///
-/// A version is the directory of a project or of a spec, a file that `fcproto inspect` has printed, the number of a release, or
-/// git:REF for what git has of this project's spec. Each change is judged by a rule: whether old apps and new robots, or new apps and old robots,
-/// misunderstand each other, in which languages sources stop compiling, and whether programs behave differently. What no
-/// rule judges is listed as well, so that no changes means that the two say the same. `fcproto explain FC0731` explains a rule.
-///
-/// A change that breaks something on purpose is accepted by an entry under `waivers` in the spec, with the number that stands
-/// beside it here, a reason, who has accepted it, and until when. It is listed from then on, but does not count. A waiver that
-/// has expired, or that accepts nothing although the comparison is with the last release, is an error.
+/// Options of `fcproto diff`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto diff                     what has changed since the last release
-  fcproto diff git:main            what this working tree changes
-  fcproto diff git:v1 git:v2 --format markdown --lang zh
-  fcproto diff --fail-on breaking  for continuous integration: fails if old and new apps and robots
-                                   would misunderstand each other, and no waiver accepts it
-  fcproto diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'")]
-#[command(after_long_help = "\
-Examples:
-  fcproto diff                     what has changed since the last release
-  fcproto diff git:main            what this working tree changes
-  fcproto diff git:v1 git:v2 --format markdown --lang zh
-  fcproto diff --fail-on breaking  for continuous integration: fails if old and new apps and robots
-                                   would misunderstand each other, and no waiver accepts it
-  fcproto diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'
-
-JSON:
-  A list of objects: rule (its name), number (of the rule), subject, wire (old_app_new_robot and new_app_old_robot,
-  as a list), source (a list of languages), behaviour, silent (nothing fails, but a value is wrong),
-  message, fingerprint (the same for the same change, wherever it stands); waived (the waiver) where one accepts it.")]
 pub struct Options {
-    /// The old version [default: the last release]
-    #[arg(value_name = "OLD")]
+    #[arg(
+        value_name = "OLD",
+        help = both("旧版本 [默认：上一次发布]", "Old version [default: the last release]")
+    )]
     old: Option<String>,
-    /// The new version [default: this project]
-    #[arg(value_name = "NEW")]
+    #[arg(
+        value_name = "NEW",
+        help = both("新版本 [默认：本项目]", "New version [default: this project]")
+    )]
     new: Option<String>,
-    /// How to print the changes.
-    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
     format: Shown,
-    /// Exit with 1 if there is a change of this kind.
-    #[arg(long, value_name = "KINDS", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "KINDS",
+        value_delimiter = ',',
+        help = both("有这几类变更时以 1 退出", "Exit with 1 on changes of these kinds")
+    )]
     fail_on: Vec<Kind>,
-    /// Judge waivers as on this day [default: today]
-    #[arg(long, value_name = "DAY", value_parser = day)]
+    #[arg(
+        long,
+        value_name = "DAY",
+        value_parser = day,
+        help = both("按这一天判断豁免 [默认：今天]", "Judge waivers as of this day [default: today]")
+    )]
     today: Option<String>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "显示两个版本之间的变更及其影响",
+            "Show the changes between two versions and what they break",
+        ),
+        details: vec![
+            Part::Terms(
+                both("版本的写法", "How to name a version"),
+                vec![
+                    ("2026.12", both("发布的版本号", "Number of a release")),
+                    (
+                        "git:REF",
+                        both("git 中某个提交的规范", "Spec of a commit in git"),
+                    ),
+                    (
+                        "DIR",
+                        both("项目目录或规范目录", "Directory of a project or of a spec"),
+                    ),
+                    (
+                        "FILE",
+                        both("`fcproto inspect` 的输出", "Output of `fcproto inspect`"),
+                    ),
+                ],
+            ),
+            Part::Text(both(
+                "每个变更按一条规则判断：旧 app 与新机器人、新 app 与旧机器人能否正确通信，哪些语言的源码无法编译，程序行为是否改变。\
+                 没有规则的变更也会列出，因此没有输出变更就表示两个版本相同。`fcproto explain FC0731` 解释一条规则。",
+                "A rule judges each change. It states if old apps and new robots, or new apps and old robots, misunderstand each \
+                 other. It names the languages in which sources stop compiling, and states if programs behave differently. Changes without a rule are \
+                 listed, too, so an empty list means that the versions are equal. `fcproto explain FC0731` explains a rule.",
+            )),
+            Part::Text(both(
+                "要接受一个不兼容的变更，在规范的 `waivers` 中写一项：这里显示的 ID、理由、接受的人和期限。之后它仍会列出，但不再算作失败。\
+                 过期的豁免是错误。与上一次发布比较时，不再对应任何变更的豁免也是错误。",
+                "To accept a change that breaks something, add an entry under `waivers` in the spec: the ID shown here, a reason, \
+                 the person who accepts it, and a date. The change is still listed, but no longer counts. A waiver that has expired \
+                 is an error. In a comparison with the last release, so is a waiver that accepts nothing.",
+            )),
+            Part::Terms(
+                both("`json` 的键", "Keys of `json`"),
+                vec![
+                    ("rule", both("规则的名称", "Name of the rule")),
+                    ("number", both("规则的编号", "Number of the rule")),
+                    ("subject", both("变更的内容", "Changed part")),
+                    (
+                        "wire",
+                        both(
+                            "old_app_new_robot 和 new_app_old_robot 的列表",
+                            "List of old_app_new_robot and new_app_old_robot",
+                        ),
+                    ),
+                    ("source", both("语言的列表", "List of languages")),
+                    (
+                        "behaviour",
+                        both("程序行为是否改变", "True if programs behave differently"),
+                    ),
+                    (
+                        "silent",
+                        both(
+                            "是否不报错而值出错",
+                            "True if nothing fails, but a value is wrong",
+                        ),
+                    ),
+                    ("message", both("变更的说明", "Message")),
+                    (
+                        "fingerprint",
+                        both(
+                            "同一变更的值相同，与位置无关",
+                            "The same for the same change, wherever it is",
+                        ),
+                    ),
+                    (
+                        "waived",
+                        both(
+                            "接受它的豁免，没有则无此键",
+                            "Waiver that accepts it, if there is one",
+                        ),
+                    ),
+                ],
+            ),
+            Part::Examples(vec![
+                (
+                    "fcproto diff",
+                    both("自上一次发布以来的变更", "Changes since the last release"),
+                ),
+                (
+                    "fcproto diff git:main",
+                    both("工作区的变更", "Changes of the working tree"),
+                ),
+                ("fcproto diff git:v1 git:v2 --format markdown --lang zh", ""),
+                (
+                    "fcproto diff --fail-on breaking",
+                    both(
+                        "用于 CI：有未豁免的通信不兼容就失败",
+                        "For CI: fail if apps and robots misunderstand each other and no waiver accepts it",
+                    ),
+                ),
+                (
+                    "fcproto diff old.json new.json --format json | jq -r '.[] | select(.silent) | .message'",
+                    "",
+                ),
+            ]),
+        ],
+        fails: both(
+            "有 `--fail-on` 指定的未豁免变更，有无效的豁免，或某个版本的规范有错误",
+            "Changes of `--fail-on` without a waiver, invalid waivers, or errors in the spec of a version",
+        ),
+        speaks: both("所有格式中的变更", "Changes in every format"),
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Shown {
-    /// With the lines of both versions, for people
+    #[value(help = both("带两个版本的行，供人阅读", "With the lines of both versions, for people"))]
     Text,
-    /// One JSON document
+    #[value(help = both("一个 JSON 文档", "One JSON document"))]
     Json,
-    /// A table, for a pull request
+    #[value(help = both("表格，供合并请求使用", "A table, for a pull request"))]
     Markdown,
-    /// Annotations of a GitHub pull request
+    #[value(help = both("GitHub 合并请求的注释", "Annotations of a GitHub pull request"))]
     Github,
-    /// A SARIF 2.1.0 log, for code hosts and editors
+    #[value(help = both("SARIF 2.1.0 日志，供代码托管平台和编辑器使用", "A SARIF 2.1.0 log, for code hosts and editors"))]
     Sarif,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Kind {
-    /// Old and new apps and robots misunderstand each other
+    #[value(help = both("新旧 app 和机器人通信不兼容", "Old and new apps and robots misunderstand each other"))]
     Wire,
-    /// The same, but for new commands, which old robots do not know and nobody has used yet
+    #[value(help = both("同上，但不含新指令：旧机器人不认识，也还没有 app 使用", "The same without new commands, which no app uses yet"))]
     Breaking,
-    /// Sources stop compiling
+    #[value(help = both("源码无法编译", "Sources stop compiling"))]
     Source,
-    /// Programs behave differently
+    #[value(help = both("程序行为改变", "Programs behave differently"))]
     Behaviour,
 }
 

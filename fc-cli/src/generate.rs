@@ -10,7 +10,8 @@ use fc_codegen::surface::package::clashes;
 use fc_codegen::target::{FILE, part};
 use fc_spec::model::{Dump, Model};
 
-use crate::lang::{counted, said};
+use crate::help::{Help, Part};
+use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
@@ -21,55 +22,147 @@ use crate::{plugin, print, progress, watch};
 /// Paths that are named one by one.
 const NAMED: usize = 10;
 
-/// Write all generated files, or check that they are up to date.
-///
-/// A file is only overwritten or removed if `fc-manifest.json` says that the generator wrote it. Files
-/// that are up to date are not touched.
-///
-/// With `--for` the files hold only what that audience has, with `--as-of` what a release said. They go below `--out`, never into the project
-/// itself, whose own files hold what `fc.yaml` says of each target.
-///
-/// With `--watch` it goes on: it writes the files again whenever a file of the spec or `fc.yaml` changes, and shows faults.
+/// Options of `fcproto generate`.
 #[derive(Debug, Default, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto generate
-  fcproto generate --only rust,vectors
-  fcproto generate --for product_app --out ../product
-                              what the product app has, in a directory of its own
-  fcproto generate --as-of 2026.12 --out ../released
-                              what a release said
-  fcproto generate --watch    while you edit, until Ctrl-C
-  fcproto generate --check    for continuous integration: fails if a file is stale
-  fcproto inspect > model.json && fcproto generate --from model.json --root elsewhere
-                              the same files without the YAML")]
 pub struct Options {
-    /// Write nothing; show how stale files differ and exit with 1 if there are any.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("什么也不写；有文件过期就显示差异并以 1 退出", "Write nothing; show stale files and exit with 1 if any")
+    )]
     check: bool,
-    /// Do it again whenever a file of the spec or fc.yaml changes, until Ctrl-C.
-    #[arg(long, conflicts_with_all = ["check", "from", "as_of"])]
+    #[arg(
+        long,
+        conflicts_with_all = ["check", "from", "as_of"],
+        help = both("每次修改后重新生成，直到 Ctrl-C", "Generate again after each change, until Ctrl-C")
+    )]
     watch: bool,
-    /// Generate only these targets: names of `fc.yaml`, such as rust, markdown, vectors, typescript or schema.
-    #[arg(long, value_name = "TARGETS", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "TARGETS",
+        value_delimiter = ',',
+        help = both("只生成 fc.yaml 中的这些目标", "Generate only these targets of fc.yaml")
+    )]
     only: Vec<String>,
-    /// Generate only what this audience has, as the spec names it under `availability`.
-    #[arg(long = "for", value_name = "AUDIENCE", requires = "out")]
+    #[arg(
+        long = "for",
+        value_name = "AUDIENCE",
+        requires = "out",
+        help = both("只含规范中这个受众的内容", "Include only the part of this audience of the spec")
+    )]
     audience: Option<String>,
-    /// Put the files below this directory instead of the project's; it gets an `fc-manifest.json` of its own.
-    #[arg(long, value_name = "DIR")]
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = both("写到这个目录下，而不是项目中", "Write below this directory instead of the project")
+    )]
     out: Option<PathBuf>,
-    /// Generate from what `fcproto inspect` has printed, instead of from the YAML; `-` reads standard input.
-    #[arg(long, value_name = "FILE")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        help = both("读取 fcproto inspect 的输出，- 为标准输入", "Read output of fcproto inspect, - for standard input")
+    )]
     from: Option<PathBuf>,
-    /// Generate what this release said, such as 2026.12.
     #[arg(
         long,
         value_name = "RELEASE",
         requires = "out",
-        conflicts_with = "from"
+        conflicts_with = "from",
+        help = both("生成这次发布的内容，例如 2026.12", "Generate this release, such as 2026.12")
     )]
     as_of: Option<String>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "生成各语言的包、文档和标准帧",
+            "Generate packages, documentation and golden frames",
+        ),
+        details: vec![
+            Part::Terms(
+                both(
+                    "`fc.yaml` 可以列出的目标",
+                    "Targets that `fc.yaml` may list",
+                ),
+                vec![
+                    ("rust", both("Rust 包", "Rust package")),
+                    ("typescript", both("TypeScript 包", "TypeScript package")),
+                    ("python", both("Python 包", "Python package")),
+                    (
+                        "kotlin",
+                        both("Kotlin 和 Java 包", "Kotlin and Java package"),
+                    ),
+                    ("cpp", both("C++ 包", "C++ package")),
+                    (
+                        "markdown",
+                        both("中英文文档", "Documentation in Chinese and English"),
+                    ),
+                    ("vectors", both("标准帧", "Golden frames")),
+                    (
+                        "schema",
+                        both("规范语言的 JSON Schema", "JSON Schema of the spec language"),
+                    ),
+                ],
+            ),
+            Part::Text(both(
+                "带 `plugin` 的目标由另一个程序生成，名称自定。",
+                "A target with a `plugin` has any other name. Another program generates it.",
+            )),
+            Part::Text(both(
+                "只覆盖或删除 `fc-manifest.json` 中列出的文件，它们由生成器写出。没有变化的文件不会重写。",
+                "The generator overwrites or removes only files of `fc-manifest.json`, which it wrote itself. Files that are up to \
+                 date stay untouched.",
+            )),
+            Part::Text(both(
+                "`--for` 和 `--as-of` 生成规范的一部分或一次发布。它们须与 `--out` 一起用，`--out` 不能是项目目录，那里有自己的 `fc-manifest.json`。\
+                 受众写在规范的 `availability` 中。",
+                "`--for` and `--as-of` generate a part of the spec or a release. They need `--out`, which cannot be a project. The \
+                 directory gets its own `fc-manifest.json`. The spec names audiences under `availability`.",
+            )),
+            Part::Text(both(
+                "`--watch` 在规范文件或 `fc.yaml` 改变时重新生成，并显示错误。",
+                "`--watch` generates again when a file of the spec or `fc.yaml` changes, and shows errors.",
+            )),
+            Part::Examples(vec![
+                ("fcproto generate", ""),
+                ("fcproto generate --only rust,vectors", ""),
+                (
+                    "fcproto generate --watch",
+                    both("编辑时持续运行", "Run while you edit"),
+                ),
+                (
+                    "fcproto generate --check",
+                    both(
+                        "用于 CI：有文件过期就失败",
+                        "For CI: fail if a file is stale",
+                    ),
+                ),
+                (
+                    "fcproto generate --for product_app --out ../product",
+                    both(
+                        "生成产品 app 的部分",
+                        "Generate the part of the product app",
+                    ),
+                ),
+                (
+                    "fcproto generate --as-of 2026.12 --out ../released",
+                    both("生成一次发布", "Generate a release"),
+                ),
+                (
+                    "fcproto inspect > model.json && fcproto generate --from model.json --root elsewhere",
+                    both(
+                        "没有 YAML 时生成同样的文件",
+                        "Generate the same files without the YAML",
+                    ),
+                ),
+            ]),
+        ],
+        fails: both(
+            "规范有错误；有 `--check` 时也包括过期的文件",
+            "Errors in the spec; with `--check` also stale files",
+        ),
+        speaks: "",
+    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -3,28 +3,56 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::{generate, print};
 
-/// Begin a project: a small protocol with its robot, its app and a test in which they talk.
-///
-/// The spec, the example programs and the manifest are yours from the start; what follows from the spec is
-/// generated at once. `fc.yaml` says what is made, and where.
+/// Options of `fcproto init`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto init lamp
-  cd lamp && cargo test")]
 pub struct Options {
-    /// Where it is to be; made if it is not there, and empty if it is.
-    #[arg(value_name = "DIR")]
+    #[arg(
+        value_name = "DIR",
+        help = both("要创建的目录；已存在时须为空", "Directory to create; if it exists, it must be empty")
+    )]
     directory: PathBuf,
-    /// Checkout of the repository with `fc-runtime` and `fc-derive` [default: the one that this program was built
-    /// from; without one, the crates of this version].
-    #[arg(long, value_name = "DIR")]
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = both("含有 fc-runtime 和 fc-derive 的源码目录", "Checkout with fc-runtime and fc-derive")
+    )]
     runtime: Option<PathBuf>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "创建一个可以运行的示例项目",
+            "Create a working example project",
+        ),
+        details: vec![
+            Part::Text(both(
+                "项目包含一个小协议、使用它的机器人和 app，以及让两者通信的测试。这些文件由你修改，其余内容由规范生成。`fc.yaml` 列出生成的目标和目录。",
+                "The project has a small protocol, a robot and an app that use it, and a test in which they talk. You edit these \
+                 files. Everything else is generated from the spec. `fc.yaml` lists the targets and their directories.",
+            )),
+            Part::Text(both(
+                "没有 `--runtime` 时，项目依赖构建本程序的那份源码。那份源码不在时，依赖同一版本的已发布 crate。",
+                "Without `--runtime`, the project depends on the checkout that this program was built from. If that is gone, it \
+                 depends on the published crates of this version.",
+            )),
+            Part::Examples(vec![
+                ("fcproto init lamp", ""),
+                (
+                    "cd lamp && cargo test",
+                    both("让机器人和 app 通信", "Let the robot and the app talk"),
+                ),
+            ]),
+        ],
+        fails: "",
+        speaks: "",
+    }
 }
 
 /// Files of the project, and what is in them.

@@ -1,5 +1,6 @@
 //! In which language the command speaks.
 
+use std::ffi::OsString;
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
@@ -8,19 +9,10 @@ use fc_spec::model::{Lang, Text};
 /// A language that the command speaks.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Language {
-    /// Chinese
+    #[value(help = both("中文", "Chinese"))]
     Zh,
-    /// English
+    #[value(help = both("英文", "English"))]
     En,
-}
-
-impl From<Language> for Lang {
-    fn from(language: Language) -> Self {
-        match language {
-            Language::Zh => Self::Zh,
-            Language::En => Self::En,
-        }
-    }
 }
 
 /// The language of this run.
@@ -29,11 +21,34 @@ static SPOKEN: OnceLock<Lang> = OnceLock::new();
 /// Where the language stands if no option names one, the first that is set and not empty; so does POSIX have it.
 const VARIABLES: [&str; 3] = ["LC_ALL", "LC_MESSAGES", "LANG"];
 
-/// Settles the language of this run: what the command line says, or else the environment.
-pub fn speak(language: Option<Language>) {
-    let lang = language.map_or_else(of_environment, Lang::from);
-    // A run has one command line, so that this is the first time.
-    let _ = SPOKEN.set(lang);
+/// Settles the language of this run: `--lang` on the command line, or else the environment.
+///
+/// The words are read before the command line is parsed: help and usage errors are in this language, too.
+pub fn speak(words: impl IntoIterator<Item = OsString>) {
+    // A run has one command line, so this is the first call.
+    let _ = SPOKEN.set(asked(words).unwrap_or_else(of_environment));
+}
+
+/// The language that `--lang` names, if it names one.
+fn asked(words: impl IntoIterator<Item = OsString>) -> Option<Lang> {
+    let words = words
+        .into_iter()
+        .map(|word| word.to_string_lossy().into_owned());
+    let mut words = words.take_while(|word| word != "--");
+    while let Some(word) = words.next() {
+        let value = match word.strip_prefix("--lang") {
+            Some("") => words.next()?,
+            Some(rest) => rest.strip_prefix('=').unwrap_or_default().to_owned(),
+            None => continue,
+        };
+        match value.as_str() {
+            "zh" => return Some(Lang::Zh),
+            "en" => return Some(Lang::En),
+            // The parser reports a wrong value.
+            _ => {}
+        }
+    }
+    None
 }
 
 fn of_environment() -> Lang {
@@ -50,6 +65,11 @@ fn of_environment() -> Lang {
 /// The language of this run.
 pub fn lang() -> Lang {
     *SPOKEN.get_or_init(of_environment)
+}
+
+/// A fixed text in the language of this run.
+pub fn both(zh: &'static str, en: &'static str) -> &'static str {
+    lang().pick(zh, en)
 }
 
 /// A text in the language of this run.

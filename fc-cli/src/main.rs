@@ -11,6 +11,7 @@ mod explain;
 mod fmt;
 mod generate;
 mod git;
+mod help;
 mod init;
 mod inspect;
 mod lang;
@@ -42,10 +43,13 @@ use args::{Args, Command};
 use outcome::{Failure, Status};
 
 fn main() -> ExitCode {
-    let args = Args::parse();
+    lang::speak(std::env::args_os().skip(1));
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return help::usage::told(error),
+    };
     args.color.apply();
     print::quiet(args.quiet);
-    lang::speak(args.lang);
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
             // The reader of the output is gone; there is nobody to tell.
@@ -82,5 +86,6 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Git(options) => git::run(&args.place, options),
         Command::GitDiff(options) => git::diff::run(&args.place, options),
         Command::Schema(options) => schema::run(options),
+        Command::HelpPage(_) => help::page(),
     }
 }

@@ -4,43 +4,81 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::model::Kind;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
 use crate::spec::Spec;
 
-/// Add a command, report or stream to the file of its group.
-///
-/// It gets the next free code, a stream that of the command that starts it, and is added after the last of its kind. The result is valid; what you
-/// have to fill in is marked. The spec is only changed if it has no errors before and after.
+/// Options of `fcproto new`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto new get_battery --group status
-  fcproto new battery_low --group status --report
-  fcproto new battery_curve --group status --stream --started-by get_battery
-  fcproto new set_volume --group settings --code 0x0A20")]
 pub struct Options {
-    /// Its name in `snake_case`, such as `get_battery`.
-    #[arg(value_name = "NAME")]
+    #[arg(
+        value_name = "NAME",
+        help = both("snake_case 名称，例如 get_battery", "Name in snake_case, such as get_battery")
+    )]
     name: String,
-    /// Id of the group it belongs to.
-    #[arg(long, value_name = "GROUP")]
+    #[arg(
+        long,
+        value_name = "GROUP",
+        help = both("所属分组的 ID", "ID of the group to add it to")
+    )]
     group: String,
-    /// Add a report of the robot instead of a command of the app.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("新增上报，而不是指令", "Add a report instead of a command")
+    )]
     report: bool,
-    /// Add a stream on the data port instead; without --started-by and --code it has no code yet.
-    #[arg(long, conflicts_with = "report")]
+    #[arg(
+        long,
+        conflicts_with = "report",
+        help = both("新增数据端口上的流，而不是指令", "Add a stream on the data port instead of a command")
+    )]
     stream: bool,
-    /// The command that starts the stream, and whose code it shares.
-    #[arg(long, value_name = "COMMAND", requires = "stream")]
+    #[arg(
+        long,
+        value_name = "COMMAND",
+        requires = "stream",
+        help = both("启动流的指令，流与它共用功能码", "Command that starts the stream and shares its code")
+    )]
     started_by: Option<String>,
-    /// Its code, such as 0x0A20 [default: the next free one].
-    #[arg(long, value_name = "CODE", value_parser = code)]
+    #[arg(
+        long,
+        value_name = "CODE",
+        value_parser = code,
+        help = both("功能码，例如 0x0A20 [默认：下一个空闲的]", "Code, such as 0x0A20 [default: the next free one]")
+    )]
     code: Option<u16>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("新增指令、上报或流", "Add a command, report or stream"),
+        details: vec![
+            Part::Text(both(
+                "新内容写入分组的文件，放在同类的最后一项之后。结果没有错误，需要你填写的地方有标记。规范在前后都没有错误时才会修改。",
+                "The new operation goes into the file of its group, after the last one of its kind. The result has no errors, and \
+                 marks show where you have to write. The spec changes only if it has no errors before and after.",
+            )),
+            Part::Text(both(
+                "没有 `--started-by` 和 `--code` 的流暂时没有功能码。",
+                "A stream without `--started-by` and `--code` has no code yet.",
+            )),
+            Part::Examples(vec![
+                ("fcproto new get_battery --group status", ""),
+                ("fcproto new battery_low --group status --report", ""),
+                (
+                    "fcproto new battery_curve --group status --stream --started-by get_battery",
+                    "",
+                ),
+                ("fcproto new set_volume --group settings --code 0x0A20", ""),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: "",
+    }
 }
 
 /// A code as the spec writes it, or in decimal.
@@ -49,7 +87,12 @@ pub fn code(text: &str) -> Result<u16, String> {
         Some(digits) => u16::from_str_radix(digits, 16),
         None => text.parse(),
     };
-    number.map_err(|_| "a code is a number from 0x0000 to 0xFFFF".to_owned())
+    number.map_err(|_| {
+        said!(
+            "功能码应为 0x0000 至 0xFFFF 的数",
+            "a code is a number from 0x0000 to 0xFFFF"
+        )
+    })
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

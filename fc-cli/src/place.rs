@@ -2,16 +2,26 @@
 
 use std::path::PathBuf;
 
-/// Heading of the options that every command has.
-pub const GLOBAL: &str = "Global options";
+use crate::help::global;
+use crate::lang::both;
 
 /// Where the project and its spec are.
 #[derive(Debug, clap::Args)]
 pub struct Place {
-    /// Project directory [default: the current or nearest parent directory with fc.yaml or SPEC/protocol.yaml]
-    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
+    #[arg(
+        long,
+        value_name = "DIR",
+        global = true,
+        help_heading = global(),
+        help = both("项目目录 [默认：向上最近的项目]", "Project directory [default: the nearest one upwards]")
+    )]
     pub root: Option<PathBuf>,
-    /// Spec directory, relative to the root [default: what fc.yaml says, or spec]
-    #[arg(long, value_name = "DIR", global = true, help_heading = GLOBAL)]
+    #[arg(
+        long,
+        value_name = "DIR",
+        global = true,
+        help_heading = global(),
+        help = both("规范目录 [默认：fc.yaml 指定的，或 spec]", "Spec directory [default: set in fc.yaml, else spec]")
+    )]
     pub spec: Option<PathBuf>,
 }

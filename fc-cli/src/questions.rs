@@ -4,74 +4,124 @@ use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
 use fc_spec::model::{AnswerKind, Question, Text};
 
-use crate::lang::{lang, said};
+use crate::help::{Help, Part};
+use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
 
-/// List what the owner of the protocol has still to say.
-///
-/// Every question of the spec, everything that the source document has lost and every inference, the most pressing
-/// first. With the id of one, the lines to edit as well.
+/// Options of `fcproto questions`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto questions                         what is open, by what it holds up
-  fcproto questions C040                    one of them, with the lines to edit
-  fcproto questions --group task --lang zh  those of one group, in Chinese
-  fcproto questions --format csv --lang zh > questions.csv
-                                            a sheet for the owner; `fcproto settle --from` reads it")]
 pub struct Options {
-    /// Ids of questions or conflicts [default: all]
-    #[arg(value_name = "ID")]
+    #[arg(
+        value_name = "ID",
+        help = both("问题或冲突的 ID [默认：全部]", "IDs of questions or conflicts [default: all]")
+    )]
     ids: Vec<String>,
-    /// By what they are gathered.
-    #[arg(long, value_name = "ORDER", default_value = "impact")]
+    #[arg(
+        long,
+        value_name = "ORDER",
+        default_value = "impact",
+        help = both("排列方式", "Order")
+    )]
     by: Order,
-    /// Which of them.
-    #[arg(long, value_name = "STATE", value_enum, default_value_t = State::Open)]
+    #[arg(
+        long,
+        value_name = "STATE",
+        value_enum,
+        default_value_t = State::Open,
+        help = both("只列这种状态的问题", "List questions in this state")
+    )]
     state: State,
-    /// Only those of the group with this id.
-    #[arg(long, value_name = "GROUP")]
+    #[arg(
+        long,
+        value_name = "GROUP",
+        help = both("只列这个分组的问题，写 ID", "List questions of the group with this ID")
+    )]
     group: Option<String>,
-    /// Also what the spec has decided, for the owner to confirm.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("也列出规范已定、待负责人确认的内容", "Include decisions for the owner to confirm")
+    )]
     decisions: bool,
-    /// How to print them.
-    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
     format: Shown,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "列出待协议负责人答复的问题",
+            "List open questions for the protocol owner",
+        ),
+        details: vec![
+            Part::Text(both(
+                "包括规范中的问题、源文档缺失的内容和推断，最紧急的在前。给出 ID 时，还显示要修改的行。",
+                "The list has the questions of the spec, the losses of the source document and the inferences, most urgent first. \
+                 With IDs, it also shows the lines to edit.",
+            )),
+            Part::Examples(vec![
+                ("fcproto questions", ""),
+                (
+                    "fcproto questions C040",
+                    both(
+                        "一个问题，连同要修改的行",
+                        "One question with the lines to edit",
+                    ),
+                ),
+                ("fcproto questions --group task --lang zh", ""),
+                (
+                    "fcproto questions --format csv --lang zh > questions.csv",
+                    both(
+                        "给负责人填写的表格，由 `fcproto settle --from` 读入",
+                        "A sheet for the owner, which `fcproto settle --from` reads",
+                    ),
+                ),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: both(
+            "除 `json` 外的格式；`json` 含两种语言",
+            "Every format except `json`, which has both languages",
+        ),
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Order {
-    /// What they hold up
+    #[value(help = both("按受阻的内容", "By the work that waits for the answer"))]
     Impact,
-    /// The group of operations they belong to
+    #[value(help = both("按接口的分组", "By group of operations"))]
     Group,
-    /// Open ones first
+    #[value(help = both("未答复的在前", "Open ones first"))]
     State,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum State {
-    /// Waiting for the owner
+    #[value(help = both("等待负责人答复", "Waiting for the owner"))]
     Open,
-    /// Settled by the owner
+    #[value(help = both("负责人已答复", "Settled by the owner"))]
     Confirmed,
-    /// Both
+    #[value(help = both("两者", "Both"))]
     All,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Shown {
-    /// For reading on a terminal
+    #[value(help = both("在终端上阅读", "For reading on a terminal"))]
     Text,
-    /// One JSON document
+    #[value(help = both("一个 JSON 文档，含两种语言", "One JSON document in both languages"))]
     Json,
-    /// A page to send to the owner
+    #[value(help = both("发给负责人的页面", "A page to send to the owner"))]
     Markdown,
-    /// A sheet for the owner to fill in
+    #[value(help = both("给负责人填写的表格", "A sheet for the owner to fill in"))]
     Csv,
 }
 

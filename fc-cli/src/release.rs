@@ -5,13 +5,14 @@ use std::path::Path;
 
 use fc_codegen::inspect::frozen;
 use fc_codegen::output::replace_spec_file;
-use fc_diff::release::{DIRECTORY, Number, Objection, file, goes_back, objections};
+use fc_diff::release::{DIRECTORY, NoNumber, Number, Objection, file, goes_back, objections};
 use fc_diff::{Finding, Lang, first_section, is_ours, section, with_section};
 use fc_spec::model::{Model, Text};
 use fc_spec::revision::{renumbered, without_waiver};
 use fc_spec::syntax::Sources;
 
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -19,32 +20,80 @@ use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::{Shelf, day, today};
 
-/// Freeze the spec under a number, and write the changelog.
-///
-/// The spec gets the number as its version. What it says is frozen under `releases/` beside it, as a dump like that of `fcproto inspect`, and what
-/// has changed since the last release becomes a section of the changelogs there, in Chinese and in English. `fcproto diff` compares with the last
-/// release from then on, and `fcproto generate --as-of` makes the files of any. Waivers have served by then, and are taken out: their reasons
-/// are in the changelogs.
-///
-/// The number has to move far enough for what has changed. By the calendar (2026.12) any later one does, but each change that
-/// breaks messages has to be accepted by a waiver. Otherwise (2.1.0) the first part rises where messages break, the second one where
-/// programs have something new to know, and the third one for texts.
+/// Options of `fcproto release`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto release 2026.12 --dry-run
-                              whether that can be released, and what the changelogs will say
-  fcproto release 2026.12 && fcproto generate")]
 pub struct Options {
-    /// Its number, such as 2026.12 or 2.1.0.
-    #[arg(value_name = "NUMBER")]
+    #[arg(
+        value_name = "NUMBER",
+        value_parser = number,
+        help = both("版本号，例如 2026.12 或 2.1.0", "Release number, such as 2026.12 or 2.1.0")
+    )]
     number: Number,
-    /// Show what would be written and write nothing.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("显示修改，什么也不写", "Show the changes and write nothing")
+    )]
     dry_run: bool,
-    /// Release as on this day [default: today]
-    #[arg(long, value_name = "DAY", value_parser = day)]
+    #[arg(
+        long,
+        value_name = "DAY",
+        value_parser = day,
+        help = both("发布日期 [默认：今天]", "Date of the release [default: today]")
+    )]
     today: Option<String>,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("以一个版本号发布规范", "Release the spec under a number"),
+        details: vec![
+            Part::Text(both(
+                "版本号写入规范的 `version`。规范的内容冻结在它旁边的 `releases/` 中，格式同 `fcproto inspect`；\
+                 自上一次发布以来的变更成为其中中英文变更记录的一节。此后 `fcproto diff` 与这次发布比较，`fcproto generate --as-of` 生成任一次发布。",
+                "The number becomes the `version` of the spec. The spec is frozen under `releases/` next to it, in the format of \
+                 `fcproto inspect`. The changes since the last release become a section of the changelogs there, in Chinese and \
+                 English. From then on, `fcproto diff` compares with this release, and `fcproto generate --as-of` generates any \
+                 release.",
+            )),
+            Part::Text(both(
+                "发布会删除 `fcproto diff` 的豁免，它们的理由留在变更记录中。",
+                "A release removes the waivers of `fcproto diff`. Their reasons are in the changelogs.",
+            )),
+            Part::Text(both(
+                "版本号须与变更相称。日期式版本号（2026.12）只须更大，但每个通信不兼容的变更都要有豁免。其他版本号（2.1.0）：\
+                 通信不兼容时第一位增加，程序要知道新内容时第二位增加，只改文字时第三位增加。第一位为 0 时，通信不兼容也只须第二位增加。",
+                "The number has to fit the changes. A number by the calendar (2026.12) only has to be later, but each change that \
+                 breaks messages needs a waiver. In other numbers (2.1.0), the first part rises if messages break, the second part \
+                 if programs have something new to know, and the third part for texts. While the first part is 0, the second part \
+                 rises if messages break.",
+            )),
+            Part::Examples(vec![
+                (
+                    "fcproto release 2026.12 --dry-run",
+                    both(
+                        "显示能否发布，以及变更记录的内容",
+                        "Show if the release is possible, and its changelogs",
+                    ),
+                ),
+                ("fcproto release 2026.12 && fcproto generate", ""),
+            ]),
+        ],
+        fails: both(
+            "规范有错误，或版本号与变更不相称",
+            "Errors in the spec, or a number that does not fit the changes",
+        ),
+        speaks: "",
+    }
+}
+
+/// The number of a release on the command line.
+fn number(text: &str) -> Result<Number, String> {
+    text.parse().map_err(|error: NoNumber| {
+        said!(
+            "版本号应为几个用点隔开的数，例如 2026.12 或 2.1.0",
+            "{error}"
+        )
+    })
 }
 
 /// A language and the file with its changelog.

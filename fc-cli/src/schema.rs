@@ -2,30 +2,50 @@
 
 use clap::ValueEnum;
 
+use crate::help::{Help, Part};
+use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Print the JSON Schema of the spec language, or of what `fcproto inspect` prints.
-///
-/// Editors with a YAML language server use that of the language to complete and check spec files; `fcproto generate`
-/// also writes it next to the spec. That of the dump is for plugins and other programs.
+/// Options of `fcproto schema`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto schema
-  fcproto schema dump > dump.schema.json")]
 pub struct Options {
-    /// What it describes.
-    #[arg(value_name = "WHAT", default_value = "spec")]
+    #[arg(
+        value_name = "WHAT",
+        default_value = "spec",
+        help = both("描述的对象", "Schema to print")
+    )]
     of: Of,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "输出规范语言的 JSON Schema",
+            "Print the JSON Schema of the spec language",
+        ),
+        details: vec![
+            Part::Text(both(
+                "编辑器的 YAML 语言服务器用它补全和检查规范文件；`fcproto generate` 也把它写到规范旁边。`dump` 的 Schema 供插件和其他程序使用。",
+                "YAML language servers of editors complete and check spec files with it. `fcproto generate` also writes it next to the \
+                 spec. The schema of `dump` is for plugins and other programs.",
+            )),
+            Part::Examples(vec![
+                ("fcproto schema", ""),
+                ("fcproto schema dump > dump.schema.json", ""),
+            ]),
+        ],
+        fails: "",
+        speaks: "",
+    }
 }
 
 /// What a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Of {
-    /// The spec language
+    #[value(help = both("规范语言", "The spec language"))]
     Spec,
-    /// What `fcproto inspect` prints
+    #[value(help = both("`fcproto inspect` 的输出", "The output of `fcproto inspect`"))]
     Dump,
 }
 

@@ -7,76 +7,168 @@ use fc_codegen::questions::read;
 use fc_spec::load::{Said, settle};
 use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 
-use crate::lang::{counted, in_lang, said};
+use crate::help::{Help, Part};
+use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
 use crate::spec::Spec;
 
-/// Write down what the owner of the protocol has answered.
-///
-/// Changes the facts that the question is about, says who confirmed them and when, and leaves everything else in the
-/// files as it is, to the byte. The spec is only changed if it has no errors before and after.
+/// Options of `fcproto settle`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto settle C012 --code 0x1234 --by 张伟
-  fcproto settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'
-  fcproto settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟
-  fcproto settle get_battery.response --response body.yaml --by 张伟
-  fcproto settle battery_low.code --confirm --by 张伟
-                              the inference is right as it is
-  fcproto settle --from answers.csv
-                              a sheet of `fcproto questions --format csv`, filled in")]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["id", "from"])))]
 #[command(group(clap::ArgGroup::new("said").multiple(true)))]
 pub struct Options {
-    /// Id of the question, or of a conflict that has one.
-    #[arg(value_name = "ID")]
+    #[arg(
+        value_name = "ID",
+        help = both("问题的 ID，或含有问题的冲突的 ID", "ID of a question, or of a conflict that has one")
+    )]
     id: Option<String>,
-    /// The code, such as 0x1234.
-    #[arg(long, value_name = "CODE", group = "said")]
+    #[arg(
+        long,
+        value_name = "CODE",
+        group = "said",
+        help = both("功能码，例如 0x1234", "Code, such as 0x1234")
+    )]
     code: Option<String>,
-    /// What it does to the robot: read, config or motion.
-    #[arg(long, value_name = "EFFECT", group = "said")]
+    #[arg(
+        long,
+        value_name = "EFFECT",
+        group = "said",
+        help = both("对机器人的影响：read、config 或 motion", "Effect on the robot: read, config or motion")
+    )]
     effect: Option<String>,
-    /// The unit, such as `s`.
-    #[arg(long, value_name = "UNIT", group = "said")]
+    #[arg(
+        long,
+        value_name = "UNIT",
+        group = "said",
+        help = both("单位，例如 s", "Unit, such as s")
+    )]
     unit: Option<String>,
-    /// The type, such as `timestamp_ms`.
-    #[arg(long = "type", value_name = "TYPE", group = "said")]
+    #[arg(
+        long = "type",
+        value_name = "TYPE",
+        group = "said",
+        help = both("类型，例如 timestamp_ms", "Type, such as timestamp_ms")
+    )]
     ty: Option<String>,
-    /// A file with the keys of the request, as YAML; `-` for standard input.
-    #[arg(long, value_name = "FILE", group = "said")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        group = "said",
+        help = both("含请求各键的 YAML 文件，- 为标准输入", "YAML file with the keys of the request, - for standard input")
+    )]
     request: Option<PathBuf>,
-    /// A file with the keys of the response, as YAML; `-` for standard input.
-    #[arg(long, value_name = "FILE", group = "said")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        group = "said",
+        help = both("含响应各键的 YAML 文件，- 为标准输入", "YAML file with the keys of the response, - for standard input")
+    )]
     response: Option<PathBuf>,
-    /// Anything else that the question is about, by its path or the end of it.
-    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, group = "said")]
+    #[arg(
+        long,
+        value_name = "PATH=VALUE",
+        value_parser = assignment,
+        group = "said",
+        help = both("问题涉及的其他值，写路径或路径的末尾", "Another value of the question, by its path or the end of it")
+    )]
     set: Vec<(String, String)>,
-    /// It is right as it is: an inference, a decision, a behaviour.
-    #[arg(long, group = "said")]
+    #[arg(
+        long,
+        group = "said",
+        help = both("确认规范现有的内容", "Confirm the present contents of the spec")
+    )]
     confirm: bool,
-    /// Who answered.
-    #[arg(long, value_name = "NAME", required_unless_present = "from")]
+    #[arg(
+        long,
+        value_name = "NAME",
+        required_unless_present = "from",
+        help = both("答复的人", "Person who answered")
+    )]
     by: Option<String>,
-    /// When [default: today]
-    #[arg(long, value_name = "YYYY-MM-DD")]
+    #[arg(
+        long,
+        value_name = "YYYY-MM-DD",
+        help = both("答复的日期 [默认：今天]", "Date of the answer [default: today]")
+    )]
     date: Option<String>,
-    /// Where it can be looked up, such as a mail or a ticket.
-    #[arg(long, value_name = "TEXT")]
+    #[arg(
+        long,
+        value_name = "TEXT",
+        help = both("答复的出处，例如邮件或工单", "Source of the answer, such as a mail or a ticket")
+    )]
     reference: Option<String>,
-    /// The answer in the owner's own words.
-    #[arg(long, value_name = "TEXT", group = "said")]
+    #[arg(
+        long,
+        value_name = "TEXT",
+        group = "said",
+        help = both("负责人的原话", "Answer in the owner's words")
+    )]
     reply: Option<String>,
-    /// Settle all questions that are answered in this sheet; none if one of them cannot be.
-    #[arg(long, value_name = "FILE", conflicts_with = "said")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "said",
+        help = both("读取表格中的全部答复", "Read all answers of a sheet")
+    )]
     from: Option<PathBuf>,
-    /// Show what would change and write nothing.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("显示修改，什么也不写", "Show the changes and write nothing")
+    )]
     dry_run: bool,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "记录协议负责人的答复",
+            "Record an answer of the protocol owner",
+        ),
+        details: vec![
+            Part::Text(both(
+                "修改问题涉及的内容，写明由谁在何时确认，文件的其余部分逐字节不变。规范在前后都没有错误时才会修改。",
+                "The command changes the facts of the question and adds the person and the date. Everything else in the files stays \
+                 the same to the byte. The spec changes only if it has no errors before and after.",
+            )),
+            Part::Text(both(
+                "`--confirm` 用于推断、决定和行为：它们现有的内容正确。",
+                "`--confirm` is for inferences, decisions and behaviours that are right already.",
+            )),
+            Part::Text(both(
+                "`--from` 读入填好的 `fcproto questions --format csv` 表格。其中有一个答复不能写入，就一个也不写。",
+                "`--from` reads a sheet of `fcproto questions --format csv` that has been filled in. If one answer cannot be \
+                 written, none is.",
+            )),
+            Part::Examples(vec![
+                ("fcproto settle C012 --code 0x1234 --by 张伟", ""),
+                (
+                    "fcproto settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'",
+                    "",
+                ),
+                (
+                    "fcproto settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟",
+                    "",
+                ),
+                (
+                    "fcproto settle get_battery.response --response body.yaml --by 张伟",
+                    "",
+                ),
+                (
+                    "fcproto settle battery_low.code --confirm --by 张伟",
+                    both("推断正确", "The inference is right"),
+                ),
+                (
+                    "fcproto settle --from answers.csv",
+                    both("填好的表格", "A sheet that has been filled in"),
+                ),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: "",
+    }
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -84,7 +176,10 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         Some((path, value)) if !path.is_empty() && !value.is_empty() => {
             Ok((path.to_owned(), value.to_owned()))
         }
-        _ => Err("write it as PATH=VALUE, such as `x.unit=m`".to_owned()),
+        _ => Err(said!(
+            "应写作 PATH=VALUE，例如 `x.unit=m`",
+            "write it as PATH=VALUE, such as `x.unit=m`"
+        )),
     }
 }
 

@@ -2,35 +2,72 @@
 
 use std::path::PathBuf;
 
-use clap::{Command, CommandFactory as _};
+use clap::Command;
 use clap_complete::Shell;
 
-use crate::args::Args;
-use crate::lang::{counted, said};
+use crate::help::{Help, Part, described};
+use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Print a script that completes this command line in a shell.
+/// Options of `fcproto completions`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto
-  fcproto completions zsh > ~/.zfunc/_fcproto     with ~/.zfunc in $fpath
-  fcproto completions fish > ~/.config/fish/completions/fcproto.fish")]
 pub struct Completions {
-    /// Which shell.
+    #[arg(help = both("使用补全的 shell", "Shell that completes"))]
     shell: Shell,
 }
 
-/// Write the manual pages, one of `fcproto` and one of each command.
+pub fn completions_help() -> Help {
+    Help {
+        summary: both(
+            "输出 shell 的补全脚本",
+            "Print a completion script for a shell",
+        ),
+        details: vec![Part::Examples(vec![
+            (
+                "fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto",
+                "",
+            ),
+            (
+                "fcproto completions zsh > ~/.zfunc/_fcproto",
+                both(
+                    "`~/.zfunc` 须在 `$fpath` 中",
+                    "`~/.zfunc` has to be in `$fpath`",
+                ),
+            ),
+            (
+                "fcproto completions fish > ~/.config/fish/completions/fcproto.fish",
+                "",
+            ),
+        ])],
+        fails: "",
+        speaks: both("命令和选项的说明", "Descriptions of commands and options"),
+    }
+}
+
+/// Options of `fcproto man`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto man ~/.local/share/man/man1 && man fcproto-generate")]
 pub struct Man {
-    /// Where to; it is made if it is not there.
-    #[arg(value_name = "DIR")]
+    #[arg(
+        value_name = "DIR",
+        help = both("写入的目录，没有则创建", "Directory to write to; created if missing")
+    )]
     directory: PathBuf,
+}
+
+pub fn man_help() -> Help {
+    Help {
+        summary: both(
+            "写出手册页，每条命令一页",
+            "Write manual pages, one for each command",
+        ),
+        details: vec![Part::Examples(vec![(
+            "fcproto man ~/.local/share/man/man1 && man fcproto-generate",
+            "",
+        )])],
+        fails: "",
+        speaks: both("命令和选项的说明", "Descriptions of commands and options"),
+    }
 }
 
 pub fn completions(options: &Completions) -> Result<Status, Failure> {
@@ -69,5 +106,5 @@ fn pages(command: &Command) -> usize {
 
 /// The command line; `help` is not a page of its own, each command has its own.
 fn command() -> Command {
-    Args::command().disable_help_subcommand(true)
+    described().disable_help_subcommand(true)
 }

@@ -131,8 +131,11 @@ pub fn today(named: Option<&str>) -> String {
 
 /// A day of the command line.
 pub fn day(text: &str) -> Result<String, String> {
-    let day: jiff::civil::Date = text
-        .parse()
-        .map_err(|_| "a day is wanted, such as 2026-12-31".to_owned())?;
+    let day: jiff::civil::Date = text.parse().map_err(|_| {
+        said!(
+            "日期的写法应如 2026-12-31",
+            "a day is written like 2026-12-31"
+        )
+    })?;
     Ok(day.to_string())
 }

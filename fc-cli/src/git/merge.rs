@@ -8,32 +8,52 @@ use fc_codegen::output::{MANIFEST, generated, merge_manifests};
 use fc_spec::merge::merge;
 
 use super::spec_file;
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
 
-/// Merge a file for git, as its merge driver.
-///
-/// A generated file is never left in conflict: where both sides have changed the same lines, those of this branch
-/// stand until the file is generated again, which `fcproto git stage` does. In a file of the spec, what both sides have added at
-/// the same place is kept: commands, reports, streams, types, values of an enum, changes. Where both have changed the same
-/// thing, and in all other files, the conflict is git's own.
+/// Options of `fcproto git merge`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// File with what both sides began with (%O); empty if there was nothing
-    #[arg(value_name = "BASE")]
+    #[arg(
+        value_name = "BASE",
+        help = both("共同祖先的文件（%O），没有时为空", "File of the common ancestor (%O), empty if there is none")
+    )]
     base: PathBuf,
-    /// File with this branch's version (%A), in which the result is left
-    #[arg(value_name = "OURS")]
+    #[arg(
+        value_name = "OURS",
+        help = both("本分支的文件（%A），结果写在其中", "File of this branch (%A), which gets the result")
+    )]
     ours: PathBuf,
-    /// File with the other branch's version (%B)
-    #[arg(value_name = "THEIRS")]
+    #[arg(
+        value_name = "THEIRS",
+        help = both("另一分支的文件（%B）", "File of the other branch (%B)")
+    )]
     theirs: PathBuf,
-    /// What the file is called (%P), from the root of the working tree
-    #[arg(value_name = "PATH")]
+    #[arg(
+        value_name = "PATH",
+        help = both("文件的路径（%P），从工作区根目录算起", "Path of the file (%P) from the root of the working tree")
+    )]
     path: PathBuf,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("供 git 合并一个文件", "Merge a file for git"),
+        details: vec![Part::Text(both(
+            "这是 git 的 merge 驱动。生成的文件从不留下冲突：双方改了同样的行时保留本分支的，由 `fcproto git stage` 重新生成。\
+                 规范文件中，双方在同一处新增的指令、上报、流、类型、枚举值和变更记录都保留。双方改了同一内容时，以及在其他文件中，冲突由 git 照常处理。",
+            "This is a merge driver of git. Generated files are never left in conflict: where both sides have changed the same \
+                 lines, those of this branch are kept, and `fcproto git stage` generates the file again. In files of the spec, commands, \
+                 reports, streams, types, enum values and changelog entries that both sides add at the same place are all kept. Other \
+                 conflicts are those of git.",
+        ))],
+        fails: both("有冲突", "Conflicts"),
+        speaks: "",
+    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -2,34 +2,59 @@
 
 mod attributes;
 pub mod diff;
-mod merge;
-mod setup;
-mod stage;
+pub mod merge;
+pub mod setup;
+pub mod stage;
 
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
 
-/// Let git merge the spec and what is generated from it, and say what a change of the spec means.
-///
-/// `fcproto git setup` tells a clone of it once; the other commands are those that git calls, but for `stage`.
+/// Options of `fcproto git`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto git setup           once in a clone: merge and compare files of the spec with `fcproto`
-  fcproto git setup --hooks   the same, and check each commit
-  fcproto git stage           generate, and stage what has changed")]
 pub struct Options {
     #[command(subcommand)]
     command: Action,
 }
 
-/// What to do.
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "让 git 合并和比较规范文件",
+            "Merge and compare files of the spec in git",
+        ),
+        details: vec![
+            Part::Text(both(
+                "每份克隆运行一次 `fcproto git setup`。之后 git 自己调用 `diff` 和 `merge`。",
+                "Run `fcproto git setup` once in each clone. From then on, git calls `diff` and `merge` itself.",
+            )),
+            Part::Examples(vec![
+                (
+                    "fcproto git setup",
+                    both("配置这份克隆", "Set up this clone"),
+                ),
+                (
+                    "fcproto git setup --hooks",
+                    both("同上，并检查每次提交", "The same, and check each commit"),
+                ),
+                (
+                    "fcproto git stage",
+                    both("生成并暂存", "Generate and stage"),
+                ),
+            ]),
+        ],
+        fails: "",
+        speaks: "",
+    }
+}
+
+/// A command with its options.
 #[derive(Debug, clap::Subcommand)]
 enum Action {
     Setup(setup::Options),

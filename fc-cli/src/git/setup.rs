@@ -6,30 +6,67 @@ use std::path::{Path, PathBuf};
 
 use super::attributes::{DRIVER, missing};
 use super::git;
-use crate::lang::said;
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
 
-/// Tell this clone to merge and compare files with `fcproto`.
-///
-/// It writes to the configuration of the clone alone, and says which lines the project's `.gitattributes` lacks, which is
-/// committed and says for which files that holds. A clone that was not told merges and compares them as any others.
+/// Options of `fcproto git setup`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Examples:
-  fcproto git setup
-  fcproto git setup --hooks
-
-Hooks:
-  pre-commit   stops a commit if the spec is not laid out, has errors or warnings, or if what is generated is stale.
-               It looks at the files of the working tree; `git commit --no-verify` goes past it.
-  post-merge   generates after a merge, and puts what has changed into the merge's commit.")]
 pub struct Options {
-    /// Also write the hooks pre-commit and post-merge; hooks of others stay as they are, and are an error.
-    #[arg(long)]
+    #[arg(
+        long,
+        help = both("也安装 pre-commit 和 post-merge 钩子", "Also install the hooks pre-commit and post-merge")
+    )]
     hooks: bool,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "配置这份克隆，由 `fcproto` 合并和比较文件",
+            "Set up this clone to merge and compare with `fcproto`",
+        ),
+        details: vec![
+            Part::Text(both(
+                "只写这份克隆的 git 配置，并列出 `.gitattributes` 缺少的行。这些行指明由 `fcproto` 处理的文件，须提交到仓库。没有配置的克隆仍由 git 自己合并和比较。",
+                "The command writes only to the git configuration of this clone and lists the lines that `.gitattributes` lacks. These \
+                 lines name the files for `fcproto`; commit them. In other clones, git merges and compares as usual.",
+            )),
+            Part::Terms(
+                both("钩子", "Hooks"),
+                vec![
+                    (
+                        "pre-commit",
+                        both(
+                            "工作区的规范未排版、有错误或警告，或有文件过期时，中止提交；`git commit --no-verify` 跳过检查",
+                            "Stops a commit if the spec of the working tree is not formatted or has errors or warnings, or if files are stale. \
+                             `git commit --no-verify` skips it",
+                        ),
+                    ),
+                    (
+                        "post-merge",
+                        both(
+                            "合并后重新生成，把变化并入合并的提交",
+                            "Generates after a merge and adds the changes to the merge commit",
+                        ),
+                    ),
+                ],
+            ),
+            Part::Text(both(
+                "不是由 `fcproto` 写的同名钩子保持不变，并报错。",
+                "Hooks of other programs stay unchanged, and the command ends with an error.",
+            )),
+            Part::Examples(vec![
+                ("fcproto git setup", ""),
+                ("fcproto git setup --hooks", ""),
+            ]),
+        ],
+        fails: "",
+        speaks: "",
+    }
 }
 
 /// The line by which a hook is known to be ours.

@@ -19,6 +19,7 @@ mod fmt;
 mod generate;
 mod git_diff;
 mod git_merge;
+mod help;
 mod init;
 mod lang;
 mod lint;

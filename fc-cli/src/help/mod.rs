@@ -1,0 +1,233 @@
+//! Help in the language of the run.
+//!
+//! Each command has a [`Help`] next to its options. The terminal, the manual pages and the page of the reference show the
+//! same texts. They are wrapped once, here: clap has no `wrap_help`.
+
+mod page;
+mod terminal;
+pub mod usage;
+mod wrap;
+
+use clap::{Arg, ArgAction, Command, CommandFactory as _};
+
+use crate::args::{self, Args};
+use crate::lang::both;
+use crate::{
+    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
+    places, questions, release, retire, schema, settle, shell,
+};
+
+pub use page::{Options as PageOptions, run as page};
+
+/// The texts of a command, except those of its arguments.
+#[derive(Debug)]
+pub struct Help {
+    /// Verb and object, up to 60 columns, without a full stop.
+    pub summary: &'static str,
+    /// Follows the options in `--help`.
+    pub details: Vec<Part>,
+    /// When the exit status is 1; empty if it never is.
+    pub fails: &'static str,
+    /// Output that follows `--lang`, apart from errors and messages; empty if there is none.
+    pub speaks: &'static str,
+}
+
+/// A part of the details. In texts, code is between backticks.
+#[derive(Debug)]
+pub enum Part {
+    /// A paragraph.
+    Text(&'static str),
+    /// A heading, and terms with their meanings.
+    Terms(&'static str, Vec<(&'static str, &'static str)>),
+    /// A heading, and lines that are shown unchanged.
+    Code(&'static str, &'static str),
+    /// Command lines with their purpose.
+    Examples(Vec<(&'static str, &'static str)>),
+}
+
+/// The help of the command that these names lead to.
+fn of(path: &[&str]) -> Option<Help> {
+    Some(match path {
+        [] => args::help(),
+        ["init"] => init::help(),
+        ["check"] => check::help(),
+        ["explain"] => explain::help(),
+        ["fmt"] => fmt::help(),
+        ["lint"] => lint::help(),
+        ["new"] => new::help(),
+        ["retire"] => retire::help(),
+        ["diff"] => diff::help(),
+        ["changelog"] => changelog::help(),
+        ["release"] => release::help(),
+        ["generate"] => generate::help(),
+        ["inspect"] => inspect::help(),
+        ["where"] => places::help(),
+        ["codes"] => codes::help(),
+        ["questions"] => questions::help(),
+        ["settle"] => settle::help(),
+        ["git"] => git::help(),
+        ["git", "setup"] => git::setup::help(),
+        ["git", "stage"] => git::stage::help(),
+        ["git", "diff"] | ["git-diff"] => git::diff::help(),
+        ["git", "merge"] => git::merge::help(),
+        ["schema"] => schema::help(),
+        ["lsp"] => lsp::help(),
+        ["completions"] => shell::completions_help(),
+        ["man"] => shell::man_help(),
+        ["help-page"] => page::help(),
+        [.., "help"] => Help {
+            summary: both("显示一条命令的帮助", "Show the help of a command"),
+            details: Vec::new(),
+            fails: "",
+            speaks: both("全部", "all of it"),
+        },
+        _ => return None,
+    })
+}
+
+/// Heading of the options that every command has.
+pub fn global() -> &'static str {
+    both("全局选项", "Global options")
+}
+
+/// The command line with its texts, for completions and manual pages.
+pub fn described() -> Command {
+    let version = flag("version", 'V', ArgAction::Version);
+    let version = version.help(both("显示版本", "Print version"));
+    let mut command = Args::command().disable_version_flag(true).arg(version);
+    each(&mut command, &[], &mut |command, path| {
+        let help = flag("help", 'h', ArgAction::Help);
+        let help = help.help(both(
+            "显示帮助；`-h` 只列选项",
+            "Print help; `-h` omits details",
+        ));
+        let command = command.disable_help_flag(true).arg(help);
+        let Some(help) = of(path) else { return command };
+        let details = terminal::plain(&help);
+        command.about(help.summary).after_long_help(details)
+    });
+    command
+}
+
+/// A flag that clap would describe in English.
+fn flag(name: &'static str, short: char, action: ArgAction) -> Arg {
+    Arg::new(name)
+        .short(short)
+        .long(name)
+        .action(action)
+        .help_heading(global())
+}
+
+/// The command line with its texts, laid out for the terminal.
+pub fn dressed() -> Command {
+    let mut command = described();
+    // The usage of a command begins with the names of those above it.
+    command.build();
+    let width = terminal::width();
+    each(&mut command, &[], &mut |mut command, path| {
+        let Some(help) = of(path) else { return command };
+        let body = terminal::body(&mut command, help.summary, width);
+        let details = terminal::details(&command, &help, width);
+        command
+            .about(help.summary)
+            .help_template(body)
+            .after_long_help(details)
+    });
+    command
+}
+
+/// Changes every command, those below it first. Clap repeats the commands below `help`; they are left out.
+fn each(command: &mut Command, path: &[&str], change: &mut dyn FnMut(Command, &[&str]) -> Command) {
+    if path.last() != Some(&"help") {
+        for below in command.get_subcommands_mut() {
+            let name = below.get_name().to_owned();
+            let path: Vec<&str> = path.iter().copied().chain([name.as_str()]).collect();
+            each(below, &path, change);
+        }
+    }
+    *command = change(std::mem::take(command), path);
+}
+
+/// An argument as help shows it.
+struct Shown<'c> {
+    /// `-q, --quiet`, `    --root <DIR>` or `[NAME]`.
+    term: String,
+    /// Its help without the default.
+    text: String,
+    /// Its default, as a value or in words.
+    default: Option<String>,
+    /// Its values, if they are known, with their help.
+    values: Vec<(String, String)>,
+    argument: &'c Arg,
+}
+
+impl<'c> Shown<'c> {
+    fn new(argument: &'c Arg) -> Self {
+        let name = argument.to_string();
+        let term = match (argument.get_short(), argument.is_positional()) {
+            (Some(short), _) => format!("-{short}, {name}"),
+            (None, false) => format!("    {name}"),
+            (None, true) => name,
+        };
+        let help = argument.get_help().map(ToString::to_string);
+        let help = help.unwrap_or_default();
+        // A default that depends on the project is written in the help.
+        let label = format!(" [{}", default_label());
+        let (text, default) = match help.split_once(&label) {
+            Some((text, default)) => (text, Some(default.trim_end_matches(']').to_owned())),
+            None => (help.as_str(), None),
+        };
+        let takes = argument.get_action().takes_values();
+        let defaults = argument.get_default_values().first();
+        let defaults = defaults.filter(|_| takes);
+        let default = default.or_else(|| Some(defaults?.to_string_lossy().into_owned()));
+        let values = if takes {
+            argument.get_possible_values()
+        } else {
+            Vec::new()
+        };
+        let values = values.iter().filter(|it| !it.is_hide_set());
+        let values = values.map(|value| {
+            let help = value.get_help().map(ToString::to_string);
+            (value.get_name().to_owned(), help.unwrap_or_default())
+        });
+        Self {
+            term,
+            text: text.to_owned(),
+            default,
+            values: values.collect(),
+            argument,
+        }
+    }
+
+    /// Its values, unless they say all themselves.
+    fn described_values(&self) -> Option<(String, &[(String, String)])> {
+        let is_described = self.values.iter().any(|(_, help)| !help.is_empty());
+        let name = match self.argument.get_long() {
+            Some(long) => format!("--{long}"),
+            None => self.term.trim_matches(['[', ']', '<', '>', '.']).to_owned(),
+        };
+        is_described.then_some((name, self.values.as_slice()))
+    }
+}
+
+/// Begins a default in the help of an argument.
+fn default_label() -> &'static str {
+    both("默认：", "default: ")
+}
+
+/// The arguments of a command: its own ones by their order, then the global ones.
+fn arguments(command: &Command) -> (Vec<Shown<'_>>, Vec<Shown<'_>>) {
+    let visible = command.get_arguments().filter(|it| !it.is_hide_set());
+    let (own, mut shared): (Vec<_>, Vec<_>) = visible
+        .map(Shown::new)
+        .partition(|shown| shown.argument.get_help_heading() != Some(global()));
+    shared.sort_by_key(|shown| matches!(shown.argument.get_id().as_str(), "help" | "version"));
+    (own, shared)
+}
+
+/// How a command is called, without a title.
+fn usage(command: &mut Command) -> String {
+    let usage = command.render_usage().to_string();
+    usage::in_words(&usage)
+}

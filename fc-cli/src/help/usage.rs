@@ -1,0 +1,248 @@
+//! Usage errors in the language of the run.
+
+use std::error::Error as _;
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+
+use super::dressed;
+use crate::lang::{both, said};
+use crate::print;
+
+/// Shows the help that was asked for, or what is wrong with the command line.
+pub fn told(error: Error) -> ExitCode {
+    let error = match error.kind() {
+        // Only now is the help needed.
+        ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            match dressed().try_get_matches() {
+                Err(error) => error,
+                Ok(_) => return ExitCode::SUCCESS,
+            }
+        }
+        _ => error,
+    };
+    // If the stream is closed, the exit status has to do.
+    let _ = match described(&error) {
+        Some(text) => print::message(&text),
+        None => error.print(),
+    };
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// The whole text of a usage error; `None` for help, the version and errors that are not known here.
+fn described(error: &Error) -> Option<String> {
+    let message = message(error)?;
+    let line = said!("错误：{message}\n", "error: {message}\n");
+    let mut text = print::leveled(&line);
+    let tips = tips(error);
+    if !tips.is_empty() {
+        text.push('\n');
+    }
+    for tip in tips {
+        text += &said!("  提示：{tip}\n", "  tip: {tip}\n");
+    }
+    if let Some(usage) = word(error, ContextKind::Usage) {
+        let usage = in_words(&usage);
+        text += &said!("\n用法：{usage}\n", "\nUsage: {usage}\n");
+    }
+    text += both(
+        "\n运行时加 `--help` 查看全部选项。\n",
+        "\nFor more information, try `--help`.\n",
+    );
+    Some(text)
+}
+
+/// A usage line of clap's in the language of the run, without its title.
+pub fn in_words(usage: &str) -> String {
+    let usage = usage.strip_prefix("Usage: ").unwrap_or(usage);
+    usage
+        .replace("[OPTIONS]", both("[选项]", "[OPTIONS]"))
+        .replace("<COMMAND>", both("<命令>", "<COMMAND>"))
+        .replace("[COMMAND]", both("[命令]", "[COMMAND]"))
+}
+
+fn message(error: &Error) -> Option<String> {
+    let argument = || word(error, ContextKind::InvalidArg);
+    let value = || word(error, ContextKind::InvalidValue);
+    let command = || word(error, ContextKind::InvalidSubcommand);
+    Some(match error.kind() {
+        ErrorKind::UnknownArgument => {
+            let argument = argument()?;
+            said!("没有参数 `{argument}`", "unexpected argument `{argument}`")
+        }
+        ErrorKind::InvalidSubcommand => {
+            let command = command()?;
+            said!("没有命令 `{command}`", "there is no command `{command}`")
+        }
+        ErrorKind::MissingRequiredArgument => {
+            let missing = listed(&words(error, ContextKind::InvalidArg));
+            said!("缺少参数 {missing}", "missing argument {missing}")
+        }
+        ErrorKind::MissingSubcommand => {
+            let command = command()?;
+            let known = listed(&words(error, ContextKind::ValidSubcommand));
+            said!(
+                "`{command}` 之后缺少命令；可用的命令：{known}",
+                "`{command}` needs a command: {known}"
+            )
+        }
+        ErrorKind::InvalidValue => {
+            let (argument, value) = (argument()?, value()?);
+            let known = words(error, ContextKind::ValidValue);
+            match (value.as_str(), listed(&known)) {
+                ("", _) if known.is_empty() => {
+                    said!("`{argument}` 缺少值", "`{argument}` needs a value")
+                }
+                ("", known) => said!(
+                    "`{argument}` 缺少值；可用的值：{known}",
+                    "`{argument}` needs a value: {known}"
+                ),
+                (value, known) => said!(
+                    "`{argument}` 的值 `{value}` 无效；可用的值：{known}",
+                    "invalid value `{value}` for `{argument}`; the values are {known}"
+                ),
+            }
+        }
+        ErrorKind::ValueValidation => {
+            let (argument, value) = (argument()?, value()?);
+            let cause = error.source().map(ToString::to_string);
+            let cause = cause.map(|cause| said!("：{cause}", ": {cause}"));
+            let cause = cause.unwrap_or_default();
+            said!(
+                "`{argument}` 的值 `{value}` 无效{cause}",
+                "invalid value `{value}` for `{argument}`{cause}"
+            )
+        }
+        ErrorKind::ArgumentConflict => conflict(error)?,
+        ErrorKind::NoEquals => {
+            let argument = argument()?;
+            said!(
+                "`{argument}` 与它的值之间应为等号",
+                "`{argument}` needs an equal sign before its value"
+            )
+        }
+        ErrorKind::TooManyValues => {
+            let (argument, value) = (argument()?, value()?);
+            said!(
+                "`{argument}` 的值过多：`{value}`",
+                "too many values for `{argument}`: `{value}`"
+            )
+        }
+        ErrorKind::TooFewValues => {
+            let argument = argument()?;
+            let least = number(error, ContextKind::MinValues)?;
+            let actual = number(error, ContextKind::ActualNumValues)?;
+            said!(
+                "`{argument}` 至少应有 {least} 个值，实际为 {actual} 个",
+                "`{argument}` needs at least {least} values, not {actual}"
+            )
+        }
+        ErrorKind::WrongNumberOfValues => {
+            let argument = argument()?;
+            let expected = number(error, ContextKind::ExpectedNumValues)?;
+            let actual = number(error, ContextKind::ActualNumValues)?;
+            said!(
+                "`{argument}` 应有 {expected} 个值，实际为 {actual} 个",
+                "`{argument}` needs {expected} values, not {actual}"
+            )
+        }
+        ErrorKind::InvalidUtf8 => said!(
+            "命令行中有一个参数不是 UTF-8 编码",
+            "an argument of the command line is not UTF-8"
+        ),
+        _ => return None,
+    })
+}
+
+fn conflict(error: &Error) -> Option<String> {
+    let others = words(error, ContextKind::PriorArg);
+    if let Some(command) = word(error, ContextKind::InvalidSubcommand) {
+        let others = listed(&others);
+        return Some(said!(
+            "命令 `{command}` 不能与 {others} 同时使用",
+            "the command `{command}` cannot be used with {others}"
+        ));
+    }
+    let argument = word(error, ContextKind::InvalidArg)?;
+    if others.is_empty() || others == [argument.as_str()] {
+        return Some(said!(
+            "`{argument}` 只能出现一次",
+            "`{argument}` can be used only once"
+        ));
+    }
+    let others = listed(&others);
+    Some(said!(
+        "`{argument}` 不能与 {others} 同时使用",
+        "`{argument}` cannot be used with {others}"
+    ))
+}
+
+/// What the user may have meant.
+fn tips(error: &Error) -> Vec<String> {
+    let kinds = [
+        ContextKind::SuggestedSubcommand,
+        ContextKind::SuggestedArg,
+        ContextKind::SuggestedValue,
+    ];
+    let near = kinds.into_iter().map(|kind| words(error, kind));
+    let near = near.filter(|names| !names.is_empty()).map(|names| {
+        let names = listed(&names);
+        said!("是否想写 {names}？", "did you mean {names}?")
+    });
+    let others = words(error, ContextKind::Suggested);
+    near.chain(others.iter().map(|tip| in_backticks(tip)))
+        .collect()
+}
+
+/// A tip that clap has only as a sentence, with its words between quotes.
+fn in_backticks(tip: &str) -> String {
+    let quoted: Vec<&str> = tip.split('\'').skip(1).step_by(2).collect();
+    match quoted.as_slice() {
+        [word, call] if tip.starts_with("to pass") => said!(
+            "要把 `{word}` 作为值传入，写 `{call}`",
+            "to pass `{word}` as a value, write `{call}`"
+        ),
+        [command, _] if tip.starts_with("subcommand") => said!(
+            "有命令 `{command}`；使用它要去掉前面的 `--`",
+            "to use the command `{command}`, remove the `--` before it"
+        ),
+        [call] if tip.ends_with("exists") => {
+            said!("有 `{call}`", "`{call}` exists")
+        }
+        _ => tip.to_owned(),
+    }
+}
+
+/// `a`, `b`
+fn listed(names: &[String]) -> String {
+    let mut text = String::new();
+    for (index, name) in names.iter().enumerate() {
+        if index > 0 {
+            text += both("、", ", ");
+        }
+        let _ = write!(text, "`{name}`");
+    }
+    text
+}
+
+fn word(error: &Error, kind: ContextKind) -> Option<String> {
+    words(error, kind).into_iter().next()
+}
+
+fn words(error: &Error, kind: ContextKind) -> Vec<String> {
+    match error.get(kind) {
+        Some(ContextValue::String(word)) => vec![word.clone()],
+        Some(ContextValue::Strings(words)) => words.clone(),
+        Some(ContextValue::StyledStr(text)) => vec![text.to_string()],
+        Some(ContextValue::StyledStrs(texts)) => texts.iter().map(ToString::to_string).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn number(error: &Error, kind: ContextKind) -> Option<isize> {
+    match error.get(kind) {
+        Some(ContextValue::Number(number)) => Some(*number),
+        _ => None,
+    }
+}

@@ -1,0 +1,377 @@
+//! Help and usage errors in both languages, and the page of the reference with the same texts.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::{Run, command};
+
+/// Longest summary, in columns.
+const SUMMARY: usize = 60;
+
+/// Runs `fcproto` in a terminal of this width.
+fn run_in(columns: usize, args: &[&str]) -> Run {
+    let mut command: Command = command(args);
+    command.env("COLUMNS", columns.to_string());
+    Run::new(&command.output().expect("the command can be run"))
+}
+
+fn run(args: &[&str]) -> Run {
+    run_in(100, args)
+}
+
+/// The arguments with `--lang` behind them.
+fn in_language<'a>(args: &[&'a str], lang: &'a str) -> Vec<&'a str> {
+    [args, &["--lang", lang]].concat()
+}
+
+fn is_chinese(text: &str) -> bool {
+    text.contains(|it: char| ('\u{4e00}'..='\u{9fff}').contains(&it))
+}
+
+fn width(text: &str) -> usize {
+    let wide = text.chars().filter(|it| *it >= '\u{2e80}').count();
+    text.chars().count() + wide
+}
+
+/// Every command, as its words.
+fn commands() -> Vec<Vec<String>> {
+    let page = run(&["help-page"]).expect(0).stdout;
+    let heads = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("## fcproto "));
+    let names = heads.filter_map(|head| head.split(" {#").next());
+    let words = |name: &str| name.split(' ').map(str::to_owned).collect();
+    let commands: Vec<_> = names.map(words).collect();
+    assert!(commands.len() > 20, "{commands:?}");
+    commands
+}
+
+/// The help of every command and of the program itself.
+fn helps(flag: &str, lang: &str, columns: usize) -> Vec<(String, String)> {
+    let mut commands = commands();
+    commands.push(Vec::new());
+    let help = |words: Vec<String>| {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let args = in_language(&[words.as_slice(), &[flag]].concat(), lang);
+        (words.join(" "), run_in(columns, &args).expect(0).stdout)
+    };
+    commands.into_iter().map(help).collect()
+}
+
+/// The lines of a section.
+fn section<'h>(help: &'h str, title: &str) -> Vec<&'h str> {
+    let lines = help.lines().skip_while(|line| *line != title).skip(1);
+    lines.take_while(|line| !line.is_empty()).collect()
+}
+
+#[test]
+fn page_of_the_reference_is_up_to_date() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs-site");
+    for (lang, path) in [("zh", "reference/cli.md"), ("en", "en/reference/cli.md")] {
+        let page = run(&in_language(&["help-page"], lang)).expect(0).stdout;
+        let path = root.join(path);
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&path, &page).expect("the page can be written");
+        }
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
+        let path = path.display();
+        assert!(
+            page == written,
+            "{path} is stale; run this test with BLESS=1"
+        );
+    }
+}
+
+/// Sections, tables, lists and code are the same; words are not.
+#[test]
+fn pages_have_the_same_structure() {
+    let shape = |lang: &str| {
+        let page = run(&in_language(&["help-page"], lang)).expect(0).stdout;
+        let mark = |line: &str| match line.as_bytes() {
+            [b'|', ..] => format!("|{}", line.replace("\\|", "").matches('|').count()),
+            [b'#', b'#', ..] => line.split_once(" {#").map_or("#", |(_, id)| id).to_owned(),
+            [b'-' | b'`', ..] => line.chars().take(1).collect(),
+            [] => String::new(),
+            _ => "text".to_owned(),
+        };
+        page.lines().map(mark).collect::<Vec<_>>()
+    };
+    assert_eq!(shape("zh"), shape("en"));
+}
+
+#[test]
+fn summaries_are_short_and_have_no_full_stop() {
+    for lang in ["zh", "en"] {
+        for (name, help) in helps("-h", lang, 100) {
+            let summary = help.lines().next().unwrap_or_default();
+            let columns = width(summary);
+            assert!(
+                (1..=SUMMARY).contains(&columns),
+                "{name}: {columns}: {summary}"
+            );
+            assert!(!summary.ends_with(['.', '。']), "{name}: {summary}");
+            assert_eq!(is_chinese(summary), lang == "zh", "{name}: {summary}");
+        }
+    }
+}
+
+#[test]
+fn every_command_and_argument_has_both_languages() {
+    for (name, help) in helps("-h", "en", 100) {
+        assert!(!is_chinese(&help), "{name}: {help}");
+        // A term without a text.
+        let bare = help.lines().find(|line| {
+            line.starts_with("  ") && !line.trim().is_empty() && !line.trim().contains("  ")
+        });
+        let is_rest = |line: &str| line.starts_with("          ");
+        assert!(bare.is_none_or(is_rest), "{name}: {bare:?}");
+    }
+    for (name, help) in helps("-h", "zh", 100) {
+        for line in help.lines().filter(|line| !line.is_empty()) {
+            let is_names = |line: &str| line.starts_with("          ");
+            assert!(is_chinese(line) || is_names(line), "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn details_follow_the_options_in_long_help_only() {
+    for (lang, options, status, examples) in [
+        ("en", "Global options:", "Exit status:", "Examples:"),
+        ("zh", "全局选项：", "退出码：", "示例："),
+    ] {
+        let long = run(&in_language(&["check", "--help"], lang))
+            .expect(0)
+            .stdout;
+        let places = [options, status, examples].map(|title| long.find(&format!("\n{title}\n")));
+        assert!(
+            places.is_sorted() && places.iter().all(Option::is_some),
+            "{long}"
+        );
+        let short = run(&in_language(&["check", "-h"], lang)).expect(0).stdout;
+        assert!(short.contains(options), "{short}");
+        assert!(
+            !short.contains(status) && !short.contains(examples),
+            "{short}"
+        );
+        assert!(long.starts_with(short.trim_end()), "{short}");
+        let same = run(&in_language(&["help", "check"], lang)).expect(0).stdout;
+        assert_eq!(same, long);
+    }
+}
+
+#[test]
+fn each_global_option_has_one_line() {
+    for (lang, title) in [("en", "Global options:"), ("zh", "全局选项：")] {
+        for (name, help) in helps("--help", lang, 80) {
+            let lines = section(&help, title);
+            let expected = if name.is_empty() { 7 } else { 6 };
+            assert_eq!(lines.len(), expected, "{name}: {lines:?}");
+        }
+    }
+}
+
+/// Lines of code are not broken; all others fit, and none is broken twice.
+#[test]
+fn help_fits_the_terminal() {
+    for lang in ["en", "zh"] {
+        for columns in [60, 80, 100, 200] {
+            for (name, help) in helps("--help", lang, columns) {
+                let is_code = |line: &str| {
+                    let code = ["fcproto ", "git ", "cd ", "  - ", "lint:", "levels:"];
+                    code.iter()
+                        .any(|it| line.trim_start().starts_with(it.trim_start()))
+                };
+                for line in help.lines().filter(|line| !is_code(line)) {
+                    assert!(
+                        width(line) <= columns.min(100),
+                        "{name} in {columns}: {line}"
+                    );
+                }
+            }
+        }
+    }
+    // A paragraph that is broken twice has a short line before its last one.
+    let (_, help) = helps("--help", "en", 80).pop().expect("the program's own");
+    let paragraph = help
+        .split("\n\n")
+        .find(|it| it.starts_with("The spec is"))
+        .expect("it");
+    let lines: Vec<_> = paragraph.lines().collect();
+    let (_, full) = lines.split_last().expect("lines");
+    assert!(full.iter().all(|line| width(line) > 60), "{paragraph}");
+}
+
+#[test]
+fn help_follows_the_language() {
+    let zh = run(&["--lang=zh", "check", "--help"]).expect(0);
+    assert!(
+        zh.stdout
+            .starts_with("检查规范中的错误\n\n用法：fcproto check [选项]\n"),
+        "{zh:#?}"
+    );
+    let mut command = command(&["check", "--help"]);
+    let output = command
+        .env("LANG", "zh_CN.UTF-8")
+        .env("COLUMNS", "100")
+        .output();
+    let by_locale = Run::new(&output.expect("the command can be run")).expect(0);
+    assert_eq!(by_locale.stdout, zh.stdout);
+    let en = run(&["check", "--help"]).expect(0);
+    assert!(
+        en.stdout
+            .starts_with("Check the spec for errors\n\nUsage: fcproto check"),
+        "{en:#?}"
+    );
+}
+
+#[test]
+fn usage_errors_have_both_languages() {
+    let cases: [(&[&str], &str, &str); 17] = [
+        (
+            &["chekc"],
+            "没有命令 `chekc`",
+            "there is no command `chekc`",
+        ),
+        (
+            &["chekc"],
+            "提示：是否想写 `check`？",
+            "tip: did you mean `check`?",
+        ),
+        (
+            &["check", "--fromat", "json"],
+            "没有参数 `--fromat`",
+            "unexpected argument `--fromat`",
+        ),
+        (
+            &["check", "--fromat", "json"],
+            "是否想写 `--format`？",
+            "did you mean `--format`?",
+        ),
+        (
+            &["check", "spec"],
+            "没有参数 `spec`",
+            "unexpected argument `spec`",
+        ),
+        (
+            &["check", "spec"],
+            "\n用法：fcproto check [选项]\n",
+            "\nUsage: fcproto check [OPTIONS]\n",
+        ),
+        (
+            &["new"],
+            "缺少参数 `--group <GROUP>`、`<NAME>`",
+            "missing argument `--group <GROUP>`, `<NAME>`",
+        ),
+        (
+            &["generate", "--for", "x"],
+            "缺少参数 `--out <DIR>`",
+            "missing argument `--out <DIR>`",
+        ),
+        (
+            &["check", "--format", "xml"],
+            "`--format <FORMAT>` 的值 `xml` 无效；可用的值：`text`、`json`、`sarif`、`github`",
+            "invalid value `xml` for `--format <FORMAT>`; the values are `text`, `json`, `sarif`, `github`",
+        ),
+        (
+            &["check", "--format"],
+            "`--format <FORMAT>` 缺少值",
+            "`--format <FORMAT>` needs a value",
+        ),
+        (
+            &["lint", "--today", "x"],
+            "日期的写法应如 2026-12-31",
+            "a day is written like 2026-12-31",
+        ),
+        (
+            &["codes", "0x12345"],
+            "功能码应为 0x0000 至 0xFFFF 的数",
+            "a code is a number",
+        ),
+        (
+            &["settle", "C1", "--set", "x", "--by", "y"],
+            "应写作 PATH=VALUE",
+            "write it as PATH=VALUE",
+        ),
+        (
+            &["release", "x"],
+            "版本号应为",
+            "a release has a number of up to",
+        ),
+        (
+            &["new", "x", "--group", "y", "--stream", "--report"],
+            "`--stream` 不能与 `--report` 同时使用",
+            "`--stream` cannot be used with `--report`",
+        ),
+        (
+            &["check", "--fix", "--fix"],
+            "`--fix` 只能出现一次",
+            "`--fix` can be used only once",
+        ),
+        (
+            &[
+                "git", "diff", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10",
+            ],
+            "没有参数 `10`",
+            "unexpected argument `10`",
+        ),
+    ];
+    for (args, zh, en) in cases {
+        for (lang, expected, start) in [("zh", zh, "错误："), ("en", en, "error: ")] {
+            let run = run(&[&["--lang", lang], args].concat()).expect(2);
+            assert!(run.stderr.contains(expected), "{args:?}: {run:#?}");
+            assert!(run.stderr.starts_with(start), "{args:?}: {run:#?}");
+            assert!(run.stderr.contains("--help"), "{args:?}: {run:#?}");
+            assert_eq!(is_chinese(&run.stderr), lang == "zh", "{args:?}: {run:#?}");
+            assert_eq!(run.stdout, "");
+        }
+    }
+}
+
+/// The option counts wherever it is, and although the rest cannot be parsed.
+#[test]
+fn language_is_known_before_the_rest_is_parsed() {
+    for args in [
+        &["chekc", "--lang", "zh"][..],
+        &["--lang=zh", "chekc"],
+        &["check", "--nope", "--lang", "zh"],
+    ] {
+        let run = run(args).expect(2);
+        assert!(run.stderr.starts_with("错误："), "{args:?}: {run:#?}");
+    }
+    let unknown = run(&["check", "--lang", "de"]).expect(2);
+    assert!(unknown.stderr.contains("`zh`, `en`"), "{unknown:#?}");
+    let literal = run(&["check", "--", "--lang", "zh"]).expect(2);
+    assert!(literal.stderr.starts_with("error: "), "{literal:#?}");
+}
+
+#[test]
+fn no_command_shows_help_as_an_error() {
+    for (args, lang, start) in [
+        (&[][..], "en", "Check a robot protocol spec"),
+        (&[], "zh", "检查机器人协议规范"),
+        (&["git"], "zh", "让 git 合并"),
+    ] {
+        let mut command = command(args);
+        if lang == "zh" {
+            command.env("LANG", "zh_CN.UTF-8");
+        }
+        let run = Run::new(&command.output().expect("the command can be run")).expect(2);
+        assert!(run.stderr.starts_with(start), "{run:#?}");
+        assert_eq!(run.stdout, "");
+    }
+}
+
+#[test]
+fn completions_and_manual_pages_follow_the_language() {
+    let script = run(&["completions", "zsh", "--lang", "zh"]).expect(0);
+    assert!(script.stdout.contains("检查规范中的错误"), "{script:#?}");
+    let project = crate::support::Project::empty();
+    project.fc(&["man", "man1", "--lang", "zh"]).expect(0);
+    let page = project.read("man1/fcproto-check.1");
+    assert!(
+        page.contains("检查规范中的错误") && page.contains("输出格式"),
+        "{page}"
+    );
+    assert!(!page.contains('\u{1b}'), "{page}");
+}
