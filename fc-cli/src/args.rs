@@ -40,14 +40,14 @@ pub struct Args {
         help_heading = global(),
         help = both("输出的语言 [默认：随系统语言]", "Language of output [default: by locale]")
     )]
-    #[expect(dead_code, reason = "`lang::speak` reads it before the rest is parsed")]
+    // `lang::speak` reads it before the rest is parsed.
     pub lang: Option<Language>,
     #[arg(
         short,
         long,
         global = true,
         help_heading = global(),
-        help = both("只输出错误和所要的结果", "Print errors and requested results only")
+        help = both("只输出错误和请求的结果", "Print errors and requested results only")
     )]
     pub quiet: bool,
     /// What to do.

@@ -114,7 +114,7 @@ pub fn help() -> Help {
                  date stay untouched.",
             )),
             Part::Text(both(
-                "`--for` 和 `--as-of` 生成规范的一部分或一次发布。它们须与 `--out` 一起用，`--out` 不能是项目目录，那里有自己的 `fc-manifest.json`。\
+                "`--for` 和 `--as-of` 生成规范的一部分或一次发布。它们须与 `--out` 一起用。`--out` 的目录不能是项目，它会得到自己的 `fc-manifest.json`。\
                  受众写在规范的 `availability` 中。",
                 "`--for` and `--as-of` generate a part of the spec or a release. They need `--out`, which cannot be a project. The \
                  directory gets its own `fc-manifest.json`. The spec names audiences under `availability`.",

@@ -126,10 +126,12 @@ pub fn dressed() -> Command {
     let width = terminal::width();
     each(&mut command, &[], &mut |mut command, path| {
         let Some(help) = of(path) else { return command };
-        let body = terminal::body(&mut command, help.summary, width);
+        let usage = usage(&mut command);
+        let body = terminal::body(&command, help.summary, &usage, width);
         let details = terminal::details(&command, &help, width);
         command
             .about(help.summary)
+            .override_usage(usage)
             .help_template(body)
             .after_long_help(details)
     });
@@ -229,5 +231,9 @@ fn arguments(command: &Command) -> (Vec<Shown<'_>>, Vec<Shown<'_>>) {
 /// How a command is called, without a title.
 fn usage(command: &mut Command) -> String {
     let usage = command.render_usage().to_string();
-    usage::in_words(&usage)
+    let usage = usage.strip_prefix("Usage: ").unwrap_or(&usage);
+    usage
+        .replace("[OPTIONS]", both("[选项]", "[OPTIONS]"))
+        .replace("<COMMAND>", both("<命令>", "<COMMAND>"))
+        .replace("[COMMAND]", both("[命令]", "[COMMAND]"))
 }

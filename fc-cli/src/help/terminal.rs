@@ -7,7 +7,7 @@ use terminal_size::{Width, terminal_size};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::wrap::wrap;
-use super::{Help, Part, Shown, arguments, default_label, global, usage};
+use super::{Help, Part, Shown, arguments, default_label, global};
 use crate::args::STYLES;
 use crate::lang::{both, said};
 
@@ -35,10 +35,9 @@ pub fn width() -> usize {
 }
 
 /// Summary, usage and arguments, as a template for clap. Details follow it in `--help`.
-pub fn body(command: &mut Command, summary: &str, width: usize) -> String {
-    let usage = usage(command);
-    let mut text = format!("{summary}\n\n{} ", heading(both("用法：", "Usage:")));
-    let _ = writeln!(text, "{}", literal(&usage));
+pub fn body(command: &Command, summary: &str, usage: &str, width: usize) -> String {
+    let title = heading(both("用法：", "Usage: "));
+    let mut text = format!("{summary}\n\n{title}{}\n", literal(usage));
     let visible = command.get_subcommands().filter(|it| !it.is_hide_set());
     let commands: Vec<_> = visible
         .map(|below| {
@@ -60,7 +59,7 @@ pub fn body(command: &mut Command, summary: &str, width: usize) -> String {
             text += &section(title, &table(&rows, width));
         }
     }
-    text + "{after-help}"
+    text.trim_end().to_owned() + "{after-help}"
 }
 
 /// An argument on one line.

@@ -10,24 +10,28 @@ use super::dressed;
 use crate::lang::{both, said};
 use crate::print;
 
-/// Shows the help that was asked for, or what is wrong with the command line.
+/// Shows the help that was asked for, or the error in the command line.
 pub fn told(error: Error) -> ExitCode {
-    let error = match error.kind() {
-        // Only now is the help needed.
-        ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            match dressed().try_get_matches() {
-                Err(error) => error,
-                Ok(_) => return ExitCode::SUCCESS,
-            }
-        }
-        _ => error,
-    };
+    // The command line with texts takes longer to build, and only help and errors need it.
+    let error = dressed().try_get_matches().err().unwrap_or(error);
+    let error = help_of_command(&error).unwrap_or(error);
     // If the stream is closed, the exit status has to do.
     let _ = match described(&error) {
         Some(text) => print::message(&text),
         None => error.print(),
     };
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// The help that `help COMMAND --lang zh` asks for: clap has no options behind `help`.
+fn help_of_command(error: &Error) -> Option<Error> {
+    let is_option = word(error, ContextKind::InvalidSubcommand)?.starts_with('-');
+    let mut words: Vec<_> = std::env::args_os().collect();
+    let at = words.iter().position(|word| is_option && word == "help")?;
+    words.remove(at);
+    words.push("--help".into());
+    let error = dressed().try_get_matches_from(words).err()?;
+    (error.kind() == ErrorKind::DisplayHelp).then_some(error)
 }
 
 /// The whole text of a usage error; `None` for help, the version and errors that are not known here.
@@ -43,7 +47,7 @@ fn described(error: &Error) -> Option<String> {
         text += &said!("  提示：{tip}\n", "  tip: {tip}\n");
     }
     if let Some(usage) = word(error, ContextKind::Usage) {
-        let usage = in_words(&usage);
+        let usage = usage.trim_start_matches("Usage: ");
         text += &said!("\n用法：{usage}\n", "\nUsage: {usage}\n");
     }
     text += both(
@@ -51,15 +55,6 @@ fn described(error: &Error) -> Option<String> {
         "\nFor more information, try `--help`.\n",
     );
     Some(text)
-}
-
-/// A usage line of clap's in the language of the run, without its title.
-pub fn in_words(usage: &str) -> String {
-    let usage = usage.strip_prefix("Usage: ").unwrap_or(usage);
-    usage
-        .replace("[OPTIONS]", both("[选项]", "[OPTIONS]"))
-        .replace("<COMMAND>", both("<命令>", "<COMMAND>"))
-        .replace("[COMMAND]", both("[命令]", "[COMMAND]"))
 }
 
 fn message(error: &Error) -> Option<String> {
