@@ -5,11 +5,13 @@ use std::fs;
 use std::path::Path;
 
 /// Guides with tables of defaults, and in how many rows they state one.
-const GUIDES: [(&str, usize); 4] = [
-    ("guides/connection.md", 10),
-    ("en/guides/connection.md", 10),
-    ("guides/promises.md", 10),
-    ("en/guides/promises.md", 10),
+const GUIDES: [(&str, usize); 6] = [
+    ("guides/connection.md", 6),
+    ("en/guides/connection.md", 6),
+    ("guides/connection-robot.md", 5),
+    ("en/guides/connection-robot.md", 5),
+    ("guides/limits.md", 10),
+    ("en/guides/limits.md", 10),
 ];
 
 /// The value of a field as `Debug` prints it.
