@@ -26,7 +26,7 @@ usage: fc-bench GROUP... [--quick] [--report] [--date YYYY-MM-DD]
 
 groups: all codec calls reports data generator compile
 --quick   fewer rounds: a look, no figures to go by
---report  with `all`: write the page of the documentation as well";
+--report  with `all`: also write the results page of the documentation";
 
 /// What a group does, told whether to be quick.
 type Group = fn(bool) -> Section;
@@ -124,7 +124,7 @@ fn groups(options: &Options) -> ExitCode {
             let directory = format!("{}/../docs-site/{place}", env!("CARGO_MANIFEST_DIR"));
             let text = page(&sections, &machine, options.quick, language);
             std::fs::create_dir_all(&directory).expect("the documentation's directory");
-            std::fs::write(format!("{directory}/performance.md"), text).expect("the page is written");
+            std::fs::write(format!("{directory}/performance-results.md"), text).expect("the page is written");
         }
     }
     ExitCode::SUCCESS

@@ -5,6 +5,7 @@ import { commentsStayBehind } from './markdown/comments'
 import { drawnFences } from './markdown/fences'
 import { API, referencePages } from './markdown/pages'
 import { samples } from './markdown/samples'
+import { leadOn, movedFrom } from './moved'
 import { navigation } from './navigation'
 import { searchOptions } from './search'
 import { specFiles } from './spec-pages'
@@ -19,21 +20,28 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call-python', '第一次调用：Python', 'First call in Python'],
   ['first-call-kotlin', '第一次调用：Kotlin 和 Java', 'First call in Kotlin and Java'],
   ['first-call-cpp', '第一次调用：C++', 'First call in C++'],
+  ['first-call-steps', '第一次调用：通用步骤', 'First call: common steps'],
   ['in-your-project', '用到自己的项目里', 'Use it in your project'],
-  ['connection', '连接的生命周期', 'Connection life'],
+  ['connection', '连接的生命周期：app', 'Connection life: apps'],
+  ['connection-robot', '连接的生命周期：机器人', 'Connection life: robots'],
+  ['data-port', '数据端口', 'The data port'],
   ['operations', '运维', 'Operations'],
   ['adding-a-command', '新增一条指令', 'Adding a command'],
   ['changing-safely', '安全地修改协议', 'Changing the protocol safely'],
   ['editors', '在编辑器里', 'In your editor'],
   ['answers', '协议负责人的答复', 'The owner\'s answers'],
   ['releases', '发布、豁免与变更记录', 'Releases, waivers and changelogs'],
-  ['targets', '生成什么，放在哪里', 'What is made, and where'],
+  ['targets', '生成目标和目录', 'Targets and directories'],
   ['lint', '团队规则与规范检查', 'House rules and the lint'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],
   ['what-changed', '与旧文档的差异', 'Changes from the old document'],
-  ['promises', '承诺与检验', 'Guarantees and how they are tested'],
+  ['promises', '可靠性保证', 'Guarantees'],
+  ['limits', '限制', 'Limits'],
+  ['packages', '各语言软件包对比', 'Packages compared'],
+  ['testing', '测试方法', 'How it is tested'],
   ['performance', '性能', 'Performance'],
+  ['performance-results', '性能测试结果', 'Performance results'],
 ]
 
 const REFERENCE: [page: string, zh: string, en: string][] = [
@@ -115,6 +123,10 @@ export default defineConfig({
   vite: { server: { fs: { allow: [fileURLToPath(new URL('../../stubs/typescript', import.meta.url))] } } },
   transformPageData(page) {
     if (page.params?.title) page.title = page.params.title
+  },
+  transformHead({ pageData }) {
+    const moved = movedFrom(pageData.relativePath)
+    return moved ? [['script', {}, leadOn(moved)]] : []
   },
   locales: {
     root: {

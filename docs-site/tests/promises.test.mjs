@@ -1,7 +1,8 @@
-// The table of limits and settings says of each package what its sources say.
+// The table of limits and settings agrees with the sources of each package, and the tests that guarantees and limits
+// name exist.
 
 import assert from 'node:assert/strict'
-import { readFileSync } from 'node:fs'
+import { existsSync, readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
 import { root, site } from './support.mjs'
@@ -48,8 +49,8 @@ function sources(language) {
 
 /** `{ names, marks }` of each row of the table, and the languages of its columns. */
 function table(folder) {
-  const lines = readFileSync(path.join(site, folder, 'promises.md'), 'utf8').split('\n')
-  const from = lines.findIndex((line) => line.includes('{#packages}'))
+  const lines = readFileSync(path.join(site, folder, 'packages.md'), 'utf8').split('\n')
+  const from = lines.findIndex((line) => line.includes('{#limits}'))
   const begin = lines.findIndex((line, at) => at > from && line.startsWith('|'))
   const end = lines.findIndex((line, at) => at > begin && !line.startsWith('|'))
   const [[, ...languages], , ...rows] = lines.slice(begin, end).map((line) => line.split('|').slice(1, -1).map((cell) => cell.trim()))
@@ -78,5 +79,43 @@ for (const folder of ['guides', 'en/guides']) {
     const known = [...new Set([...methods, ...limits])].filter((name) => name !== 'limits')
     assert.ok(methods.length > 20 && limits.length > 5)
     assert.deepEqual(table(folder).rows.flatMap(({ names }) => names).sort(), known.sort())
+  })
+}
+
+const exists = (...names) => names.some((name) => existsSync(path.join(root, name)))
+/** The sources of the tests of limits. */
+const limits = readdirSync(path.join(root, 'fc-runtime/tests/it/limits')).map((name) => read(`fc-runtime/tests/it/limits/${name}`)).join('\n')
+/** The commands of `load/`. */
+const load = read('load/src/main.rs')
+
+/** Whether a test exists, by its name in the last column of a table. */
+function isTest(name) {
+  const [, crate = 'fc-runtime', module] = /^(?:(fc-\w+) )?(\w+)::$/.exec(name) ?? []
+  if (module) return exists(`${crate}/tests/it/${module}.rs`, `${crate}/tests/it/${module}/mod.rs`)
+  const [, program, target] = /^(fuzz|load) (\w+)$/.exec(name) ?? []
+  if (program === 'fuzz') return exists(`fuzz/fuzz_targets/${target}.rs`)
+  if (program === 'load') return load.includes(`["${target}"] =>`)
+  return exists(`fc-runtime/tests/${name}.rs`, `fc-runtime/tests/${name}/main.rs`) || new RegExp(`^(?:async )?fn ${name}\\(`, 'm').test(limits)
+}
+
+/** The names in the last column of the tables whose last column is for tests. */
+function named(folder, page) {
+  const lines = readFileSync(path.join(site, folder, page), 'utf8').split('\n')
+  let inTable = false
+  return lines.flatMap((line) => {
+    if (!line.startsWith('|')) inTable = false
+    else if (/\| (?:Test|测试) \|$/.test(line)) inTable = true
+    if (!inTable) return []
+    const last = line.split('|').at(-2)
+    return Array.from(last.replace(/\[[^\]]*\]\([^)]*\)/g, '').matchAll(/`([^`]+)`/g), ([, name]) => name)
+  })
+}
+
+for (const [page, least] of [['promises.md', 50], ['limits.md', 20]]) {
+  test(`${page}: every test that it names exists, and both languages name the same`, () => {
+    const names = named('guides', page)
+    assert.ok(names.length > least, `${names.length} names`)
+    assert.deepEqual(named('en/guides', page), names)
+    assert.deepEqual(names.filter((name) => !isTest(name)), [])
   })
 }

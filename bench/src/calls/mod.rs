@@ -198,21 +198,28 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("调用", "Calls"),
         about: t(
-            "经本机回环的调用，服务端和客户端各为一个进程、各占一个核（“多线程”一组除外：两端各两个工作线程，不绑核）。\
-             `raw` 是下限：同样多的字节，不解析，把一窗请求一次写出；`raw-mux` 加上共享一个连接所必需的：每次调用一个任务、一个通道、\
-             一个 oneshot。`raw-md5` 只加上一次调用的四个摘要，\
-             `raw-codec` 用编解码器读写每一帧、没有会话：逐个调用时，报文格式本身至少要花这些。`fc-naive` 是第一个下午手写的同一协议：每个请求一个任务、每帧一次写、`md-5` 加 `serde_json`。\
-             小应答约 150 字节，大应答带 1 MiB 文本；`fc-prepared` 的机器人只把它编码和计算摘要一次。fc 和 `fc-naive` 还把它从 base64 解成图片，其余各家只交付文本。\
-             CPU 是两个进程之和。",
-            "Calls over loopback, server and client as processes of their own with a core each; only with several threads \
-             each side has two workers on any core. `raw` is the floor: as many bytes, no parsing, a window of requests in \
-             one write. `raw-mux` adds what sharing a connection takes: a task, a channel and a oneshot per call. \
-             `raw-md5` adds the four digests of a call and nothing else, `raw-codec` reads and writes each frame with the \
-             codec and keeps no session: the least that the wire format itself costs a lone call. \
-             `fc-naive` is the same protocol as written by hand on a first afternoon: a task per request, a write per frame, \
-             `md-5` and `serde_json`. Small answers have about 150 bytes, large ones 1 MiB of text; the robot of `fc-prepared` encodes and digests \
-             that once. fc and `fc-naive` also turn it from base64 \
-             into the picture while the others deliver the text. CPU is that of both processes.",
+            "调用经过本机回环，服务端和客户端各为一个进程、各占一个核。“多线程”一组除外：两端各有两个工作线程，不绑核。\
+             CPU 是两个进程之和。\n\n\
+             - `raw` 是下限：字节数相同，不解析，一窗请求一次写出。\n\
+             - `raw-mux` 加上共享一个连接的代价：每次调用一个任务、一个通道、一个 oneshot。\n\
+             - `raw-md5` 只加上一次调用的四个摘要。\n\
+             - `raw-codec` 用编解码器读写每一帧，没有会话。逐个调用时，报文格式本身至少需要这么多。\n\
+             - `fc-naive` 是同一协议的简单手写版本：每个请求一个任务，每帧一次写，用 `md-5` 和 `serde_json`。\n\
+             - `fc-prepared` 的机器人对大响应只编码和计算摘要一次。\n\n\
+             小响应约 150 字节，大响应含 1 MiB 文本。fc 和 `fc-naive` 还把文本从 base64 解码成图片，其他各方只交付文\
+             本。",
+            "Calls go over loopback. Server and client are two processes with one core each. With several threads, \
+             each side has two workers on any core. CPU is the sum of both processes.\n\n\
+             - `raw` is the floor: the same number of bytes, no parsing, and a window of requests in one write.\n\
+             - `raw-mux` adds the cost of sharing a connection: a task, a channel and a oneshot per call.\n\
+             - `raw-md5` adds only the four digests of a call.\n\
+             - `raw-codec` reads and writes each frame with the codec, without a session. It shows the least cost of \
+             the wire format for a lone call.\n\
+             - `fc-naive` is a simple hand-written version of the protocol: a task per request, a write per frame, \
+             `md-5` and `serde_json`.\n\
+             - `fc-prepared` has a robot that encodes and digests a large response only once.\n\n\
+             Small responses have about 150 bytes, large ones 1 MiB of text. fc and `fc-naive` also decode that text \
+             from base64 into the picture. The others deliver the text.",
         ),
         tables: measured.iter().map(|(scenario, peers)| tables::table(*scenario, peers)).collect(),
         targets: tables::targets(&measured),

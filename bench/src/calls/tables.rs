@@ -76,8 +76,8 @@ fn title(scenario: Scenario) -> Text {
         "pipelined" => t("1 个连接，64 个调用在途", "1 connection, 64 calls in flight"),
         "many" => t("100 个连接，各逐个调用", "100 connections, one call at a time on each"),
         "threads" => t("多线程，1 个连接，64 个调用在途", "Several threads, 1 connection, 64 calls in flight"),
-        "lone-map" => t("1 MiB 的应答，逐个调用", "Answers of 1 MiB, one call at a time"),
-        _ => t("1 MiB 的应答，4 个调用在途", "Answers of 1 MiB, 4 calls in flight"),
+        "lone-map" => t("1 MiB 的响应，逐个调用", "Responses of 1 MiB, one call at a time"),
+        _ => t("1 MiB 的响应，4 个调用在途", "Responses of 1 MiB, 4 calls in flight"),
     }
 }
 
@@ -239,28 +239,28 @@ pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
         ),
         Target::at_least(
             "T11",
-            t("1 MiB 应答，次/秒 × tonic", "1 MiB answers, calls/s × tonic"),
+            t("1 MiB 响应，次/秒 × tonic", "1 MiB responses, calls/s × tonic"),
             0.52,
             0.6,
             map.ratio("tonic", rate),
         ),
         Target::at_least(
             "T11",
-            t("1 MiB 应答，次/秒 × fc-naive", "1 MiB answers, calls/s × fc-naive"),
+            t("1 MiB 响应，次/秒 × fc-naive", "1 MiB responses, calls/s × fc-naive"),
             1.2,
             1.3,
             map.ratio("fc-naive", rate),
         ),
         Target::at_least(
             "T11",
-            t("1 MiB 应答，次/秒 × tarpc-json", "1 MiB answers, calls/s × tarpc-json"),
+            t("1 MiB 响应，次/秒 × tarpc-json", "1 MiB responses, calls/s × tarpc-json"),
             1.3,
             1.4,
             map.ratio("tarpc-json", rate),
         ),
         Target::at_least(
             "T16",
-            t("1 MiB 应答，逐个调用，次/秒 × tonic", "1 MiB answers one at a time, calls/s × tonic"),
+            t("1 MiB 响应，逐个调用，次/秒 × tonic", "1 MiB responses one at a time, calls/s × tonic"),
             0.6,
             1.0,
             lone_map.ratio("tonic", rate),
@@ -268,8 +268,8 @@ pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
         Target::at_least(
             "T16",
             t(
-                "1 MiB 应答，逐个调用，预先准备，次/秒 × tonic",
-                "1 MiB answers one at a time, prepared, calls/s × tonic",
+                "1 MiB 响应，逐个调用，预先准备，次/秒 × tonic",
+                "1 MiB responses one at a time, prepared, calls/s × tonic",
             ),
             0.6,
             1.0,

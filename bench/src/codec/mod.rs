@@ -169,7 +169,7 @@ fn per_byte(small: &Measured, effort: Effort) -> (Table, Vec<Target>) {
         t("编码", "encode"),
         t("编码，MB/s", "encode, MB/s"),
     ];
-    let mut table = Table::new(t("每字节：与 MAVLink 2 并排", "Per byte on the wire, beside MAVLink 2"), columns);
+    let mut table = Table::new(t("每字节：与 MAVLink 2 对比", "Per byte on the wire, compared with MAVLink 2"), columns);
     let pair = (small.decode.ours, small.encode.ours);
     for (name, bytes, (decode, encode)) in [
         (t("MAVLink ODOMETRY", "MAVLink ODOMETRY"), length, (parse, serialize)),
@@ -262,13 +262,15 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("帧编解码", "Frame codec"),
         about: t(
-            "下限 R 是 `fast-md5` 加 `serde_json`（同样的类型、同样的字节；压缩时加上状态复用的 zlib-rs），别无其他：没有流、没有上限检查、\
-             不保留未知的键。小帧是一个站点的应答，中帧是 150 个站点，大帧是一幅地图，其中有 1 MiB 的 base64；R 也把 base64 解成字节，\
-             另有一行不解。时间是单线程的 CPU 时间，取各轮的中位数。",
-            "The floor R is `fast-md5` and `serde_json` over the same types and the same bytes, with zlib-rs and reused state \
-             where frames are compressed, and nothing else: no stream, no limits, no unknown keys kept. Small is the answer \
-             about one station, medium lists 150 stations, large is a map with 1 MiB of base64; R turns that into bytes as \
-             well, except in the row that says so. Times are CPU time of one thread, medians over the rounds.",
+            "下限 R 是 `fast-md5` 加 `serde_json`，类型和字节都相同；压缩的帧另用 zlib-rs，并复用其状态。R 没有流、没有\
+             上限检查，也不保留未知的键。\n\n\
+             小帧是一个站点的响应，中帧列出 150 个站点，大帧是含 1 MiB base64 的地图。除“R 保留 base64 文本”一行外，R \
+             也解码 base64。时间是单线程的 CPU 时间，取各轮的中位数。",
+            "The floor R is `fast-md5` and `serde_json` over the same types and bytes. Compressed frames also use \
+             zlib-rs with reused state. R has no stream and no limits, and does not keep unknown keys.\n\n\
+             Small is the response about one station, medium lists 150 stations, and large is a map with 1 MiB of \
+             base64. R also decodes the base64, except in the row *R keeps the base64 text*. Times are CPU time of one \
+             thread, medians over the rounds.",
         ),
         tables: vec![decode, encode, bytes, allocations],
         targets,

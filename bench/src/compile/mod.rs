@@ -117,11 +117,11 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("生成代码的编译", "Compiling the generated code"),
         about: t(
-            "两边是同样的 30 个请求和 30 个响应，并都含有按码读写每一个消息的代码。`check` 和构建只算这个 crate 自己，依赖已经就绪；\
-             “从零”包括全部依赖（debug）。增量编译关闭。`--quick` 不测 release 和程序大小。",
-            "Both sides have the same 30 requests and 30 responses, and code that reads and writes each of them by its code. \
-             Checks and builds are of the crate alone, its dependencies being ready; a cold build has all dependencies in it \
-             (debug). Incremental compilation is off. `--quick` leaves out release builds and sizes.",
+            "双方是同样的 30 个请求和 30 个响应，都含有按功能码读写每个消息的代码。`check` 和构建只算这个 crate，依赖已\
+             经就绪；“从零”含全部依赖（debug）。增量编译关闭。`--quick` 不测 release 构建和程序大小。",
+            "Both sides have the same 30 requests and 30 responses, and code that reads and writes each message by its \
+             code. Checks and builds cover only the crate; its dependencies are ready. A cold build (debug) includes \
+             all dependencies. Incremental compilation is off. `--quick` leaves out release builds and sizes.",
         ),
         tables,
         targets: vec![

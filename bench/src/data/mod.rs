@@ -248,7 +248,7 @@ fn latencies(program: &Path, quick: bool) -> (Table, Vec<Target>) {
         ),
         (t("数据端口尽力跑满", "data port as fast as it goes"), busy(true, flat_out)),
         (
-            t("对照：另两个进程之间 tcp + MD5 尽力跑满", "beside it: tcp + MD5 between two other processes"),
+            t("对照：另两个进程之间 tcp + MD5 尽力跑满", "tcp + MD5 between two other processes"),
             busy(true, Some((Kind::TcpMd5, None))),
         ),
         (t("机器人单线程，数据端口空闲", "robot on one thread, data port idle"), busy(false, None)),
@@ -323,13 +323,14 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("数据端口", "Data port"),
         about: t(
-            "`tcp` 只是在两个套接字之间搬运；`tcp + MD5` 在发送端算、在接收端核对每帧的 MD5，这是协议要求的最低代价。\
-             吞吐测量时两个进程各占一个核。延迟测量不绑核，机器人有两个工作线程，调用逐个进行；“对照”一行让同样的负载跑在别的进程里，\
-             看出争用 CPU 本身占多少。",
-            "`tcp` merely copies between two sockets. `tcp + MD5` makes the digest of every frame on one side and checks it on \
-             the other, which is the least that the protocol asks for. Throughput is measured with a core for each process. \
-             For latency nothing is pinned, the robot has two workers and calls go one at a time; the last row has the same \
-             load in other processes, to show how much is due to sharing the processor.",
+            "`tcp` 只在两个套接字之间搬运。`tcp + MD5` 还在发送端计算、在接收端核对每帧的 MD5，这是协议的最低要求。\n\n\
+             测量吞吐时，两个进程各占一个核。测量延迟时不绑核，机器人有两个工作线程，调用逐个进行。“对照”一行让同样的负\
+             载跑在别的进程里，显示争用 CPU 本身的影响。",
+            "`tcp` only copies between two sockets. `tcp + MD5` also makes the digest of every frame on one side and \
+             checks it on the other, the minimum that the protocol requires.\n\n\
+             For throughput, each process has one core. For latency, no process is pinned, the robot has two workers, \
+             and calls go one at a time. The row *tcp + MD5 between two other processes* shows the effect of sharing \
+             the processor.",
         ),
         tables: vec![throughput, latencies, memory],
         targets,

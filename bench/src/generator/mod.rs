@@ -188,11 +188,14 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("生成器", "Generator"),
         about: t(
-            "每次运行是一个单独的进程，从读文件到写出全部文件。“Rust”只生成 Rust，与 prost-build + protox（不用 protoc，含排版）\
-             对同样的消息相比；“全部产物”另有中英文文档、测试向量、另外四种语言的包，以及 JSON Schema。",
-            "Every run is a process of its own, from reading the files to writing all files. \"Rust\" generates Rust alone and is \
-             compared with prost-build and protox (no protoc, formatting included) on the same messages; \"all products\" adds \
-             the documentation in Chinese and English, test vectors, the packages of the four other languages, and the JSON Schema.",
+            "每次运行是一个单独的进程，从读文件到写出全部文件。\n\n\
+             - “Rust”只生成 Rust，与 prost-build + protox（不用 protoc，含排版）对同样的消息相比。\n\
+             - “全部产物”另有中英文文档、标准帧、另外四种语言的软件包，以及 JSON Schema。",
+            "Each run is a separate process, from reading the files to writing all files.\n\n\
+             - *Rust* generates only Rust. It is compared with prost-build and protox (no protoc, formatting included) \
+             on the same messages.\n\
+             - *All products* adds the documentation in Chinese and English, golden frames, the packages of the four \
+             other languages, and the JSON Schema.",
         ),
         tables: vec![whole, sizes_table(&sizes)],
         targets: vec![

@@ -147,10 +147,10 @@ fn slow(program: &Path, quick: bool) -> (Table, f64) {
     let [without, with] = rates.map(median);
     let columns =
         vec![t("情形", "case"), t("快的 app 送达，次/秒", "delivered to the fast apps/s"), t("比值", "ratio")];
-    let title = t("一个从不应答的 app", "An app that never answers");
+    let title = t("一个从不应答的 app", "An app that never acknowledges");
     let mut table = Table::new(title, columns);
     let rows: [(Text, f64); 2] =
-        [(t("10 个快的 app", "10 fast apps"), without), (t("另有 1 个慢的", "and a slow one beside them"), with)];
+        [(t("10 个快的 app", "10 fast apps"), without), (t("10 个快的 app 和 1 个慢的", "10 fast apps and a slow one"), with)];
     for (name, rate) in rows {
         table.row(vec![name, thousands(rate).into(), ratio(rate, without).into()]);
     }
@@ -162,8 +162,8 @@ fn beside_large(program: &Path, quick: bool) -> (Table, f64) {
     let (rounds, reports) = if quick { (2, 300) } else { (7, 1_500) };
     let arms: [(Text, &str, bool); 3] = [
         (t("安静", "quiet"), "timed", false),
-        (t("另一个 app 不停地取 1 MiB 的应答", "another app fetches answers of 1 MiB"), "timed", true),
-        (t("同上，应答预先准备", "the same, prepared answers"), "timed-prepared", true),
+        (t("另一个 app 不停地获取 1 MiB 的响应", "another app fetches responses of 1 MiB"), "timed", true),
+        (t("同上，响应预先准备", "the same, prepared responses"), "timed-prepared", true),
     ];
     let mut measured = vec![Vec::new(); arms.len()];
     for _ in 0..rounds {
@@ -174,7 +174,7 @@ fn beside_large(program: &Path, quick: bool) -> (Table, f64) {
     let of = |arm: usize, at: usize| median(measured[arm].iter().map(|round| round[at]));
     let columns =
         vec![t("情形", "case"), "p50, µs".into(), t("× 安静", "× quiet"), "p99, µs".into(), t("× 安静", "× quiet")];
-    let title = t("小上报与 1 MiB 的应答并行", "Small reports beside answers of 1 MiB");
+    let title = t("小上报与 1 MiB 的响应并行", "Small reports with 1 MiB responses in parallel");
     let mut table = Table::new(title, columns);
     for (arm, (name, ..)) in arms.iter().enumerate() {
         let (p50, p99) = (of(arm, 0), of(arm, 1));
@@ -201,14 +201,20 @@ pub fn section(quick: bool) -> Section {
     Section {
         title: t("主动上报", "Reports"),
         about: t(
-            "机器人和全部 app 各为一个进程、各占一个核。每批 16 个上报，等全部应答后再发下一批。`raw` 写出同样的字节并数应答；\
-             `fc` 编码一次发给所有 app；`fc-each` 逐个 app 编码，用来看出前者省下了什么。慢的 app 连上后什么也不读。\
-             最后一张表里机器人只有一个线程，每毫秒发一个上报，记下从发出到收到应答的时间；取大应答的 app 收到后直接丢弃。",
-            "The robot and all apps are one process each, with a core each. Reports go out in batches of 16, the next when all \
-             are acknowledged. `raw` writes the same bytes and counts answers; `fc` encodes once for all apps; `fc-each` \
-             encodes for every app, to show what that saves. The slow app connects and reads nothing. \
-             For the last table the robot has one thread and sends a report every millisecond; \
-             the times go from the push to its acknowledgement, and who fetches large answers throws them away.",
+            "机器人和全部 app 各为一个进程、各占一个核。每批 16 个上报，全部应答后再发下一批。慢的 app 连上后不读取任何\
+             数据。\n\n\
+             - `raw` 写出同样的字节，并数应答。\n\
+             - `fc` 编码一次，发给所有 app。\n\
+             - `fc-each` 为每个 app 编码一次，用来显示前者节省了多少。\n\n\
+             最后一张表中，机器人只有一个线程，每毫秒发一个上报。时间从发出算到收到应答。获取大响应的 app 收到后直接丢\
+             弃。",
+            "The robot is one process and all apps are another, with one core each. Reports go out in batches of 16, \
+             each after all reports of the previous batch are acknowledged. The slow app connects and reads nothing.\n\n\
+             - `raw` writes the same bytes and counts the acknowledgements.\n\
+             - `fc` encodes once for all apps.\n\
+             - `fc-each` encodes for every app, to show the savings of `fc`.\n\n\
+             For the last table, the robot has one thread and sends a report every millisecond. Times are from the \
+             push to the acknowledgement. The app that fetches large responses discards them.",
         ),
         tables: vec![table(&measured), slow_table, large_table],
         targets: vec![
@@ -230,7 +236,7 @@ pub fn section(quick: bool) -> Section {
             ),
             Target::at_most(
                 "R3",
-                t("小上报，p99，有 1 MiB 的应答并行 / 安静", "small reports, p99, beside answers of 1 MiB / quiet"),
+                t("小上报，p99，有 1 MiB 的响应并行 / 安静", "small reports, p99, with 1 MiB responses / quiet"),
                 2.0,
                 1.3,
                 late,

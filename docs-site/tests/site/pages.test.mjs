@@ -35,6 +35,21 @@ test('an unknown address says so in its language', driven, async () => {
   })
 })
 
+test('a link to a section that has moved leads to its new page', driven, async () => {
+  await withSite(async ({ base, open, faults }) => {
+    const page = await open()
+    for (const [from, to] of [
+      ['/guides/promises.html#chaos', '/guides/testing.html#chaos'],
+      ['/en/guides/connection.html#data', '/en/guides/data-port.html'],
+      ['/en/guides/performance.html#frame-codec', '/en/guides/performance-results.html#frame-codec'],
+    ]) {
+      await page.goto(base + from, { waitUntil: 'commit' })
+      await page.waitForURL(base + to)
+    }
+    assert.deepEqual(faults, [])
+  })
+})
+
 test('the language switch stays on the same page', driven, async () => {
   await withSite(async ({ base, open, faults }) => {
     const page = await open('/')

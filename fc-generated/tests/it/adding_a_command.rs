@@ -6,9 +6,13 @@ use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
 use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
-use fc_spec::model::{Model, RangeUse};
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::{Lang, Model, RangeUse};
+use fc_spec::syntax::read_dir;
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 /// What the readme's example calls its command.
 const NAME: &str = "get_battery";
@@ -92,6 +96,18 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
             artifact.contents
         );
     }
+    for (readme, part) in printed() {
+        let part = part.replace(NAME, &name);
+        let part = part.replace("GetBatteryRequest", &request.to_string());
+        let part = part.replace("GetBatteryResponse", &response.to_string());
+        let mut sources = artifacts
+            .iter()
+            .filter(|artifact| artifact.path.starts_with("fc-generated/src/"));
+        assert!(
+            sources.any(|artifact| squeezed(&artifact.contents).contains(&part)),
+            "{readme}: {part}"
+        );
+    }
     write();
     assert_ne!(support::tree(root), before);
 
@@ -99,6 +115,88 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     write();
     let after = support::tree(root);
     assert_eq!(changed(&before, &after), Vec::<&String>::new());
+}
+
+/// The pictures of an error in the readmes: their command, with a code that is in use.
+#[test]
+fn the_pictures_show_the_error_of_a_code_in_use() {
+    let project = tempfile::tempdir().unwrap();
+    let root = project.path();
+    support::copy(&support::root().join("spec"), &root.join("spec"));
+    let example = example("README.md");
+    let example = example
+        .replace(NAME, &free_name(&support::model(root)))
+        .replace(&spelled(code_of(&example)), "0x0A01");
+    let file = root.join("spec/commands/recharge.yaml");
+    let text = fs::read_to_string(&file).unwrap();
+    let (head, tail) = text.split_once("\ncommands:\n").expect("its commands");
+    fs::write(&file, format!("{head}\ncommands:\n{example}\n\n{tail}")).unwrap();
+
+    let mut faults = Faults::new();
+    let sources = read_dir(root, Path::new("spec"), &mut faults);
+    assert!(load(&sources, &mut faults).model().is_none());
+    for (picture, lang) in [("error.svg", Lang::En), ("error.zh.svg", Lang::Zh)] {
+        let printed = render(&faults, &sources, Format::Text, lang);
+        let mut printed = printed.split("\n\n");
+        let printed = printed.find(|fault| fault.contains("[FC0301]"));
+        let printed = printed.expect("a code in use").lines();
+        let path = support::root().join("docs-site/public").join(picture);
+        let drawn = lines(&fs::read_to_string(path).unwrap());
+        let (typed, drawn) = drawn.split_first().expect("a command");
+        assert_eq!(typed, "$ fcproto check", "{picture}");
+        // An addition to the spec moves the lines.
+        let drawn: Vec<&str> = drawn.iter().map(|line| placeless(line)).collect();
+        assert_eq!(
+            drawn,
+            printed.map(placeless).collect::<Vec<_>>(),
+            "{picture}"
+        );
+    }
+}
+
+/// The lines of text in a picture of a terminal.
+fn lines(picture: &str) -> Vec<String> {
+    let lines = picture.lines().filter(|line| line.starts_with("<text "));
+    let text = lines.map(|line| {
+        let parts = line.split('<').filter_map(|part| part.split_once('>'));
+        parts.map(|(_, text)| text).collect::<String>()
+    });
+    text.map(|text| {
+        text.replace("&lt;", "<")
+            .replace("&gt;", ">")
+            .replace("&amp;", "&")
+    })
+    .collect()
+}
+
+/// A line of an error without its line number and the place in a file.
+fn placeless(line: &str) -> &str {
+    let line = line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit());
+    line.split_once(".yaml:").map_or(line, |(file, _)| file)
+}
+
+/// The parts of the generated Rust that the readmes show in their `rs` blocks, squeezed.
+fn printed() -> Vec<(&'static str, String)> {
+    let mut printed = Vec::new();
+    for readme in ["README.md", "README.zh-CN.md"] {
+        let text = fs::read_to_string(support::root().join(readme)).unwrap();
+        let block = text.split("```rs\n").nth(1).expect("generated Rust");
+        let (block, _) = block.split_once("\n```").expect("its end");
+        let block = squeezed(block);
+        let parts = block.split([';', '{', '}', '…']);
+        let parts = parts.filter(|part| !part.is_empty());
+        printed.extend(parts.map(|part| (readme, part.to_owned())));
+    }
+    printed
+}
+
+/// Rust without comments and spaces, and without the modules before names.
+fn squeezed(text: &str) -> String {
+    let lines = text.lines();
+    let lines = lines.filter(|line| !line.trim_start().starts_with("//"));
+    let text: String = lines.flat_map(str::split_whitespace).collect();
+    let text = text.replace(",)", ")");
+    text.replace("messages::", "").replace("fc_runtime::", "")
 }
 
 /// The command that a readme adds: its one block of YAML.

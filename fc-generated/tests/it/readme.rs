@@ -1,7 +1,8 @@
-//! The READMEs as a user outside the workspace takes them: what they print of `Cargo.toml` and of Rust
-//! compiles as it stands, with no other crate than those printed, and every guide is linked.
+//! The READMEs: their figures, links and the picture of a frame are right, and the programs of this package's README
+//! compile in a package outside the workspace.
 
-use crate::support::nested;
+use crate::support::{self, nested};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,7 +17,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// What a README's fences of one language hold.
+/// The contents of a README's fences of one language.
 fn fences<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
     let open = format!("\n```{language}\n");
     let parts = text.split(&open).skip(1);
@@ -25,40 +26,35 @@ fn fences<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
         .collect()
 }
 
-#[test]
-#[ignore = "compiles projects of its own"]
-fn what_the_readmes_print_compiles_for_a_user_outside() {
-    for (name, _) in READMES {
-        let text = fs::read_to_string(root().join(name)).unwrap();
-        let manifests = fences(&text, "toml");
-        let [manifest] = manifests.as_slice() else {
-            unreachable!("{name} has one manifest");
-        };
-        let programs = fences(&text, "rust");
-        assert!(programs.len() >= 2, "{name}: an app and a robot");
-        assert!(
-            !text.contains("```rust,"),
-            "{name}: Rust that is not compiled"
-        );
-
-        compile(name, manifest, &programs);
-    }
-}
-
-/// What the package says of itself on a registry, with the manifest that the whole prints.
+/// The app and the robot, with the manifest that is printed above them.
 #[test]
 #[ignore = "compiles projects of its own"]
 fn what_this_package_prints_compiles_for_a_user_outside() {
-    let whole = fs::read_to_string(root().join("README.md")).unwrap();
     let name = "fc-generated/README.md";
     let text = fs::read_to_string(root().join(name)).unwrap();
+    let manifests = fences(&text, "toml");
+    let [manifest] = manifests.as_slice() else {
+        unreachable!("{name} has one manifest");
+    };
     let programs = fences(&text, "rust");
-    assert_eq!(programs.len(), 1, "{name}: an app");
-    let manifests = fences(&whole, "toml");
-    compile(name, manifests.first().expect("a manifest"), &programs);
+    assert!(programs.len() >= 2, "{name}: an app and a robot");
+    assert!(
+        !text.contains("```rust,"),
+        "{name}: Rust that is not compiled"
+    );
+    compile(name, manifest, &programs);
 }
 
-/// Compiles programs as a package of their own, with that manifest.
+/// The Rust that they show is generated: an `rs` fence, which `adding_a_command` compares.
+#[test]
+fn the_readmes_print_generated_rust_alone() {
+    for (name, _) in READMES {
+        let text = fs::read_to_string(root().join(name)).unwrap();
+        assert!(!text.contains("```rust"), "{name}: Rust that is not tested");
+    }
+}
+
+/// Compiles programs as a package outside the workspace, with that manifest.
 fn compile(name: &str, manifest: &str, programs: &[&str]) {
     let project = tempfile::tempdir().unwrap();
     let here = root().join("fc-generated").canonicalize().unwrap();
@@ -71,7 +67,7 @@ fn compile(name: &str, manifest: &str, programs: &[&str]) {
         [package, "\n", &manifest, "\n"].concat(),
     )
     .unwrap();
-    // The versions that are there, so that nothing has to be fetched.
+    // The versions of the workspace, so that cargo need not fetch any.
     fs::copy(root().join("Cargo.lock"), project.path().join("Cargo.lock")).unwrap();
     let sources = project.path().join("src/bin");
     fs::create_dir_all(&sources).unwrap();
@@ -92,16 +88,100 @@ fn compile(name: &str, manifest: &str, programs: &[&str]) {
     );
 }
 
+/// A guide may be linked from the README, or from another guide that is reached from there.
 #[test]
 fn every_guide_is_linked() {
     for (name, guides) in READMES {
+        let folder = root().join(guides);
         let text = fs::read_to_string(root().join(name)).unwrap();
-        for guide in fs::read_dir(root().join(guides)).unwrap() {
+        let mut reached = BTreeSet::new();
+        let mut pages = linked(&text, &format!("]({guides}/"));
+        while let Some(page) = pages.pop() {
+            if reached.insert(page.clone()) {
+                let text = fs::read_to_string(folder.join(&page));
+                let text = text.unwrap_or_else(|error| panic!("{name}: {page}: {error}"));
+                pages.extend(linked(&text, "]("));
+            }
+        }
+        for guide in fs::read_dir(&folder).unwrap() {
             let guide = guide.unwrap().file_name().into_string().unwrap();
-            if Path::new(&guide).extension().is_some_and(|end| end == "md") {
-                let link = format!("]({guides}/{guide})");
-                assert!(text.contains(&link), "{name}: {link}");
+            if is_page(&guide) {
+                assert!(reached.contains(&guide), "{name}: no link to {guide}");
             }
         }
     }
+}
+
+/// The pages of one folder that a text links to, where `open` begins each link.
+fn linked(text: &str, open: &str) -> Vec<String> {
+    let links = text.split(open).skip(1);
+    let pages = links.filter_map(|rest| rest.split([')', '#']).next());
+    pages
+        .filter(|page| is_page(page) && !page.contains('/'))
+        .map(str::to_owned)
+        .collect()
+}
+
+fn is_page(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end == "md")
+}
+
+/// They are lower bounds, so that an addition does not make them wrong.
+#[test]
+fn the_figures_of_the_readmes_are_reached() {
+    let operations = support::model(&root()).operations.len();
+    let faults = fs::read_dir(root().join("fc-runtime/faults")).unwrap();
+    let faults = faults.filter(|fault| {
+        let path = fault.as_ref().unwrap().path();
+        path.extension().is_some_and(|end| end == "patch")
+    });
+    let porting = fs::read_to_string(root().join("docs-site/en/guides/porting.md")).unwrap();
+    let (_, table) = porting.split_once("{#table}").expect("a table of cases");
+    let rows = table.lines().filter(|line| line.starts_with('|'));
+    let cases = rows.filter_map(|row| {
+        let number = row.split('|').nth(2)?.trim().replace([',', '+'], "");
+        number.parse::<usize>().ok()
+    });
+
+    let figures = [
+        (operations, 50, "50 "),
+        (faults.count(), 140, "140 "),
+        (cases.sum::<usize>(), 2900, "2,900 "),
+    ];
+    for (there, least, printed) in figures {
+        assert!(there >= least, "{printed}: there are {there}");
+        for (name, _) in READMES {
+            let text = fs::read_to_string(root().join(name)).unwrap();
+            assert!(text.contains(printed), "{name}: {printed}");
+        }
+    }
+}
+
+#[test]
+fn the_picture_of_a_frame_is_the_golden_frame() {
+    let vectors = root().join("fc-generated/vectors/get_robot_sn.json");
+    let vectors = fs::read_to_string(vectors).unwrap();
+    let vectors: serde_json::Value = serde_json::from_str(&vectors).unwrap();
+    let mut cases = vectors["accepted"].as_array().unwrap().iter();
+    let golden = cases.find(|case| case["name"] == "request_plain");
+    let mut golden = golden.unwrap()["frame"].as_str().unwrap();
+
+    let picture = fs::read_to_string(root().join("docs-site/public/frame.svg")).unwrap();
+    for field in support::model(&root()).frame.header {
+        let (bytes, rest) = golden.split_at(2 * field.ty.size());
+        assert_eq!(drawn(&picture, &field.wire), bytes, "{}", field.wire);
+        golden = rest;
+    }
+    assert_eq!(drawn(&picture, "Data"), golden);
+}
+
+/// The bytes, in hex, of the group of a field in a picture, which the legend names as well.
+fn drawn(picture: &str, field: &str) -> String {
+    assert!(picture.contains(&format!(">{field}<")), "legend: {field}");
+    let group = picture.split(&format!("<g id=\"{field}\"")).nth(1);
+    let (group, _) = group.expect(field).split_once("</g>").expect("its end");
+    let bytes = group.split("class=\"byte\"").skip(1);
+    bytes
+        .map(|byte| byte.split(['>', '<']).nth(1).expect("a byte"))
+        .collect()
 }

@@ -14,7 +14,7 @@ fn it_stands_on_the_model_and_the_runtime_without_a_network() {
         .lines()
         .filter(|line| line.starts_with("fc-"))
         .collect();
-    let runtime = r#"fc-runtime = { path = "../fc-runtime", version = "0.1.0", default-features = false, features = ["frames"] }"#;
+    let runtime = r#"fc-runtime = { path = "../fc-runtime", version = "0.2.0", default-features = false, features = ["frames"] }"#;
     assert_eq!(ours, [runtime, "fc-spec.workspace = true"]);
 }
 

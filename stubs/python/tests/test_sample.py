@@ -1,4 +1,4 @@
-"""A package as `fcproto generate` writes it, over TCP: calls, reports, following, refusals, with and without `async`."""
+"""A generated package over TCP: calls, reports, following, refusals, with and without `async`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-//! Writes what the packages have measured into the pages about performance.
+//! Writes the measurements of the packages into the results pages.
 
 use fc_bench_report::packages;
 use std::process::ExitCode;

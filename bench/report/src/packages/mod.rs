@@ -143,5 +143,5 @@ pub fn replaced(page: &str, block: &str) -> Result<String, String> {
 #[must_use]
 pub fn pages() -> [(PathBuf, Language); 2] {
     [("guides", Language::Chinese), ("en/guides", Language::English)]
-        .map(|(place, language)| (root().join("docs-site").join(place).join("performance.md"), language))
+        .map(|(place, language)| (root().join("docs-site").join(place).join("performance-results.md"), language))
 }

@@ -20,26 +20,32 @@ pub(super) fn section(reports: &[Report]) -> Section {
 
 fn about() -> Text {
     t(
-        "每个包用一条命令 `stubs/LANGUAGE/bench/run` 测量自己，各轮交替进行，取中位数。编解码读写 `bench/frames` 中的帧，\
-         各语言相同：小帧是一个站点的应答，中帧列出 10 个站点，长帧列出 150 个（数字为字符串）。下限只做两件事：\
-         语言自带的 JSON 库读写全部正文，并计算、核对同样字节的 MD5；它不检查类型、约束和重复键，整数也可能不精确。\
-         fc 从字节到带类型的消息，再从消息到整帧，所有检查都在内。\
-         调用在回环上进行，服务端与客户端各为一个进程，各占一核；`raw` 以同样字节数收发，一窗请求一次写出，什么也不解析。\
-         gRPC 的问答字段与 fc 相同（`bench/proto/bench.proto`），应答每次新建，由调用方核对。\
-         只有一个在途时，C++ 的两方都用阻塞的调用。Kotlin 不与 gRPC 比较，而与 `blocking` 比较：\
-         阻塞的套接字，每帧一次写、一次读，什么也不解析。CPU 为两个进程之和；Kotlin 的编解码只计所在线程。",
-        "Each package measures itself by one command, `stubs/LANGUAGE/bench/run`, in rounds that take turns; figures are \
-         medians. The codec reads and writes the frames in `bench/frames`, the same for every language: small is the \
-         answer about one station, medium lists 10 stations, long lists 150 (numbers in strings). The floor does two \
-         things: the language's own JSON library reads or writes all of the body, and the MD5 of the same bytes is \
-         made, and compared when reading. It checks no types, constraints or repeated keys, and its integers may not \
-         be exact. fc goes from bytes to a typed message, and from a message to a whole frame, with all checks. Calls \
-         go over loopback, server and client as processes of their own with a core each; `raw` moves as many bytes, a \
-         window of requests in one write, and parses nothing. gRPC has the same fields in question and answer as fc \
-         (`bench/proto/bench.proto`); each call has an answer made for it, which the caller compares. \
-         With one in flight both sides in C++ make calls that block. Kotlin is compared not with gRPC but with \
-         `blocking`: blocking sockets, one write and one read for each frame, and nothing parsed. CPU is that of both \
-         processes; for the codec in Kotlin, that of its thread alone.",
+        "每个软件包用 `stubs/LANGUAGE/bench/run` 测量自己，各轮交替进行，取中位数。\n\n\
+         **编解码**：`bench/frames` 中的帧，各语言相同。小帧是一个站点的响应，中帧列出 10 个站点，长帧列出 150 个（数字\
+         为字符串）。fc 从字节到带类型的消息，再从消息到整帧，包含所有检查。\n\n\
+         编解码的下限用语言自己的 JSON 库读写全部正文，计算同样字节的 MD5，读取时核对。它不检查类型、约束和重复的键，整\
+         数也可能不精确。\n\n\
+         **调用**：经过本机回环，服务端和客户端各为一个进程、各占一个核。CPU 是两个进程之和；Kotlin 的编解码只计所在线\
+         程。\n\n\
+         - `raw` 收发同样的字节数，一窗请求一次写出，不解析。\n\
+         - gRPC 的请求和响应与 fc 字段相同（`bench/proto/bench.proto`）。每次调用都新建响应，由调用方核对。\n\
+         - 只有一个在途调用时，C++ 双方都用阻塞的调用。\n\
+         - Kotlin 不与 gRPC 比较，而与 `blocking` 比较：阻塞的套接字，每帧一次写、一次读，不解析。",
+        "Each package measures itself with `stubs/LANGUAGE/bench/run`, in rounds that take turns. Figures are medians.\n\n\
+         **Codec.** The frames in `bench/frames` are the same for every language. Small is the response about one \
+         station, medium lists 10 stations, and long lists 150, with numbers in strings. fc goes from bytes to a typed \
+         message, and from a message to a whole frame, with all checks.\n\n\
+         The floor of the codec reads or writes the whole body with the language's JSON library. It makes the MD5 of \
+         the same bytes, and compares it when reading. It does not check types, constraints or repeated keys, and its \
+         integers may be inexact.\n\n\
+         **Calls.** Calls go over loopback. Server and client are two processes with one core each. CPU is the sum of \
+         both; for the codec in Kotlin, it is that of its thread only.\n\n\
+         - `raw` moves the same number of bytes, a window of requests in one write, and parses nothing.\n\
+         - gRPC has the same fields in request and response as fc (`bench/proto/bench.proto`). Each call gets a new \
+         response, and the caller compares it.\n\
+         - With one call in flight, both sides in C++ make blocking calls.\n\
+         - Kotlin is compared with `blocking` instead of gRPC: blocking sockets, one write and one read per frame, no \
+         parsing.",
     )
 }
 
