@@ -40,7 +40,7 @@ pub struct Options {
     #[arg(
         long,
         requires = "fix",
-        help = both("以 diff 显示 --fix 的修改，什么也不写", "Show the changes of --fix as a diff and write nothing")
+        help = both("以 diff 显示 `--fix` 的修改，什么也不写", "Show the changes of `--fix` as a diff and write nothing")
     )]
     dry_run: bool,
 }

@@ -17,7 +17,7 @@ pub struct Options {
     #[arg(
         value_name = "CODE",
         value_parser = code,
-        help = both("功能码，例如 0x0123 [默认：全部]", "Codes, such as 0x0123 [default: all]")
+        help = both("功能码，例如 `0x0123` [默认：全部]", "Codes, such as `0x0123` [default: all]")
     )]
     codes: Vec<u16>,
     #[arg(

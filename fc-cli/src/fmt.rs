@@ -21,7 +21,7 @@ use crate::project::Project;
 pub struct Options {
     #[arg(
         value_name = "FILES",
-        help = both("要排版的文件，- 为标准输入 [默认：全部规范文件]", "Files to format, - for standard input [default: all of the spec]")
+        help = both("要排版的文件，`-` 为标准输入 [默认：全部规范文件]", "Files to format, `-` for standard input [default: all of the spec]")
     )]
     files: Vec<PathBuf>,
     #[arg(

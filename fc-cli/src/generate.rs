@@ -40,7 +40,7 @@ pub struct Options {
         long,
         value_name = "TARGETS",
         value_delimiter = ',',
-        help = both("只生成 fc.yaml 中的这些目标", "Generate only these targets of fc.yaml")
+        help = both("只生成 `fc.yaml` 中的这些目标", "Generate only these targets of `fc.yaml`")
     )]
     only: Vec<String>,
     #[arg(
@@ -59,7 +59,7 @@ pub struct Options {
     #[arg(
         long,
         value_name = "FILE",
-        help = both("读取 fcproto inspect 的输出，- 为标准输入", "Read output of fcproto inspect, - for standard input")
+        help = both("读取 `fcproto inspect` 的输出，`-` 为标准输入", "Read output of `fcproto inspect`, `-` for standard input")
     )]
     from: Option<PathBuf>,
     #[arg(
@@ -67,7 +67,7 @@ pub struct Options {
         value_name = "RELEASE",
         requires = "out",
         conflicts_with = "from",
-        help = both("生成这次发布的内容，例如 2026.12", "Generate this release, such as 2026.12")
+        help = both("生成这次发布的内容，例如 `2026.12`", "Generate this release, such as `2026.12`")
     )]
     as_of: Option<String>,
 }

@@ -20,7 +20,7 @@ pub struct Options {
     #[arg(
         long,
         value_name = "DIR",
-        help = both("含有 fc-runtime 和 fc-derive 的源码目录", "Checkout with fc-runtime and fc-derive")
+        help = both("含有 `fc-runtime` 和 `fc-derive` 的源码目录", "Checkout with `fc-runtime` and `fc-derive`")
     )]
     runtime: Option<PathBuf>,
 }

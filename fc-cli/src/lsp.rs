@@ -37,7 +37,7 @@ pub fn help() -> Help {
         ))],
         fails: both(
             "编辑器没有请求结束就断开",
-            "The editor goes away without ending the session",
+            "The editor disconnects without ending the session",
         ),
         speaks: both(
             "不变化：语言由编辑器指定",

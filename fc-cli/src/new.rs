@@ -17,7 +17,7 @@ use crate::spec::Spec;
 pub struct Options {
     #[arg(
         value_name = "NAME",
-        help = both("snake_case 名称，例如 get_battery", "Name in snake_case, such as get_battery")
+        help = both("snake_case 名称，例如 `get_battery`", "Name in snake_case, such as `get_battery`")
     )]
     name: String,
     #[arg(
@@ -48,7 +48,7 @@ pub struct Options {
         long,
         value_name = "CODE",
         value_parser = code,
-        help = both("功能码，例如 0x0A20 [默认：下一个空闲的]", "Code, such as 0x0A20 [default: the next free one]")
+        help = both("功能码，例如 `0x0A20` [默认：下一个空闲的]", "Code, such as `0x0A20` [default: the next free one]")
     )]
     code: Option<u16>,
 }

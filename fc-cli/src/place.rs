@@ -21,7 +21,7 @@ pub struct Place {
         value_name = "DIR",
         global = true,
         help_heading = global(),
-        help = both("规范目录 [默认：fc.yaml 指定的，或 spec]", "Spec directory [default: set in fc.yaml, else spec]")
+        help = both("规范目录 [默认：`fc.yaml` 指定的，或 `spec`]", "Spec directory [default: set in `fc.yaml`, else `spec`]")
     )]
     pub spec: Option<PathBuf>,
 }

@@ -16,7 +16,7 @@ use crate::project::Project;
 pub struct Options {
     #[arg(
         value_name = "NAME",
-        help = both("名称、Station.name 这样的路径，或功能码", "Name, path such as Station.name, or code")
+        help = both("名称、`Station.name` 这样的路径，或功能码", "Name, path such as `Station.name`, or code")
     )]
     name: String,
 }

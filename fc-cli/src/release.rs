@@ -26,7 +26,7 @@ pub struct Options {
     #[arg(
         value_name = "NUMBER",
         value_parser = number,
-        help = both("版本号，例如 2026.12 或 2.1.0", "Release number, such as 2026.12 or 2.1.0")
+        help = both("版本号，例如 `2026.12` 或 `2.1.0`", "Release number, such as `2026.12` or `2.1.0`")
     )]
     number: Number,
     #[arg(

@@ -19,7 +19,7 @@ use crate::spec::Spec;
 pub struct Options {
     #[arg(
         value_name = "NAME",
-        help = both("要退役的接口，例如 get_battery", "Operation to retire, such as get_battery")
+        help = both("要退役的接口，例如 `get_battery`", "Operation to retire, such as `get_battery`")
     )]
     name: String,
     #[arg(long, value_name = "TEXT", help = both("理由，中文", "Reason in Chinese"))]

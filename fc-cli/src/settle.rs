@@ -29,42 +29,42 @@ pub struct Options {
         long,
         value_name = "CODE",
         group = "said",
-        help = both("功能码，例如 0x1234", "Code, such as 0x1234")
+        help = both("功能码，例如 `0x1234`", "Code, such as `0x1234`")
     )]
     code: Option<String>,
     #[arg(
         long,
         value_name = "EFFECT",
         group = "said",
-        help = both("对机器人的影响：read、config 或 motion", "Effect on the robot: read, config or motion")
+        help = both("对机器人的影响：`read`、`config` 或 `motion`", "Effect on the robot: `read`, `config` or `motion`")
     )]
     effect: Option<String>,
     #[arg(
         long,
         value_name = "UNIT",
         group = "said",
-        help = both("单位，例如 s", "Unit, such as s")
+        help = both("单位，例如 `s`", "Unit, such as `s`")
     )]
     unit: Option<String>,
     #[arg(
         long = "type",
         value_name = "TYPE",
         group = "said",
-        help = both("类型，例如 timestamp_ms", "Type, such as timestamp_ms")
+        help = both("类型，例如 `timestamp_ms`", "Type, such as `timestamp_ms`")
     )]
     ty: Option<String>,
     #[arg(
         long,
         value_name = "FILE",
         group = "said",
-        help = both("含请求各键的 YAML 文件，- 为标准输入", "YAML file with the keys of the request, - for standard input")
+        help = both("含请求各键的 YAML 文件，`-` 为标准输入", "YAML file with the keys of the request, `-` for standard input")
     )]
     request: Option<PathBuf>,
     #[arg(
         long,
         value_name = "FILE",
         group = "said",
-        help = both("含响应各键的 YAML 文件，- 为标准输入", "YAML file with the keys of the response, - for standard input")
+        help = both("含响应各键的 YAML 文件，`-` 为标准输入", "YAML file with the keys of the response, `-` for standard input")
     )]
     response: Option<PathBuf>,
     #[arg(

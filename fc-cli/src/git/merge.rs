@@ -20,22 +20,22 @@ use crate::project::Project;
 pub struct Options {
     #[arg(
         value_name = "BASE",
-        help = both("共同祖先的文件（%O），没有时为空", "File of the common ancestor (%O), empty if there is none")
+        help = both("共同祖先的文件（`%O`），没有时为空", "File of the common ancestor (`%O`), empty if there is none")
     )]
     base: PathBuf,
     #[arg(
         value_name = "OURS",
-        help = both("本分支的文件（%A），结果写在其中", "File of this branch (%A), which gets the result")
+        help = both("本分支的文件（`%A`），结果写在其中", "File of this branch (`%A`), which gets the result")
     )]
     ours: PathBuf,
     #[arg(
         value_name = "THEIRS",
-        help = both("另一分支的文件（%B）", "File of the other branch (%B)")
+        help = both("另一分支的文件（`%B`）", "File of the other branch (`%B`)")
     )]
     theirs: PathBuf,
     #[arg(
         value_name = "PATH",
-        help = both("文件的路径（%P），从工作区根目录算起", "Path of the file (%P) from the root of the working tree")
+        help = both("文件的路径（`%P`），从工作区根目录算起", "Path of the file (`%P`) from the root of the working tree")
     )]
     path: PathBuf,
 }

@@ -18,7 +18,7 @@ use crate::project::Project;
 pub struct Options {
     #[arg(
         long,
-        help = both("也安装 pre-commit 和 post-merge 钩子", "Also install the hooks pre-commit and post-merge")
+        help = both("也安装 `pre-commit` 和 `post-merge` 钩子", "Also install the hooks `pre-commit` and `post-merge`")
     )]
     hooks: bool,
 }

@@ -34,8 +34,10 @@ pub fn run() -> Result<Status, Failure> {
 fn page() -> String {
     let mut root = described();
     root.build();
-    let mut page = head();
-    let Some(help) = of(&[]) else { return page };
+    let Some(help) = of(&[]) else {
+        return String::new();
+    };
+    let mut page = head(&help);
     let mut sections = String::new();
     let mut commands = Table::new(&[
         both("命令", "Command"),
@@ -53,12 +55,6 @@ fn page() -> String {
     page += &statuses(&help);
     page += &language();
     page += &global(&root);
-    for part in &help.details {
-        // The examples of the whole program are a tour of its commands, as the table is.
-        if !matches!(part, Part::Examples(_)) {
-            page += &details(part);
-        }
-    }
     page + &sections
 }
 
@@ -77,7 +73,7 @@ fn each(command: &mut Command, path: &[&str], visit: &mut dyn FnMut(&mut Command
     }
 }
 
-fn head() -> String {
+fn head(help: &Help) -> String {
     let title = both("命令行", "Command line");
     let generated = both(
         "由 `fcproto --help` 的内容生成，不要改本页；`BLESS=1 cargo test -p fc-cli --test it help` 会重写它。",
@@ -89,11 +85,18 @@ fn head() -> String {
         "All commands and options of `fcproto`. In a terminal, `fcproto COMMAND --help` shows the same text. `-h` shows \
          only summary, usage and options.",
     );
+    let mut page = format!(
+        "---\ntitle: {title}\noutline: [2, 2]\neditLink: false\n---\n\n<!-- {generated} -->\n\n# {title}\n\n{about}\n"
+    );
+    // The examples are a tour of the commands, as the table is.
+    let details = help.details.iter();
+    page.extend(
+        details
+            .filter(|it| !matches!(it, Part::Examples(_)))
+            .map(self::details),
+    );
     let commands = both("命令一览", "Commands");
-    format!(
-        "---\ntitle: {title}\noutline: [2, 2]\neditLink: false\n---\n\n<!-- {generated} -->\n\n# {title}\n\n{about}\n\n\
-         ## {commands} {{#commands}}\n\n"
-    )
+    page + &format!("\n## {commands} {{#commands}}\n\n")
 }
 
 fn statuses(help: &Help) -> String {

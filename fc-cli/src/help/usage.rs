@@ -181,7 +181,9 @@ fn tips(error: &Error) -> Vec<String> {
         ContextKind::SuggestedValue,
     ];
     let near = kinds.into_iter().map(|kind| words(error, kind));
-    let near = near.filter(|names| !names.is_empty()).map(|names| {
+    let near = near.filter(|names| !names.is_empty()).map(|mut names| {
+        // Clap has the likeliest one last.
+        names.reverse();
         let names = listed(&names);
         said!("是否想写 {names}？", "did you mean {names}?")
     });
