@@ -92,7 +92,10 @@ fn the_guides_name_every_end_of_a_call() {
         .collect();
     assert!(names.contains(&"refused"), "{names:?}");
     let site = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs-site");
-    for guide in ["guides/first-call-steps.md", "en/guides/first-call-steps.md"] {
+    for guide in [
+        "guides/first-call-steps.md",
+        "en/guides/first-call-steps.md",
+    ] {
         let text = fs::read_to_string(site.join(guide)).unwrap();
         let rows: Vec<&str> = text
             .lines()
