@@ -169,7 +169,8 @@ fn per_byte(small: &Measured, effort: Effort) -> (Table, Vec<Target>) {
         t("编码", "encode"),
         t("编码，MB/s", "encode, MB/s"),
     ];
-    let mut table = Table::new(t("每字节：与 MAVLink 2 对比", "Per byte on the wire, compared with MAVLink 2"), columns);
+    let mut table =
+        Table::new(t("每字节：与 MAVLink 2 对比", "Per byte on the wire, compared with MAVLink 2"), columns);
     let pair = (small.decode.ours, small.encode.ours);
     for (name, bytes, (decode, encode)) in [
         (t("MAVLink ODOMETRY", "MAVLink ODOMETRY"), length, (parse, serialize)),

@@ -149,8 +149,10 @@ fn slow(program: &Path, quick: bool) -> (Table, f64) {
         vec![t("情形", "case"), t("快的 app 送达，次/秒", "delivered to the fast apps/s"), t("比值", "ratio")];
     let title = t("一个从不应答的 app", "An app that never acknowledges");
     let mut table = Table::new(title, columns);
-    let rows: [(Text, f64); 2] =
-        [(t("10 个快的 app", "10 fast apps"), without), (t("10 个快的 app 和 1 个慢的", "10 fast apps and a slow one"), with)];
+    let rows: [(Text, f64); 2] = [
+        (t("10 个快的 app", "10 fast apps"), without),
+        (t("10 个快的 app 和 1 个慢的", "10 fast apps and a slow one"), with),
+    ];
     for (name, rate) in rows {
         table.row(vec![name, thousands(rate).into(), ratio(rate, without).into()]);
     }
