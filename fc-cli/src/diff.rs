@@ -86,48 +86,7 @@ pub fn help() -> Help {
                  the person who accepts it, and a date. The change is still listed, but no longer counts. A waiver that has expired \
                  is an error. In a comparison with the last release, so is a waiver that accepts nothing.",
             )),
-            Part::Terms(
-                both("`json` 的键", "Keys of `json`"),
-                vec![
-                    ("rule", both("规则的名称", "Name of the rule")),
-                    ("number", both("规则的编号", "Number of the rule")),
-                    ("subject", both("变更的内容", "Changed part")),
-                    (
-                        "wire",
-                        both(
-                            "old_app_new_robot 和 new_app_old_robot 的列表",
-                            "List of old_app_new_robot and new_app_old_robot",
-                        ),
-                    ),
-                    ("source", both("语言的列表", "List of languages")),
-                    (
-                        "behaviour",
-                        both("程序行为是否改变", "True if programs behave differently"),
-                    ),
-                    (
-                        "silent",
-                        both(
-                            "是否不报错而值出错",
-                            "True if nothing fails, but a value is wrong",
-                        ),
-                    ),
-                    ("message", both("变更的说明", "Message")),
-                    (
-                        "fingerprint",
-                        both(
-                            "同一变更的值相同，与位置无关",
-                            "The same for the same change, wherever it is",
-                        ),
-                    ),
-                    (
-                        "waived",
-                        both(
-                            "接受它的豁免，没有则无此键",
-                            "Waiver that accepts it, if there is one",
-                        ),
-                    ),
-                ],
-            ),
+            keys(),
             Part::Examples(vec![
                 (
                     "fcproto diff",
@@ -157,6 +116,52 @@ pub fn help() -> Help {
         ),
         speaks: both("所有格式中的变更", "Changes in every format"),
     }
+}
+
+/// Keys of the format `json`.
+fn keys() -> Part {
+    Part::Terms(
+        both("`json` 的键", "Keys of `json`"),
+        vec![
+            ("rule", both("规则的名称", "Name of the rule")),
+            ("number", both("规则的编号", "Number of the rule")),
+            ("subject", both("变更的内容", "Changed part")),
+            (
+                "wire",
+                both(
+                    "old_app_new_robot 和 new_app_old_robot 的列表",
+                    "List of old_app_new_robot and new_app_old_robot",
+                ),
+            ),
+            ("source", both("语言的列表", "List of languages")),
+            (
+                "behaviour",
+                both("程序行为是否改变", "True if programs behave differently"),
+            ),
+            (
+                "silent",
+                both(
+                    "是否不报错而值出错",
+                    "True if nothing fails, but a value is wrong",
+                ),
+            ),
+            ("message", both("变更的说明", "Message")),
+            (
+                "fingerprint",
+                both(
+                    "同一变更的值相同，与位置无关",
+                    "The same for the same change, wherever it is",
+                ),
+            ),
+            (
+                "waived",
+                both(
+                    "接受它的豁免，没有则无此键",
+                    "Waiver that accepts it, if there is one",
+                ),
+            ),
+        ],
+    )
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -161,14 +161,13 @@ fn options(shown: &[&Shown<'_>]) -> String {
             for (value, help) in described {
                 table.row(&[&format!("`{value}`"), help]);
             }
-            values += &format!("\n{}", table.0);
+            let _ = write!(values, "\n{}", table.0);
         } else if !shown.values.is_empty() {
             let names = shown.values.iter().map(|(name, _)| format!("`{name}`"));
             let names = names.collect::<Vec<_>>().join(both("、", ", "));
             text += &said!("：{names}", ": {names}");
         }
-        let is_value =
-            shown.argument.get_default_values().first().is_some() && shown.default.is_some();
+        let is_value = !shown.argument.get_default_values().is_empty() && shown.default.is_some();
         let default = match &shown.default {
             Some(default) if is_value => format!("`{default}`"),
             Some(default) => default.clone(),
@@ -211,7 +210,7 @@ impl Table {
     fn new(heads: &[&str]) -> Self {
         let mut table = Self(String::new());
         table.row(heads);
-        table.0 += &format!("|{}\n", "---|".repeat(heads.len()));
+        let _ = writeln!(table.0, "|{}", "---|".repeat(heads.len()));
         table
     }
 
