@@ -86,7 +86,7 @@ pub fn help() -> Help {
                  the person who accepts it, and a date. The change is still listed, but no longer counts. A waiver that has expired \
                  is an error. In a comparison with the last release, so is a waiver that accepts nothing.",
             )),
-            json_keys(),
+            keys(),
             Part::Examples(vec![
                 (
                     "fcproto diff",
@@ -118,7 +118,8 @@ pub fn help() -> Help {
     }
 }
 
-fn json_keys() -> Part {
+/// Keys of the format `json`.
+fn keys() -> Part {
     Part::Terms(
         both("`json` 的键", "Keys of `json`"),
         vec![
