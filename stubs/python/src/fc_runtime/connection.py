@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from .backoff import Tries
 from .calls import (
@@ -30,17 +30,18 @@ from .enveloped import read_request, read_response, write_raw_request, write_req
 from .errors import BodyError, BodyErrorKind, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .life import Life
-from .link import Link, Patience
+from .link import Link, Patience, dialled
 from .operations import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
+from .settings import duration, flag, or_none
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 from .thin import Thin
-from .within import within
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Awaitable, Callable
+    from collections.abc import AsyncIterator, Callable
 
+    from .link import Dial
     from .message import Message
     from .operations import Command
     from .protocol import Protocol, ResultText
@@ -48,14 +49,10 @@ if TYPE_CHECKING:
 R = TypeVar("R", bound="Message")
 Q = TypeVar("Q", bound="Message")
 
-Dial: TypeAlias = (
-    "Callable[[Callable[[], asyncio.Protocol]], Awaitable[tuple[asyncio.BaseTransport, asyncio.BaseProtocol]]]"
-)
-"""Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
-
 _log: Final = logging.getLogger(__name__)
 # No acknowledgement is written behind so much that the robot has not read.
 _ACKNOWLEDGE_UP_TO: Final = 256 * 1024
+_check_timeout: Final = or_none(duration)
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,15 +189,9 @@ class Connection:
             self._ended,
         )
         self._lost = self._loop.create_future()
-        try:
-            await within(self.config.connect_timeout, self._dial(lambda: link))
-        except asyncio.CancelledError:
-            link.abort()
-            raise
-        except (asyncio.TimeoutError, TimeoutError):
-            return Loss(LossKind.CONNECT_TIMEOUT)
-        except OSError as error:
-            return Loss(LossKind.UNREACHABLE, type(error).__name__)
+        loss = await dialled(self._dial, link, self.config.connect_timeout)
+        if loss is not None:
+            return loss
         if isinstance(self.life.state, Closed):
             link.close()
             return self.life.state.why
@@ -378,6 +369,9 @@ class Connection:
 
     async def _fly(self, code: int, write: Callable[[], bytes], timeout: float | None, *, repeat: bool) -> bytes:
         """Send what is written, and wait for the bytes of the answer. Raises `CallError`."""
+        self.protocol.layout.check_code("code", code)
+        _check_timeout("timeout", timeout)
+        flag("repeat", repeat)
         state = self.life.state
         if isinstance(state, Closed):
             raise ClosedError(state.why)

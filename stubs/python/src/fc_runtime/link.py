@@ -5,14 +5,21 @@ from __future__ import annotations
 import asyncio
 import socket
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from .calls import Loss, LossKind
 from .errors import FrameError
+from .within import within
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Awaitable, Callable
 
     from .frame import Decoder, Frame
+
+Dial: TypeAlias = (
+    "Callable[[Callable[[], asyncio.Protocol]], Awaitable[tuple[asyncio.BaseTransport, asyncio.BaseProtocol]]]"
+)
+"""Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
 
 # What a frame has to bring to an app beside the stall timeout, in bytes per second: a wrong length swallows what
 # follows.
@@ -393,3 +400,17 @@ class Link(asyncio.Protocol):
             self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
         else:
             transport.close()
+
+
+async def dialled(dial: Dial, link: Link, seconds: float) -> Loss | None:
+    """Connects a link. Returns why there is no connection, if there is none."""
+    try:
+        await within(seconds, dial(lambda: link))
+    except asyncio.CancelledError:
+        link.abort()
+        raise
+    except (asyncio.TimeoutError, TimeoutError):
+        return Loss(LossKind.CONNECT_TIMEOUT)
+    except Exception as error:  # noqa: BLE001 - such as a name that cannot be encoded; attempts go on whatever it is
+        return Loss(LossKind.UNREACHABLE, type(error).__name__)
+    return None

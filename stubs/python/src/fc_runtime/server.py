@@ -16,7 +16,7 @@ from .counters import ServerCounters
 from .data_peer import AppStreams, DataPeer, content_of
 from .enveloped import write_request
 from .errors import BodyError, FrameError
-from .frame import Encoder, FrameId
+from .frame import Encoder, frame_bytes, stream_frame
 from .link import Patience
 from .operations import Effect
 from .peer import Peer
@@ -28,6 +28,7 @@ from .pushes import (
     NoConnectionError,
     Push,
 )
+from .settings import duration
 from .thin import Thin
 
 if TYPE_CHECKING:
@@ -296,6 +297,7 @@ class Server:
         """
         if report.code is None:
             raise ValueError(f"{report.name} has no code yet")
+        self.protocol.layout.check_code("code", report.code)
         if to is not None and to not in self._peers:
             raise NoConnectionError(to)
         try:
@@ -341,12 +343,12 @@ class Server:
         the two by nothing but the address, so that is only possible while it is the only app there; otherwise
         `AmbiguousError`, and nothing is sent.
         """
+        frame = stream_frame(self.protocol, code, message_id)
         peers = self._data_audience(to)
         try:
-            prepared = self.encoder.prepare(data)
+            prepared = self.encoder.prepare(frame_bytes(data))
         except FrameError as error:
             raise FramePushError(error) from None
-        frame = FrameId(False, self.protocol.stream, code, message_id)
         sending = [self.loop.create_task(one.send(frame, prepared)) for one in peers]
         if not sending:
             return 0
@@ -375,6 +377,7 @@ class Server:
 
     async def shutdown(self, grace: float) -> None:
         """Take no more requests, answer those there are within the grace, and end. Never takes longer than that."""
+        duration("grace", grace)
         deadline = self.loop.time() + grace
         self._is_stopping = True
         for listening in self._listening:
