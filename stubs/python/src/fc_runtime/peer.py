@@ -307,6 +307,7 @@ class Peer:
             return
         self._queue.append(push)
         self._queued_bytes += push.size
+        self.server.look_at_memory(push.size)
         self._pump()
         while self._queue and (
             len(self._queue) > self.server.limits.queued_reports or self._queued_bytes > self.server.queued_bytes

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from .context import Context
+    from .data_peer import AppStream
     from .link import Link
     from .message import Message
     from .operations import AckPolicy, Report, Stream
@@ -156,7 +157,12 @@ class Server:
     @property
     def memory(self) -> int:
         """Bytes that apps make the robot hold at this moment."""
-        return sum(one.held for one in self._members())
+        streams = 0 if self.app_streams is None else self.app_streams.held()
+        return sum(one.held for one in self._members()) + streams
+
+    def _held_by(self, one: _Member) -> int:
+        """Bytes that one connection makes the robot hold."""
+        return one.held + (0 if self.app_streams is None else self.app_streams.held(one.connection))
 
     def _members(self) -> list[_Member]:
         return [*self._peers.values(), *self._data_peers.values()]
@@ -197,6 +203,8 @@ class Server:
         if not self._admit(self._data_peers, peer, lambda one: not one.is_heard and one.address not in speakers):
             return
         self.counters.data_connections += 1
+        if self.app_streams is not None and self.app_streams.is_full:
+            peer.link.hold("streams")
         peer.owners.update(one.connection for one in self._peers.values() if one.address == peer.address)
 
     def _effects(self, address: str) -> frozenset[Effect] | None:
@@ -258,17 +266,25 @@ class Server:
         """Note bytes that have come or gone, and look now and then at how much is held."""
         self.counters.bytes_in += received
         self.counters.bytes_out += sent
-        self._looked += received + sent
+        self.look_at_memory(received + sent)
+
+    def look_at_memory(self, more: int) -> None:
+        """Note that more bytes may be held, and look now and then at how much is."""
+        self._looked += more
         if self._looked < _LOOK_EACH:
             return
         self._looked = 0
         # An eighth is kept for what is read and answered at a moment.
         if self.memory > self.config.memory - self.config.memory // 8:
-            most = max(self._members(), key=lambda one: one.held)
+            most = max(self._members(), key=self._held_by, default=None)
+            if most is None:
+                return
             self.counters.connections_evicted += 1
             text = "closed %s, which held %d bytes: memory is short"
-            self.log("evicted", logging.WARNING, text, most.address, most.held)
+            self.log("evicted", logging.WARNING, text, most.address, self._held_by(most))
             most.over(at_once=True)
+            if self.app_streams is not None:
+                self.app_streams.drop(most.connection)
 
     @property
     def is_abandoned_full(self) -> bool:
@@ -323,8 +339,27 @@ class Server:
         """
         if self.app_streams is not None:
             self.app_streams.end()
-        self.app_streams = AppStreams()
+        self.app_streams = AppStreams(self.queued_bytes, self._read_streams)
         return self.app_streams
+
+    def put_stream(self, frame: AppStream) -> None:
+        """Hand on a frame of raw bytes, or drop it while nobody takes them."""
+        self.counters.stream_frames_in += 1
+        streams = self.app_streams
+        if streams is None:
+            self.counters.stream_frames_dropped += 1
+            return
+        streams.put(frame)
+        self.look_at_memory(len(frame.data))
+        if streams.is_full:
+            for peer in self._data_peers.values():
+                peer.link.hold("streams")
+
+    def _read_streams(self) -> None:
+        if self.app_streams is not None and self.app_streams.is_full:
+            return
+        for peer in self._data_peers.values():
+            peer.link.let_go("streams")
 
     async def send_stream(self, stream: Stream[B], message_id: int, content: B, to: int | None = None) -> int:
         """Send a frame of one of the robot's streams; all else is as with `send_data`."""
