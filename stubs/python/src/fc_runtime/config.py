@@ -138,7 +138,7 @@ class ServerConfig:
     """Time of silence between frames after which a connection is closed; `None` for any."""
     keepalive: float | None = 30.0
     """TCP probes after so much silence; `None` switches them off."""
-    on_handler_error: Callable[[Context, BaseException], None] | None = None
+    on_handler_error: Callable[[BaseException, Context], None] | None = None
     """Is called with each error of a handler.
 
     That is what it raised besides a `Refusal`, also after its timeout, or why its response cannot be sent. The error

@@ -24,10 +24,11 @@ from .calls import (
     Refusal,
     RefusedError,
 )
+from .codec import codec_of
 from .config import ClientConfig, first_id_now
-from .document import Entries, Json, parse_body
+from .document import Json, parse_body
 from .enveloped import read_request, read_response, write_raw_request, write_request, write_response
-from .errors import BodyError, BodyErrorKind, FrameError
+from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .life import Life
 from .link import Link, Patience, dialled
@@ -334,9 +335,11 @@ class Connection:
         """
         if command.code is None:
             raise ValueError(f"{command.name} has no code yet")
-        asked = command.request() if request is None else request
+        asked = self.asked(command, request)
         repeats = command.effect is Effect.READ if repeat is None else repeat
-        answer = await self._fly(command.code, lambda: write_request(self.protocol, asked), timeout, repeat=repeats)
+        answer = await self._fly(
+            command.code, lambda: write_request(self.protocol, command.request, asked), timeout, repeat=repeats
+        )
         try:
             response = read_response(self.protocol, command.response, answer, self.limits)
         except Refusal as refusal:
@@ -346,6 +349,15 @@ class Connection:
         assert response is not None
         return response
 
+    def asked(self, command: Command[Q, R], request: Message | None) -> Message:
+        """The request of a call: one without keys where none is given. Raises `InvalidRequestError`."""
+        if request is not None:
+            return request
+        try:
+            return codec_of(command.request).empty()
+        except BodyError as error:
+            raise InvalidRequestError(error) from None
+
     async def call_raw(
         self, code: int, body: Json | None = None, *, timeout: float | None = None, repeat: bool = False
     ) -> RawResponse:
@@ -353,10 +365,7 @@ class Connection:
 
         A result other than success is no error here, but in the response. Raises `CallError`.
         """
-        tree = Entries() if body is None else body.tree
-        if not isinstance(tree, Entries):
-            raise InvalidRequestError(BodyError(BodyErrorKind.NOT_AN_OBJECT, "an object is wanted"))
-        answer = await self._fly(code, lambda: write_raw_request(self.protocol, tree), timeout, repeat=repeat)
+        answer = await self._fly(code, lambda: write_raw_request(self.protocol, body), timeout, repeat=repeat)
         refusal: Refusal | None = None
         try:
             read_response(self.protocol, None, answer, self.limits)

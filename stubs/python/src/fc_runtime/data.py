@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, TypeAlias, TypeVar
 
 from .backoff import Tries
 from .calls import Loss, LossKind, Refusal
+from .codec import write_content
 from .data_errors import (
     DataClosedError,
     DataError,
@@ -343,7 +344,7 @@ class DataConnection:
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
-            data = content if isinstance(content, bytes) else content.to_json().encode()
+            data = write_content(stream.body, content)
         except BodyError as error:
             raise DataInvalidError(error) from None
         await self.send(stream.code, message_id, data)

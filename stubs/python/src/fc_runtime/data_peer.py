@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from .errors import FrameError
     from .frame import Frame, Prepared
-    from .message import Message
-    from .operations import Stream
     from .server import Server
 
 
@@ -243,8 +241,3 @@ class DataPeer:
         if at_once or self._writer is None:
             self.link.close(at_once=at_once)
         self.server.gone_data(self)
-
-
-def content_of(stream: Stream[Message | bytes], content: Message | bytes) -> bytes:
-    """What a frame of a stream holds. Raises `BodyError`."""
-    return content if isinstance(content, bytes) else content.to_json().encode()

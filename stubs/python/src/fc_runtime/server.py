@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 from typing import Protocol as Interface
 
+from .codec import write_content
 from .config import ServerConfig
 from .counters import ServerCounters
-from .data_peer import AppStreams, DataPeer, content_of
+from .data_peer import AppStreams, DataPeer
 from .enveloped import write_request
 from .errors import BodyError, FrameError
 from .frame import Encoder, frame_bytes, stream_frame
@@ -30,6 +31,7 @@ from .pushes import (
 )
 from .settings import duration
 from .thin import Thin
+from .thrown import describe
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -291,6 +293,25 @@ class Server:
         """Whether as many handlers run on as may."""
         return 0 < self.config.abandoned_handlers <= len(self._abandoned)
 
+    def tell_failure(self, what: str, error: BaseException, context: Context, handler: Any) -> None:
+        """Log an error of a handler by its class and place, and pass it to `on_handler_error`."""
+        known = self.protocol.commands_by_code.get(context.code)
+        # All codes without a command are one cause: an app chooses them.
+        cause = f"{what} {'' if known is None else known.name}"
+        self._log_failure(cause, what % (f"0x{context.code:04X}" if known is None else known.name), error, handler)
+        hook = self.config.on_handler_error
+        if hook is None:
+            return
+        try:
+            hook(error, context)
+        except Exception as failed:  # noqa: BLE001 - whatever it is, it is the robot's own
+            self._log_failure("hook", "`on_handler_error` failed", failed, hook)
+
+    def _log_failure(self, cause: str, what: str, error: BaseException, function: Any) -> None:
+        # The error's own text may hold what was received.
+        self.log(cause, logging.ERROR, "%s: %s", what, describe(error, function))
+        _log.debug("%s: %s", self.protocol.name, what, exc_info=error)
+
     def abandon(self, task: asyncio.Task[Any], context: Context) -> None:
         """Nobody waits for a handler any more: what only asks is cancelled, what moves something runs to its end."""
         context.abandon()
@@ -299,12 +320,7 @@ class Server:
             return
         self.counters.handlers_abandoned += 1
         self._abandoned.add(task)
-        task.add_done_callback(self._ran_on)
-
-    def _ran_on(self, task: asyncio.Task[Any]) -> None:
-        self._abandoned.discard(task)
-        if not task.cancelled() and (error := task.exception()) is not None:
-            _log.debug("%s: a handler that ran on failed: %s", self.protocol.name, type(error).__name__)
+        task.add_done_callback(self._abandoned.discard)
 
     async def push(self, report: Report[Q], message: Q, to: int | None = None) -> list[Acknowledgement]:
         """Send a report to all apps, or to one, until it is acknowledged. Raises `PushError`.
@@ -317,7 +333,7 @@ class Server:
         if to is not None and to not in self._peers:
             raise NoConnectionError(to)
         try:
-            prepared = self.encoder.prepare(write_request(self.protocol, message))
+            prepared = self.encoder.prepare(write_request(self.protocol, report.request, message))
         except BodyError as error:
             raise InvalidReportError(error) from None
         except FrameError as error:
@@ -366,7 +382,7 @@ class Server:
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
-            data = content_of(stream, content)
+            data = write_content(stream.body, content)
         except BodyError as error:
             raise InvalidReportError(error) from None
         return await self.send_data(stream.code, message_id, data, to)
