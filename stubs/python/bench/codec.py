@@ -73,7 +73,7 @@ def _message(name: str, cls: type[rt.Message], effort: Effort) -> dict[str, Any]
     message, identity = decode(), opened(frame).id
 
     def encode() -> bytes:
-        return encoder.encode(identity, write_response(fc.FC, success, message))
+        return encoder.encode(identity, write_response(fc.FC, success, type(message), message))
 
     plain = least_decode(frame)
     header = frame[: DIGEST.start]

@@ -73,4 +73,4 @@ def again(protocol: rt.Protocol, operation: Any, vector: dict[str, Any]) -> Any:
     if isinstance(message, rt.BodyError):
         raise message
     assert type(message) is cls
-    return json.loads(write_with_envelope(envelope, message))
+    return json.loads(write_with_envelope(envelope, cls, message))

@@ -44,7 +44,7 @@ def verdict(data: bytes) -> list[Any]:
     envelope, message = read_with_envelope(outer, cls or Nothing, frame.data, FC.defaults.limits)
     if isinstance(message, rt.BodyError):
         raise message
-    return ["message", *header, write_with_envelope(envelope, message).decode()] if cls else raw
+    return ["message", *header, write_with_envelope(envelope, cls, message).decode()] if cls else raw
 
 
 for line in sys.stdin:

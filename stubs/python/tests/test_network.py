@@ -101,6 +101,22 @@ class Network(AsyncCase):
         _, going_on = await asyncio.wait(asyncio.all_tasks() - before, timeout=PATIENCE)
         self.assertEqual(going_on, set())
 
+    async def test_an_attempt_that_fails_in_any_way_is_a_connect_error(self) -> None:
+        # Neither can be encoded as the name of a host.
+        for host in ("x" * 64 + ".example", "a..b"):
+            with self.subTest(host=host), self.assertRaises(rt.ConnectError) as caught:
+                await connection.Connection(TOY, ClientConfig(host=host)).connect()
+            self.assertIs(caught.exception.loss.kind, rt.LossKind.UNREACHABLE)
+
+        async def dial(_: Any) -> Any:
+            raise LookupError("no proxy")
+
+        with self.assertRaisesRegex(rt.ConnectError, "unreachable: LookupError"):
+            await connection.Connection(TOY, ClientConfig(), dial).connect()
+        lazy = connection.Connection(TOY, ClientConfig(reconnect=rt.Backoff(first=0.0, attempts=2)), dial)
+        lazy.connect_lazy()
+        self.assertEqual((await asyncio.wait_for(lazy.closed(), PATIENCE)).detail, "LookupError")
+
     async def test_a_raw_call_has_what_it_is_given_and_tells_what_is_answered(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()

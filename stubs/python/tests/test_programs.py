@@ -165,6 +165,11 @@ class Programs(AsyncCase):
         self.assertIn("wrong_type", error)
         code, _, error = await self.call("no_such", *robot)
         self.assertEqual((code, error), (2, "no such command: no_such; see --list\n"))
+        for wrong in (("--timeout", "nan"), ("--timeout", "-1"), ("--host", ""), ("--command-port", "99999")):
+            code, out, error = await self.call("get_robot_sn", *robot, *wrong)
+            self.assertEqual((code, out), (2, ""), error)
+            self.assertIn("expected", error)
+            self.assertNotIn("Traceback", error)
         code, out, _ = await self.call("--list")
         self.assertEqual((code, len(out.splitlines())), (0, len(fc.FC.commands)))
         process.send_signal(signal.SIGTERM)

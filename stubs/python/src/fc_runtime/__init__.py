@@ -107,6 +107,7 @@ from .robot import ExampleRobot, Handler, Handlers, RawRequest, Reporter, Robot,
 from .server import Server
 from .session import BusyFault, Due, Incoming, Session
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
+from .thin import ErrorsOnly
 
 __all__ = [
     "F32",
@@ -246,5 +247,4 @@ __all__ = [
     "wire_enum",
 ]
 
-# Who wants the log asks for it: `logging.getLogger("fc_runtime")`.
-logging.getLogger(__name__).addHandler(logging.NullHandler())
+logging.getLogger(__name__).addHandler(ErrorsOnly())

@@ -120,12 +120,18 @@ class Codec(Generic[M]):
         values["extra"] = Extra.of_entries(extra)
         return self.cls(**values)
 
+    def empty(self) -> M:
+        """A message without keys. Raises `BodyError` for the first that is required."""
+        return self.finish({}, Entries())
+
     def read_text(self, text: str | bytes) -> M:
         """The message of a JSON text."""
         return self.read(parse_body(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text))
 
     def write(self, message: M, out: list[str], separator: str = "{") -> str:
         """Appends the keys of a message, each behind a separator. Gives that which the next key has."""
+        if not isinstance(message, self.cls):
+            raise _not_a(self.cls.__name__, message)
         for slot in self.slots:
             value = getattr(message, slot.attribute)
             if value is None:
@@ -138,6 +144,8 @@ class Codec(Generic[M]):
                 slot.write(value, out)
             except BodyError as error:
                 raise error.inside(slot.key.name) from None
+        if not isinstance(message.extra, Extra):
+            raise _not_a("`extra` of type Extra", message.extra)
         for key, tree in message.extra.entries:
             if key in self.by_key:
                 raise BodyError(BodyErrorKind.DUPLICATE_KEY, "the type has a field for this key").inside(key)
@@ -148,8 +156,6 @@ class Codec(Generic[M]):
 
     def write_object(self, message: M, out: list[str]) -> None:
         """Appends a message as an object."""
-        if not isinstance(message, self.cls):
-            raise BodyError(BodyErrorKind.WRONG_TYPE, f"{self.cls.__name__} is wanted, not {type(message).__name__}")
         out.append("}" if self.write(message, out) == "," else "{}")
 
     def write_text(self, message: M) -> str:
@@ -186,6 +192,12 @@ def check_key(key: str) -> None:
         raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
 
 
+def _not_a(wanted: str, found: object) -> BodyError:
+    """The error of an object that is not what is to be written."""
+    name = found.__name__ if isinstance(found, type) else type(found).__name__
+    return BodyError(BodyErrorKind.WRONG_TYPE, f"{wanted} is wanted, not {name}")
+
+
 def _missing(slot: Slot) -> BodyError:
     return BodyError(BodyErrorKind.MISSING_FIELD, "the key is required; send it").inside(slot.key.name)
 
@@ -199,6 +211,15 @@ def codec_of(cls: type[M]) -> Codec[M]:
     if codec is None:
         codec = _CODECS[cls] = Codec(cls)
     return codec
+
+
+def write_content(body: type[Any], content: object) -> bytes:
+    """What a frame of a stream holds whose frames hold such a body. Raises `BodyError`."""
+    if body is not bytes:
+        return codec_of(body).write_text(cast("Message", content)).encode()
+    if not isinstance(content, (bytes, bytearray, memoryview)):
+        raise _not_a("bytes", content)
+    return bytes(content)
 
 
 def _slot(cls: type[Message], attribute: str) -> Slot:

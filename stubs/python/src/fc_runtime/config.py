@@ -2,17 +2,35 @@
 
 from __future__ import annotations
 
+import ipaddress
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import TYPE_CHECKING, Literal
+from ssl import SSLContext
+from typing import TYPE_CHECKING, Any, Final, Literal, cast
+
+from .frame import Gzip
+from .operations import Effect
+from .protocol import Limits
+from .settings import (
+    check_all,
+    duration,
+    flag,
+    function,
+    host,
+    integer,
+    keepalive,
+    of_type,
+    or_none,
+    or_word,
+    wrong,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-    from ssl import SSLContext
+    from collections.abc import Callable
 
-    from .frame import Gzip
-    from .operations import Effect
-    from .protocol import Limits
+    from .context import Context
+    from .settings import Check
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +43,10 @@ class Backoff:
     """Longest wait; each is twice the one before, minus up to a quarter at random."""
     attempts: int | None = None
     """Failed attempts in a row after which the connection is given up; `None`: never."""
+
+    def __post_init__(self) -> None:
+        """Checks every setting. Raises `TypeError` and `ValueError`."""
+        check_all(self, _BACKOFF)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +83,10 @@ class ClientConfig:
     """Whether to search for the next frame after bytes that are none."""
     ssl: SSLContext | None = None
     """For TLS at both ports; the protocol itself has none."""
+
+    def __post_init__(self) -> None:
+        """Checks every setting. Raises `TypeError` and `ValueError`."""
+        check_all(self, _CLIENT)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,6 +138,90 @@ class ServerConfig:
     """Time of silence between frames after which a connection is closed; `None` for any."""
     keepalive: float | None = 30.0
     """TCP probes after so much silence; `None` switches them off."""
+    on_handler_error: Callable[[BaseException, Context], None] | None = None
+    """Is called with each error of a handler.
+
+    That is what it raised besides a `Refusal`, also after its timeout, or why its response cannot be sent. The error
+    may quote the request. The log has only its class and place. What this function raises is logged and ignored.
+    """
+
+    def __post_init__(self) -> None:
+        """Checks every setting. Raises `TypeError` and `ValueError`."""
+        check_all(self, _SERVER)
+
+
+def _networks(name: str, value: Any) -> None:
+    """Checks what may be called from which networks."""
+    if not isinstance(value, Mapping):
+        raise TypeError(wrong(name, value, "effects by network"))
+    for network, effects in value.items():
+        network_expected = "a network such as '10.0.0.0/24'"
+        # An integer would be an address, too.
+        if not isinstance(network, str):
+            raise TypeError(wrong(name, network, network_expected))
+        try:
+            ipaddress.ip_network(network)
+        except ValueError:
+            raise ValueError(wrong(name, network, network_expected)) from None
+        is_collection = isinstance(effects, Collection)
+        if not is_collection or not all(isinstance(one, Effect) for one in cast("Collection[Any]", effects)):
+            raise TypeError(wrong(f"{name}[{network!r}]", effects, "a collection of `Effect`"))
+
+
+_PORT: Final = integer(1, 65_535)
+_FREE_PORT: Final = integer(0, 65_535)
+_LIMITS: Final = or_none(of_type(Limits, "`Limits`"))
+_GZIP: Final = or_none(of_type(Gzip, "`Gzip`"))
+_SSL: Final = or_none(of_type(SSLContext, "an `SSLContext`"))
+
+_BACKOFF: Final[Mapping[str, Check]] = {
+    "first": duration,
+    "longest": duration,
+    "attempts": or_none(integer(0)),
+}
+
+_CLIENT: Final[Mapping[str, Check]] = {
+    "host": or_none(host),
+    "command_port": or_none(_PORT),
+    "data_port": or_none(_PORT),
+    "connect_timeout": duration,
+    "call_timeout": or_none(duration),
+    "reconnect": or_none(of_type(Backoff, "`Backoff`")),
+    "keepalive": or_none(keepalive),
+    "stall_timeout": duration,
+    "limits": _LIMITS,
+    "queued_bytes": or_none(integer(0)),
+    "first_id": or_none(integer(0)),
+    "gzip": _GZIP,
+    "verify_digest": flag,
+    "resync": flag,
+    "ssl": _SSL,
+}
+
+_SERVER: Final[Mapping[str, Check]] = {
+    "address": host,
+    "command_port": or_none(_FREE_PORT),
+    "data_port": or_none(_FREE_PORT),
+    "handler_timeout": or_none(duration),
+    "max_age": or_word("spec", duration),
+    "limits": _LIMITS,
+    "queued_bytes": or_none(integer(0)),
+    "connections_per_address": integer(1),
+    "allow": or_none(_networks),
+    "abandoned_handlers": integer(0),
+    "memory": integer(0),
+    "first_id": or_none(integer(0)),
+    "gzip": _GZIP,
+    "verify_digest": flag,
+    "resync": flag,
+    "ssl": _SSL,
+    "header_timeout": duration,
+    "stall_timeout": duration,
+    "least_rate": integer(0),
+    "idle_timeout": or_none(duration),
+    "keepalive": or_none(keepalive),
+    "on_handler_error": or_none(function),
+}
 
 
 def first_id_now() -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from .backoff import Tries
 from .calls import (
@@ -24,23 +24,25 @@ from .calls import (
     Refusal,
     RefusedError,
 )
+from .codec import codec_of
 from .config import ClientConfig, first_id_now
-from .document import Entries, Json, parse_body
+from .document import Json, parse_body
 from .enveloped import read_request, read_response, write_raw_request, write_request, write_response
-from .errors import BodyError, BodyErrorKind, FrameError
+from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
 from .life import Life
-from .link import Link, Patience
+from .link import Link, Patience, dialled
 from .operations import AckPolicy, Effect
 from .receivers import RawReport, Receiver
 from .session import BusyFault, Incoming, Session
+from .settings import duration, flag, or_none
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 from .thin import Thin
-from .within import within
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Awaitable, Callable
+    from collections.abc import AsyncIterator, Callable
 
+    from .link import Dial
     from .message import Message
     from .operations import Command
     from .protocol import Protocol, ResultText
@@ -48,14 +50,10 @@ if TYPE_CHECKING:
 R = TypeVar("R", bound="Message")
 Q = TypeVar("Q", bound="Message")
 
-Dial: TypeAlias = (
-    "Callable[[Callable[[], asyncio.Protocol]], Awaitable[tuple[asyncio.BaseTransport, asyncio.BaseProtocol]]]"
-)
-"""Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
-
 _log: Final = logging.getLogger(__name__)
 # No acknowledgement is written behind so much that the robot has not read.
 _ACKNOWLEDGE_UP_TO: Final = 256 * 1024
+_check_timeout: Final = or_none(duration)
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,15 +190,9 @@ class Connection:
             self._ended,
         )
         self._lost = self._loop.create_future()
-        try:
-            await within(self.config.connect_timeout, self._dial(lambda: link))
-        except asyncio.CancelledError:
-            link.abort()
-            raise
-        except (asyncio.TimeoutError, TimeoutError):
-            return Loss(LossKind.CONNECT_TIMEOUT)
-        except OSError as error:
-            return Loss(LossKind.UNREACHABLE, type(error).__name__)
+        loss = await dialled(self._dial, link, self.config.connect_timeout)
+        if loss is not None:
+            return loss
         if isinstance(self.life.state, Closed):
             link.close()
             return self.life.state.why
@@ -343,9 +335,11 @@ class Connection:
         """
         if command.code is None:
             raise ValueError(f"{command.name} has no code yet")
-        asked = command.request() if request is None else request
+        asked = self.asked(command, request)
         repeats = command.effect is Effect.READ if repeat is None else repeat
-        answer = await self._fly(command.code, lambda: write_request(self.protocol, asked), timeout, repeat=repeats)
+        answer = await self._fly(
+            command.code, lambda: write_request(self.protocol, command.request, asked), timeout, repeat=repeats
+        )
         try:
             response = read_response(self.protocol, command.response, answer, self.limits)
         except Refusal as refusal:
@@ -355,6 +349,15 @@ class Connection:
         assert response is not None
         return response
 
+    def asked(self, command: Command[Q, R], request: Message | None) -> Message:
+        """The request of a call: one without keys where none is given. Raises `InvalidRequestError`."""
+        if request is not None:
+            return request
+        try:
+            return codec_of(command.request).empty()
+        except BodyError as error:
+            raise InvalidRequestError(error) from None
+
     async def call_raw(
         self, code: int, body: Json | None = None, *, timeout: float | None = None, repeat: bool = False
     ) -> RawResponse:
@@ -362,10 +365,7 @@ class Connection:
 
         A result other than success is no error here, but in the response. Raises `CallError`.
         """
-        tree = Entries() if body is None else body.tree
-        if not isinstance(tree, Entries):
-            raise InvalidRequestError(BodyError(BodyErrorKind.NOT_AN_OBJECT, "an object is wanted"))
-        answer = await self._fly(code, lambda: write_raw_request(self.protocol, tree), timeout, repeat=repeat)
+        answer = await self._fly(code, lambda: write_raw_request(self.protocol, body), timeout, repeat=repeat)
         refusal: Refusal | None = None
         try:
             read_response(self.protocol, None, answer, self.limits)
@@ -378,6 +378,9 @@ class Connection:
 
     async def _fly(self, code: int, write: Callable[[], bytes], timeout: float | None, *, repeat: bool) -> bytes:
         """Send what is written, and wait for the bytes of the answer. Raises `CallError`."""
+        self.protocol.layout.check_code("code", code)
+        _check_timeout("timeout", timeout)
+        flag("repeat", repeat)
         state = self.life.state
         if isinstance(state, Closed):
             raise ClosedError(state.why)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, TypeAlias, TypeVar
 
 from .backoff import Tries
 from .calls import Loss, LossKind, Refusal
+from .codec import write_content
 from .data_errors import (
     DataClosedError,
     DataError,
@@ -27,9 +28,9 @@ from .data_errors import (
 from .data_queues import StreamFrame, StreamItem, Taker
 from .enveloped import read_response
 from .errors import BodyError, FrameError
-from .frame import Decoder, Encoder, FrameId
+from .frame import Decoder, Encoder, frame_bytes, stream_frame
 from .life import Life
-from .link import Link, Patience
+from .link import Link, Patience, dialled
 from .states import Closed, Connected, Connecting
 from .within import within
 
@@ -37,8 +38,9 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator
     from types import TracebackType
 
-    from .connection import Connection, Dial
+    from .connection import Connection
     from .frame import Frame
+    from .link import Dial
     from .message import Message
     from .operations import Stream
     from .states import ConnectionState
@@ -167,15 +169,9 @@ class DataConnection:
             self._ended,
         )
         self._lost = self._loop.create_future()
-        try:
-            await within(config.connect_timeout, self._dial(lambda: link))
-        except asyncio.CancelledError:
-            link.abort()
-            raise
-        except (asyncio.TimeoutError, TimeoutError):
-            return Loss(LossKind.CONNECT_TIMEOUT)
-        except OSError as error:
-            return Loss(LossKind.UNREACHABLE, type(error).__name__)
+        loss = await dialled(self._dial, link, config.connect_timeout)
+        if loss is not None:
+            return loss
         link.fill_nothing()
         self._link = link
         self._has_sent = False
@@ -348,7 +344,7 @@ class DataConnection:
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
-            data = content if isinstance(content, bytes) else content.to_json().encode()
+            data = write_content(stream.body, content)
         except BodyError as error:
             raise DataInvalidError(error) from None
         await self.send(stream.code, message_id, data)
@@ -360,10 +356,10 @@ class DataConnection:
         frame, or one sent before, may not have arrived; after `DataNotConnectedError`, `DataClosedError` and
         `DataFrameError` nothing was sent. A frame that has been begun is finished also when this is cancelled.
         """
+        frame, data = stream_frame(self._commands.protocol, code, message_id), frame_bytes(data)
         deadline = self._loop.time() + self._patience
         async with self._sending:
             try:
-                frame = FrameId(False, self._commands.protocol.stream, code, message_id)
                 data = self._encoder.encode(frame, data)
             except FrameError as error:
                 raise DataFrameError(error) from None

@@ -13,10 +13,10 @@ from .link import Link
 from .pace import Pace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from .errors import FrameError
     from .frame import Frame, Prepared
-    from .message import Message
-    from .operations import Stream
     from .server import Server
 
 
@@ -47,23 +47,37 @@ class AppStream:
 class AppStreams:
     """The frames of raw bytes that apps send, in the order they came on each connection; go through with `async for`.
 
-    While the queue is full, apps are not read.
+    While the queue is full, no data connection is read.
     """
 
-    def __init__(self) -> None:
-        """Nothing has come."""
+    def __init__(self, most_bytes: int, on_room: Callable[[], None]) -> None:
+        """Nothing has come. `on_room` is called when there may be room again."""
+        self._most_bytes: Final = most_bytes
+        self._on_room: Final = on_room
         self._frames: Final[deque[AppStream]] = deque()
-        self._held: Final[set[Link]] = set()
         self._waiting: asyncio.Future[None] | None = None
         self._is_over = False
 
-    def put(self, frame: AppStream, link: Link) -> None:
-        """Queue a frame; its connection is not read while there is no room."""
+    @property
+    def is_full(self) -> bool:
+        """Whether no more frames are taken."""
+        return not self._is_over and (len(self._frames) >= _QUEUE or self.held() >= self._most_bytes)
+
+    def held(self, connection: int | None = None) -> int:
+        """Bytes that wait; those of one connection, if one is given."""
+        return sum(len(one.data) for one in self._frames if connection in (None, one.connection))
+
+    def put(self, frame: AppStream) -> None:
+        """Queue a frame. The queue is not full."""
         self._frames.append(frame)
-        if len(self._frames) >= _QUEUE:
-            link.hold("streams")
-            self._held.add(link)
         self._wake()
+
+    def drop(self, connection: int) -> None:
+        """Forget the frames of a connection."""
+        left = [one for one in self._frames if one.connection != connection]
+        self._frames.clear()
+        self._frames.extend(left)
+        self._on_room()
 
     def _wake(self) -> None:
         if self._waiting is not None and not self._waiting.done():
@@ -72,13 +86,8 @@ class AppStreams:
     def end(self) -> None:
         """No more will come: the robot has ended, or another receiver has taken over."""
         self._is_over = True
-        self._let_go()
+        self._on_room()
         self._wake()
-
-    def _let_go(self) -> None:
-        for link in self._held:
-            link.let_go("streams")
-        self._held.clear()
 
     async def recv(self) -> AppStream | None:
         """The next frame; `None` once the robot has ended or another receiver has taken over."""
@@ -91,7 +100,7 @@ class AppStreams:
             finally:
                 self._waiting = None
         frame = self._frames.popleft()
-        self._let_go()
+        self._on_room()
         return frame
 
     def __aiter__(self) -> AppStreams:
@@ -149,16 +158,12 @@ class DataPeer:
         """Bytes that it makes the robot hold."""
         return self.link.held + sum(len(prepared.data) for _, prepared in self._outbox)
 
-    def _arrive(self, link: Link, frame: Frame) -> None:
+    def _arrive(self, _: Link, frame: Frame) -> None:
         server = self.server
         if frame.id.kind != server.protocol.stream or frame.id.response:
             self._refuse(frame.id)
             return
-        server.counters.stream_frames_in += 1
-        if server.app_streams is None:
-            server.counters.stream_frames_dropped += 1
-            return
-        server.app_streams.put(AppStream(self.connection, self.address, frame.id.code, frame.id.id, frame.data), link)
+        server.put_stream(AppStream(self.connection, self.address, frame.id.code, frame.id.id, frame.data))
 
     def _arrive_broken(self, _: Link, error: FrameError) -> None:
         self.server.counters.bad_frames += 1
@@ -179,6 +184,9 @@ class DataPeer:
 
     def _put(self, frame: FrameId, prepared: Prepared) -> None:
         self._outbox.append((frame, prepared))
+        self.server.look_at_memory(len(prepared.data))
+        if self._is_over:
+            return
         if self._writer is None:
             self._writer = self.server.loop.create_task(self._write())
 
@@ -209,7 +217,7 @@ class DataPeer:
         if self._is_over:
             return False
         self._put(frame, prepared)
-        return True
+        return not self._is_over
 
     def _ended(self, _: Link, why: str, error: Exception | None) -> None:
         server = self.server
@@ -233,8 +241,3 @@ class DataPeer:
         if at_once or self._writer is None:
             self.link.close(at_once=at_once)
         self.server.gone_data(self)
-
-
-def content_of(stream: Stream[Message | bytes], content: Message | bytes) -> bytes:
-    """What a frame of a stream holds. Raises `BodyError`."""
-    return content if isinstance(content, bytes) else content.to_json().encode()

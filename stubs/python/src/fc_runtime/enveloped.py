@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from .calls import Refusal
 from .codec import Codec, check_key, codec_of
-from .document import Entries, parse_body, to_bytes, write_text, write_tree
-from .errors import BodyError
+from .document import Entries, Json, parse_body, to_bytes, write_text, write_tree
+from .errors import BodyError, BodyErrorKind
 
 if TYPE_CHECKING:
     from .message import Message
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 M = TypeVar("M", bound="Message")
 
 
-def write_with_envelope(envelope: Message, message: Message | None) -> bytes:
-    """An envelope and the message beside it. Raises `BodyError`."""
+def write_with_envelope(envelope: Message, cls: type[M] | None, message: M | None) -> bytes:
+    """An envelope and a message of a type beside it; nothing beside it without a type. Raises `BodyError`."""
     out: list[str] = []
     separator = codec_of(type(envelope)).write(envelope, out)
-    if message is not None:
-        separator = codec_of(type(message)).write(message, out, separator)
+    if cls is not None:
+        separator = codec_of(cls).write(cast("M", message), out, separator)
     out.append("}" if separator == "," else "{}")
     return to_bytes(out)
 
@@ -31,14 +31,16 @@ def _now_ms() -> int:
     return time.time_ns() // 1_000_000
 
 
-def write_request(protocol: Protocol, message: Message) -> bytes:
-    """A request or report as it is sent. Raises `BodyError`."""
-    return write_with_envelope(_request_envelope(protocol), message)
+def write_request(protocol: Protocol, cls: type[M], message: M) -> bytes:
+    """A request or report of a type as it is sent. Raises `BodyError`."""
+    return write_with_envelope(_request_envelope(protocol), cls, message)
 
 
-def write_response(protocol: Protocol, result: ResultText, message: Message | None = None) -> bytes:
-    """A response or acknowledgement as it is sent. Raises `BodyError`."""
-    return write_with_envelope(_response_envelope(protocol, result), message)
+def write_response(
+    protocol: Protocol, result: ResultText, cls: type[M] | None = None, message: M | None = None
+) -> bytes:
+    """A response of a type as it is sent, or an acknowledgement. Raises `BodyError`."""
+    return write_with_envelope(_response_envelope(protocol, result), cls, message)
 
 
 def read_with_envelope(
@@ -101,16 +103,26 @@ def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: 
     return message
 
 
-def write_raw_response(protocol: Protocol, result: ResultText, entries: Entries | None) -> bytes:
+def write_raw_response(protocol: Protocol, result: ResultText, body: Json) -> bytes:
     """A response with keys of its own that are not a message's. Raises `BodyError`."""
     envelope = _response_envelope(protocol, result)
     known = codec_of(type(envelope)).by_key
-    own = Entries((key, tree) for key, tree in entries or () if key not in known)
+    own = Entries((key, tree) for key, tree in _entries_of(body) if key not in known)
     return _write_entries(envelope, own)
 
 
-def write_raw_request(protocol: Protocol, entries: Entries) -> bytes:
+def _entries_of(body: Json) -> Entries:
+    """The keys of an object. Raises `BodyError` for what is none."""
+    if not isinstance(body, Json):
+        raise BodyError(BodyErrorKind.WRONG_TYPE, f"Json is wanted, not {type(body).__name__}")
+    if not isinstance(body.tree, Entries):
+        raise BodyError(BodyErrorKind.NOT_AN_OBJECT, "an object is wanted")
+    return body.tree
+
+
+def write_raw_request(protocol: Protocol, body: Json | None) -> bytes:
     """A request with keys that are not a message's; the envelope is added where they have none of it."""
+    entries = Entries() if body is None else _entries_of(body)
     known = codec_of(protocol.request_envelope).by_key
     has_envelope = any(key in known for key, _ in entries)
     return _write_entries(None if has_envelope else _request_envelope(protocol), entries)

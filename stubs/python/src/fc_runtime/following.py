@@ -189,9 +189,9 @@ class Follow(Generic[R, P]):
         code = self._sets_off.report.code
         if code is None:
             raise ValueError(f"{self._sets_off.report.name} has no code yet")
+        request = call.connection.asked(call.command, call.request)
         # What comes from the moment on in which the request is sent, also before the answer.
         receiver = call.connection.receiver(frozenset({code}))
-        request = call.command.request() if call.request is None else call.request
         try:
             answer = await call.connection.call(call.command, request, timeout=call.timeout, repeat=call.repeat)
         except BaseException:

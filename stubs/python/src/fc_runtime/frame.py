@@ -11,9 +11,13 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from .errors import FrameError, FrameErrorKind
 from .layout import Digest, HeaderRole
 from .protocol import INFLATE_FREE
+from .settings import check_all, integer, wrong
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from .protocol import Limits, Protocol
+    from .settings import Check
 
 # A search for the next frame that has looked at so many times the longest one without success is given up.
 _SEARCH: Final = 4
@@ -58,6 +62,13 @@ class Gzip:
     """Least length of the data that is compressed."""
     level: int = 1
     """From 1, the fastest, to 9, the smallest."""
+
+    def __post_init__(self) -> None:
+        """Checks both. Raises `TypeError` and `ValueError`."""
+        check_all(self, _GZIP)
+
+
+_GZIP: Final[Mapping[str, Check]] = {"from_bytes": integer(0), "level": integer(1, 9)}
 
 
 def digest(protocol: Protocol, data: bytes | memoryview) -> bytes:
@@ -260,6 +271,20 @@ class Decoder:
         if not unpacker.eof or unpacker.unused_data:
             raise FrameError(FrameErrorKind.BAD_GZIP, "not one complete member", frame)
         return plain
+
+
+def stream_frame(protocol: Protocol, code: int, message_id: int) -> FrameId:
+    """The id of a frame of raw bytes. Raises `TypeError` and `ValueError` for what its header cannot hold."""
+    protocol.layout.check_code("code", code)
+    protocol.layout.check_id("message_id", message_id)
+    return FrameId(False, protocol.stream, code, message_id)
+
+
+def frame_bytes(data: bytes | bytearray | memoryview) -> bytes:
+    """The bytes of a frame of raw bytes. Raises `TypeError` for what is none."""
+    if not isinstance(data, (bytes, bytearray, memoryview)):
+        raise TypeError(wrong("data", data, "bytes"))
+    return bytes(data)
 
 
 class Encoder:

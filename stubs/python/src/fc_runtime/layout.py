@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
+from .settings import integer
+
 
 class HeaderRole(str, Enum):
     """What a header field is for."""
@@ -93,4 +95,9 @@ class Layout:
         self.digest_order: Final = "big" if byte_order == "big" else "little"
         self.id_max: Final = (1 << (8 * header[self._index[HeaderRole.ID]].size)) - 1
         """Largest message id."""
+        code_max = None if self.code_at is None else (1 << (8 * header[self.code_at].size)) - 1
+        self.check_code: Final = integer(0, code_max)
+        """Checks a command code, by what the header has room for."""
+        self.check_id: Final = integer(0, self.id_max)
+        """Checks a message id, by what the header has room for."""
         self.zero_when_plain: Final = any(one.zero_when_plain for one in header)

@@ -5,20 +5,29 @@ from __future__ import annotations
 import asyncio
 import socket
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from .calls import Loss, LossKind
 from .errors import FrameError
+from .within import within
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Awaitable, Callable
 
     from .frame import Decoder, Frame
+
+Dial: TypeAlias = (
+    "Callable[[Callable[[], asyncio.Protocol]], Awaitable[tuple[asyncio.BaseTransport, asyncio.BaseProtocol]]]"
+)
+"""Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
 
 # What a frame has to bring to an app beside the stall timeout, in bytes per second: a wrong length swallows what
 # follows.
 _EARNED: Final = 16 * 1024
 # After so many frames the others have their turn, and what has been answered goes out while the rest is read.
 _TURN: Final = 16
+# Frames are written together up to so many bytes. Longer ones are written one by one, for joining copies them.
+_TOGETHER: Final = 64 * 1024
 # How long the other side may take over its goodbye.
 _CLOSING: Final = 1.0
 
@@ -71,6 +80,8 @@ class Link(asyncio.Protocol):
         self._least: Final = max(1, int(patience.least_rate * patience.stall))
         self._transport: asyncio.Transport | None = None
         self._out: list[bytes] = []
+        self._out_bytes = 0
+        self._is_reading = True
         self._is_over = False
         self._holds: Final[set[str]] = set()
         self._next_turn: asyncio.Handle | None = None
@@ -169,6 +180,8 @@ class Link(asyncio.Protocol):
         while not self._holds and not self._is_over:
             if left == 0:
                 self._next_turn = self._loop.call_soon(self._take)
+                # The next turn may be faster to come than the frames of this one are handled.
+                self._read_or_rest()
                 return
             left -= 1
             try:
@@ -188,6 +201,7 @@ class Link(asyncio.Protocol):
             self.is_heard = True
             self._whole()
             self._on_frame(self, frame)
+        self._read_or_rest()
         self._watch_stall()
 
     def _finish(self) -> None:
@@ -299,9 +313,8 @@ class Link(asyncio.Protocol):
 
     def hold(self, why: str) -> None:
         """Look at no more frames, and read no more, until all who have held it have let go."""
-        if not self._holds and self._transport is not None and not self._transport.is_closing():
-            self._transport.pause_reading()
         self._holds.add(why)
+        self._read_or_rest()
         if self._watch is not None:
             self._watch.cancel()
 
@@ -312,36 +325,54 @@ class Link(asyncio.Protocol):
         self._holds.discard(why)
         if self._holds:
             return
-        if self._transport is not None and not self._transport.is_closing():
-            self._transport.resume_reading()
+        self._read_or_rest()
         # What could not come meanwhile is not missed.
         self._begin(self._loop.time())
         self._loop.call_soon(self.take)
+
+    def _read_or_rest(self) -> None:
+        """Read while nobody holds it, and while nothing waits to be looked at: what has come is bounded by that."""
+        wants = not self._holds and self._next_turn is None
+        if wants == self._is_reading or self._transport is None or self._transport.is_closing():
+            return
+        self._is_reading = wants
+        if wants:
+            self._transport.resume_reading()
+        else:
+            self._transport.pause_reading()
 
     @property
     def unsent(self) -> int:
         """Bytes that the other side has not taken yet."""
         waiting = 0 if self._transport is None else self._transport.get_write_buffer_size()
-        return waiting + sum(map(len, self._out))
+        return waiting + self._out_bytes
 
     def send(self, data: bytes) -> None:
         """Send bytes, together with those that follow in the same turn of the event loop."""
         if not self._out:
             self._loop.call_soon(self.flush)
         self._out.append(data)
+        self._out_bytes += len(data)
+        # The owner may close the link for what it holds.
+        if self._on_bytes is not None:
+            self._on_bytes(0, len(data))
 
     def flush(self) -> None:
         """Hand over what is to be sent."""
-        if self._out and self._transport is not None and not self._transport.is_closing():
-            data = b"".join(self._out)
-            if self._transport.get_write_buffer_size() == 0:
-                self._taken, self._taken_since = self._handed, self._loop.time()
-            self._handed += len(data)
-            if self._on_bytes is not None:
-                self._on_bytes(0, len(data))
-            self._transport.write(data)
-            self._watch_writing()
-        self._out.clear()
+        out, size = self._out, self._out_bytes
+        self._out, self._out_bytes = [], 0
+        if not out or self._transport is None or self._transport.is_closing():
+            return
+        if self._transport.get_write_buffer_size() == 0:
+            self._taken, self._taken_since = self._handed, self._loop.time()
+        self._handed += size
+        if size <= _TOGETHER:
+            out = [b"".join(out)]
+        out.reverse()
+        while out:
+            # The transport may copy what it takes: nothing is held twice for long.
+            self._transport.write(out.pop())
+        self._watch_writing()
 
     def _watch_writing(self) -> None:
         if self._write_watch is None and self._transport is not None and self._transport.get_write_buffer_size():
@@ -379,17 +410,34 @@ class Link(asyncio.Protocol):
     def close(self, *, at_once: bool = False) -> None:
         """Send what is left, unless at once, and close the transport."""
         self._stop()
-        self.flush()
         transport = self._transport
+        if at_once:
+            self._out, self._out_bytes = [], 0
+            if transport is not None:
+                transport.abort()
+            return
+        self.flush()
         if transport is None or transport.is_closing():
             return
-        if at_once:
-            transport.abort()
-        elif not self._is_at_end and transport.can_write_eof():
+        if not self._is_at_end and transport.can_write_eof():
             # To close with something unread resets the connection, and what was sent may be lost with it.
             transport.write_eof()
-            if self._holds:
+            if not self._is_reading:
                 transport.resume_reading()
             self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
         else:
             transport.close()
+
+
+async def dialled(dial: Dial, link: Link, seconds: float) -> Loss | None:
+    """Connects a link. Returns why there is no connection, if there is none."""
+    try:
+        await within(seconds, dial(lambda: link))
+    except asyncio.CancelledError:
+        link.abort()
+        raise
+    except (asyncio.TimeoutError, TimeoutError):
+        return Loss(LossKind.CONNECT_TIMEOUT)
+    except Exception as error:  # noqa: BLE001 - such as a name that cannot be encoded; attempts go on whatever it is
+        return Loss(LossKind.UNREACHABLE, type(error).__name__)
+    return None

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
+
+from .settings import check_all, duration, integer
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from .message import Message
     from .results import Result
+    from .settings import Check
 
 Q = TypeVar("Q", bound="Message", covariant=True)
 R = TypeVar("R", bound="Message", covariant=True)
@@ -23,6 +28,13 @@ class AckPolicy:
     """Seconds to wait before the report is sent again; up to an eighth longer, by connection."""
     retries: int
     """How often to send it again before giving up."""
+
+    def __post_init__(self) -> None:
+        """Checks both. Raises `TypeError` and `ValueError`."""
+        check_all(self, _ACK)
+
+
+_ACK: Final[Mapping[str, Check]] = {"timeout": duration, "retries": integer(0)}
 
 
 class Effect(str, Enum):

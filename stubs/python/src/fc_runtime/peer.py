@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from .calls import Refusal
 from .config import first_id_now
 from .context import Context
-from .document import Entries, Json, parse_body
+from .document import parse_body
 from .enveloped import read_request, read_response, write_raw_response, write_response
 from .errors import BodyError, FrameError
 from .frame import Decoder, FrameId
@@ -26,7 +26,7 @@ from .session import Incoming, Session
 from .thin import Thin
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable
+    from collections.abc import Awaitable, Callable
 
     from .frame import Frame
     from .operations import Command
@@ -42,9 +42,11 @@ class _Work:
 
     frame: FrameId
     context: Context
-    name: str
+    command: Command[Any, Any] | None
+    handler: Callable[[Context, Any], Awaitable[Any]]
     size: int
     due: float
+    task: asyncio.Task[None] | None = None
 
 
 class Peer:
@@ -63,7 +65,8 @@ class Peer:
         self._session: Final[Session[Push]] = Session(protocol, limits, protocol.defaults.ack, first_id)
         self._queue: Final[deque[Push]] = deque()
         self._queued_bytes = 0
-        self._works: Final[dict[asyncio.Task[Any], _Work]] = {}
+        # In the order in which they began.
+        self._works: Final[dict[_Work, None]] = {}
         self._bodies = 0
         self._is_deaf = False
         self._is_over = False
@@ -102,9 +105,9 @@ class Peer:
         return self.link.held + self._bodies + self._queued_bytes
 
     @property
-    def tasks(self) -> set[asyncio.Task[Any]]:
+    def tasks(self) -> set[asyncio.Task[None]]:
         """Handlers whose results are waited for."""
-        return {*self._works}
+        return {work.task for work in self._works if work.task is not None}
 
     def _arrive(self, _: Link, frame: Frame) -> None:
         results = self.server.protocol.results
@@ -178,14 +181,13 @@ class Peer:
             self._answer(frame.id, because(results.protocol, "too many handlers are still at work"))
             return
         context = Context(self.connection, self.address, code, frame.id.id, effect)
-        task = server.loop.create_task(_run(handler(context, request)))
-        name = "" if command is None else command.name
-        work = _Work(frame.id, context, name, len(frame.data), server.loop.time() + server.handler_timeout)
-        self._works[task] = work
+        due = server.loop.time() + server.handler_timeout
+        work = _Work(frame.id, context, command, handler, len(frame.data), due)
+        self._works[work] = None
         self._bodies += work.size
+        work.task = server.loop.create_task(self._handle(work, request))
         if self._late_timer is None:
             self._late_timer = server.loop.call_at(work.due, self._look_for_late)
-        task.add_done_callback(self._worked)
         if len(self._works) >= server.limits.in_flight:
             server.counters.in_flight_reached += 1
             self.link.hold("in flight")
@@ -197,59 +199,73 @@ class Peer:
             return None, RawRequest(frame.id.code, frame.id.id, frame.data)
         return read_request(server.protocol, command.request, frame.data, server.limits)
 
-    def _forget(self, task: asyncio.Task[Any]) -> _Work | None:
-        work = self._works.pop(task, None)
-        if work is not None:
-            self._bodies -= work.size
-        return work
+    def _forget(self, work: _Work) -> bool:
+        """Wait for a handler no longer; false if nobody waits for it any more."""
+        if work not in self._works:
+            return False
+        del self._works[work]
+        self._bodies -= work.size
+        return True
 
     def _look_for_late(self) -> None:
         """End what has taken too long. All have the same time, so the first to begin is the first to be late."""
         self._late_timer = None
         now = self.server.loop.time()
-        for task, work in [*self._works.items()]:
+        for work in [*self._works]:
             if work.due > now:
                 self._late_timer = self.server.loop.call_at(work.due, self._look_for_late)
                 break
-            self._late(task)
+            if self._abandon(work):
+                self._answer(work.frame, self.server.protocol.results.timeout)
+                self._go_on()
 
-    def _late(self, task: asyncio.Task[Any]) -> None:
-        """A handler has taken too long."""
-        work = self._forget(task)
-        if work is not None:
-            self.server.abandon(task, work.context)
-            self._answer(work.frame, self.server.protocol.results.timeout)
-            self._go_on()
+    def _abandon(self, work: _Work) -> bool:
+        """Wait for a handler no longer, and let it know; false if nobody waits for it any more."""
+        is_waited_for = self._forget(work)
+        if is_waited_for and work.task is not None:
+            self.server.abandon(work.task, work.context)
+        return is_waited_for
 
-    def _worked(self, task: asyncio.Task[Any]) -> None:
-        """A handler has ended."""
-        work = self._forget(task)
-        if work is None:
-            return
+    async def _handle(self, work: _Work, request: Any) -> None:
+        """Let the handler do what is asked, and answer as soon as that is done, if anybody still waits for it."""
         server, results = self.server, self.server.protocol.results
         try:
-            response = task.result()
-            if isinstance(response, Json):
-                tree = response.tree
-                data = write_raw_response(server.protocol, results.success, tree if isinstance(tree, Entries) else None)
-            else:
-                data = write_response(server.protocol, results.success, response)
-            self._send(work.frame, data)
-            server.counters.calls_succeeded += 1
+            response = await work.handler(work.context, request)
         except Refusal as refusal:
-            self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True)
-        except (BodyError, FrameError) as error:
-            server.log("breaks", logging.ERROR, "the response to %s breaks the spec: %s", work.name, error.name)
-            self._answer(work.frame, results.protocol)
+            if self._forget(work):
+                self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True)
+                self._go_on()
+            return
         except asyncio.CancelledError:
-            self._answer(work.frame, because(results.protocol, "the handler was cancelled"))
-        except Exception as error:  # noqa: BLE001 - whatever it is, it is the robot's own
+            if self._forget(work):
+                self._answer(work.frame, because(results.protocol, "the handler was cancelled"))
+                self._go_on()
+            raise
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as error:  # noqa: BLE001 - whatever it is, it is the robot's own
             server.counters.handlers_panicked += 1
-            # The error's own text may hold what was received.
-            server.log("panicked", logging.ERROR, "the handler of %s failed: %s", work.name, type(error).__name__)
-            _log.debug("the handler of %s failed", work.name, exc_info=error)
-            self._answer(work.frame, because(results.protocol, "the handler panicked"))
+            server.tell_failure("the handler of %s failed", error, work.context, work.handler)
+            if self._forget(work):
+                self._answer(work.frame, because(results.protocol, "the handler panicked"))
+                self._go_on()
+            return
+        if not self._forget(work):
+            return
+        try:
+            self._send(work.frame, self._write(work.command, response))
+            server.counters.calls_succeeded += 1
+        except (BodyError, FrameError) as error:
+            server.tell_failure("the response to %s breaks the spec", error, work.context, work.handler)
+            self._answer(work.frame, results.protocol)
         self._go_on()
+
+    def _write(self, command: Command[Any, Any] | None, response: Any) -> bytes:
+        """A response as it is sent. Raises `BodyError`."""
+        protocol = self.server.protocol
+        if command is None:
+            return write_raw_response(protocol, protocol.results.success, response)
+        return write_response(protocol, protocol.results.success, command.response, response)
 
     def _go_on(self) -> None:
         if not self._is_deaf and len(self._works) < self.server.limits.in_flight:
@@ -307,6 +323,7 @@ class Peer:
             return
         self._queue.append(push)
         self._queued_bytes += push.size
+        self.server.look_at_memory(push.size)
         self._pump()
         while self._queue and (
             len(self._queue) > self.server.limits.queued_reports or self._queued_bytes > self.server.queued_bytes
@@ -374,10 +391,8 @@ class Peer:
         for timer in (self._timer, self._late_timer):
             if timer is not None:
                 timer.cancel()
-        for task in [*self._works]:
-            work = self._forget(task)
-            if work is not None:
-                self.server.abandon(task, work.context)
+        for work in [*self._works]:
+            self._abandon(work)
         for _, push in self._session.end_if(_all):
             push.end(Outcome.CLOSED)
         while self._queue:
@@ -389,10 +404,6 @@ class Peer:
 
 def _all(_: FrameId, __: Push) -> bool:
     return True
-
-
-async def _run(handling: Awaitable[Any]) -> Any:
-    return await handling
 
 
 def because(result: ResultText, why: object) -> ResultText:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from .document import DEFAULT_VALUES
 from .layout import Layout
 from .operations import Effect
+from .settings import check_all, integer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from .layout import HeaderField
     from .message import Message
     from .operations import AckPolicy, Command, PassThrough, Report, Stream
+    from .settings import Check
 
 INFLATE_FREE: Final = 1 << 20
 """Data of so many bytes or fewer may have been compressed by any ratio."""
@@ -44,6 +46,22 @@ class Limits:
     """Most bytes that one byte of compressed JSON may become, where more than `INFLATE_FREE` come out."""
     json_values: int = DEFAULT_VALUES
     """Most keys and items in a body, those of all levels together."""
+
+    def __post_init__(self) -> None:
+        """Checks every limit. Raises `TypeError` and `ValueError`."""
+        check_all(self, _LIMITS)
+
+
+_LIMITS: Final[Mapping[str, Check]] = {
+    "frame_bytes": integer(1),
+    "inflated_bytes": integer(1),
+    "json_depth": integer(1),
+    "in_flight": integer(1),
+    "queued_reports": integer(0),
+    "connections": integer(1),
+    "inflate_ratio": integer(1),
+    "json_values": integer(1),
+}
 
 
 @dataclass(frozen=True, slots=True)

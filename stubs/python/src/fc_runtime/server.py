@@ -11,12 +11,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 from typing import Protocol as Interface
 
+from .codec import write_content
 from .config import ServerConfig
 from .counters import ServerCounters
-from .data_peer import AppStreams, DataPeer, content_of
+from .data_peer import AppStreams, DataPeer
 from .enveloped import write_request
 from .errors import BodyError, FrameError
-from .frame import Encoder, FrameId
+from .frame import Encoder, frame_bytes, stream_frame
 from .link import Patience
 from .operations import Effect
 from .peer import Peer
@@ -28,13 +29,16 @@ from .pushes import (
     NoConnectionError,
     Push,
 )
+from .settings import duration
 from .thin import Thin
+from .thrown import describe
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from types import TracebackType
 
     from .context import Context
+    from .data_peer import AppStream
     from .link import Link
     from .message import Message
     from .operations import AckPolicy, Report, Stream
@@ -155,7 +159,12 @@ class Server:
     @property
     def memory(self) -> int:
         """Bytes that apps make the robot hold at this moment."""
-        return sum(one.held for one in self._members())
+        streams = 0 if self.app_streams is None else self.app_streams.held()
+        return sum(one.held for one in self._members()) + streams
+
+    def _held_by(self, one: _Member) -> int:
+        """Bytes that one connection makes the robot hold."""
+        return one.held + (0 if self.app_streams is None else self.app_streams.held(one.connection))
 
     def _members(self) -> list[_Member]:
         return [*self._peers.values(), *self._data_peers.values()]
@@ -196,6 +205,8 @@ class Server:
         if not self._admit(self._data_peers, peer, lambda one: not one.is_heard and one.address not in speakers):
             return
         self.counters.data_connections += 1
+        if self.app_streams is not None and self.app_streams.is_full:
+            peer.link.hold("streams")
         peer.owners.update(one.connection for one in self._peers.values() if one.address == peer.address)
 
     def _effects(self, address: str) -> frozenset[Effect] | None:
@@ -257,22 +268,49 @@ class Server:
         """Note bytes that have come or gone, and look now and then at how much is held."""
         self.counters.bytes_in += received
         self.counters.bytes_out += sent
-        self._looked += received + sent
+        self.look_at_memory(received + sent)
+
+    def look_at_memory(self, more: int) -> None:
+        """Note that more bytes may be held, and look now and then at how much is."""
+        self._looked += more
         if self._looked < _LOOK_EACH:
             return
         self._looked = 0
         # An eighth is kept for what is read and answered at a moment.
         if self.memory > self.config.memory - self.config.memory // 8:
-            most = max(self._members(), key=lambda one: one.held)
+            most = max(self._members(), key=self._held_by, default=None)
+            if most is None:
+                return
             self.counters.connections_evicted += 1
             text = "closed %s, which held %d bytes: memory is short"
-            self.log("evicted", logging.WARNING, text, most.address, most.held)
+            self.log("evicted", logging.WARNING, text, most.address, self._held_by(most))
             most.over(at_once=True)
+            if self.app_streams is not None:
+                self.app_streams.drop(most.connection)
 
     @property
     def is_abandoned_full(self) -> bool:
         """Whether as many handlers run on as may."""
         return 0 < self.config.abandoned_handlers <= len(self._abandoned)
+
+    def tell_failure(self, what: str, error: BaseException, context: Context, handler: Any) -> None:
+        """Log an error of a handler by its class and place, and pass it to `on_handler_error`."""
+        known = self.protocol.commands_by_code.get(context.code)
+        # All codes without a command are one cause: an app chooses them.
+        cause = f"{what} {'' if known is None else known.name}"
+        self._log_failure(cause, what % (f"0x{context.code:04X}" if known is None else known.name), error, handler)
+        hook = self.config.on_handler_error
+        if hook is None:
+            return
+        try:
+            hook(error, context)
+        except Exception as failed:  # noqa: BLE001 - whatever it is, it is the robot's own
+            self._log_failure("hook", "`on_handler_error` failed", failed, hook)
+
+    def _log_failure(self, cause: str, what: str, error: BaseException, function: Any) -> None:
+        # The error's own text may hold what was received.
+        self.log(cause, logging.ERROR, "%s: %s", what, describe(error, function))
+        _log.debug("%s: %s", self.protocol.name, what, exc_info=error)
 
     def abandon(self, task: asyncio.Task[Any], context: Context) -> None:
         """Nobody waits for a handler any more: what only asks is cancelled, what moves something runs to its end."""
@@ -282,12 +320,7 @@ class Server:
             return
         self.counters.handlers_abandoned += 1
         self._abandoned.add(task)
-        task.add_done_callback(self._ran_on)
-
-    def _ran_on(self, task: asyncio.Task[Any]) -> None:
-        self._abandoned.discard(task)
-        if not task.cancelled() and (error := task.exception()) is not None:
-            _log.debug("%s: a handler that ran on failed: %s", self.protocol.name, type(error).__name__)
+        task.add_done_callback(self._abandoned.discard)
 
     async def push(self, report: Report[Q], message: Q, to: int | None = None) -> list[Acknowledgement]:
         """Send a report to all apps, or to one, until it is acknowledged. Raises `PushError`.
@@ -296,10 +329,11 @@ class Server:
         """
         if report.code is None:
             raise ValueError(f"{report.name} has no code yet")
+        self.protocol.layout.check_code("code", report.code)
         if to is not None and to not in self._peers:
             raise NoConnectionError(to)
         try:
-            prepared = self.encoder.prepare(write_request(self.protocol, message))
+            prepared = self.encoder.prepare(write_request(self.protocol, report.request, message))
         except BodyError as error:
             raise InvalidReportError(error) from None
         except FrameError as error:
@@ -321,15 +355,34 @@ class Server:
         """
         if self.app_streams is not None:
             self.app_streams.end()
-        self.app_streams = AppStreams()
+        self.app_streams = AppStreams(self.queued_bytes, self._read_streams)
         return self.app_streams
+
+    def put_stream(self, frame: AppStream) -> None:
+        """Hand on a frame of raw bytes, or drop it while nobody takes them."""
+        self.counters.stream_frames_in += 1
+        streams = self.app_streams
+        if streams is None:
+            self.counters.stream_frames_dropped += 1
+            return
+        streams.put(frame)
+        self.look_at_memory(len(frame.data))
+        if streams.is_full:
+            for peer in self._data_peers.values():
+                peer.link.hold("streams")
+
+    def _read_streams(self) -> None:
+        if self.app_streams is not None and self.app_streams.is_full:
+            return
+        for peer in self._data_peers.values():
+            peer.link.let_go("streams")
 
     async def send_stream(self, stream: Stream[B], message_id: int, content: B, to: int | None = None) -> int:
         """Send a frame of one of the robot's streams; all else is as with `send_data`."""
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
-            data = content_of(stream, content)
+            data = write_content(stream.body, content)
         except BodyError as error:
             raise InvalidReportError(error) from None
         return await self.send_data(stream.code, message_id, data, to)
@@ -341,12 +394,12 @@ class Server:
         the two by nothing but the address, so that is only possible while it is the only app there; otherwise
         `AmbiguousError`, and nothing is sent.
         """
+        frame = stream_frame(self.protocol, code, message_id)
         peers = self._data_audience(to)
         try:
-            prepared = self.encoder.prepare(data)
+            prepared = self.encoder.prepare(frame_bytes(data))
         except FrameError as error:
             raise FramePushError(error) from None
-        frame = FrameId(False, self.protocol.stream, code, message_id)
         sending = [self.loop.create_task(one.send(frame, prepared)) for one in peers]
         if not sending:
             return 0
@@ -375,6 +428,7 @@ class Server:
 
     async def shutdown(self, grace: float) -> None:
         """Take no more requests, answer those there are within the grace, and end. Never takes longer than that."""
+        duration("grace", grace)
         deadline = self.loop.time() + grace
         self._is_stopping = True
         for listening in self._listening:

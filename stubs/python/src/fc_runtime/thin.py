@@ -1,7 +1,8 @@
-"""A log that a flood does not flood."""
+"""A log that a flood does not flood, and that a program has without asking for it."""
 
 from __future__ import annotations
 
+import logging
 from typing import Final
 
 _AT_MOST: Final = 5
@@ -27,3 +28,17 @@ class Thin:
         self._lines += 1
         held, self._held = self._held, 0
         return f" (held {held})" if held else ""
+
+
+class ErrorsOnly(logging.Handler):
+    """Writes errors to the standard error while the program has no log of its own: they are faults of the program."""
+
+    def __init__(self) -> None:
+        """Nothing below an error."""
+        super().__init__(logging.ERROR)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line, unless somebody else does."""
+        own = logging.getLogger(__package__).handlers
+        if logging.lastResort is not None and not logging.root.handlers and own == [self]:
+            logging.lastResort.handle(record)

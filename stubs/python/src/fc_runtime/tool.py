@@ -14,6 +14,7 @@ from .errors import BodyError
 from .following import Ended, Failed, Followable, FollowError, Going
 from .operations import Effect
 from .receivers import RawReport
+from .settings import duration, or_none
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,9 +49,15 @@ def main(protocol: Protocol, arguments: Sequence[str] | None = None) -> int:
         print(f"{command.name} sets no report off that could be followed", file=sys.stderr)
         return _WRONG_USE
     try:
+        config = ClientConfig(host=asked.host, command_port=asked.command_port)
+        or_none(duration)("--timeout", asked.timeout)
+    except (TypeError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return _WRONG_USE
+    try:
         text = sys.stdin.read() if asked.body == "-" else asked.body
         request = None if command is None else command.request.from_json(text)
-        return asyncio.run(_run(protocol, asked, command, request))
+        return asyncio.run(_run(protocol, config, asked, command, request))
     except (BodyError, CallError, FollowError) as error:
         print(f"{error.name}: {error}", file=sys.stderr)
     except ConnectError as error:
@@ -85,9 +92,13 @@ def _list(protocol: Protocol) -> None:
 
 
 async def _run(
-    protocol: Protocol, asked: argparse.Namespace, command: Command[Any, Any] | None, request: Message | None
+    protocol: Protocol,
+    config: ClientConfig,
+    asked: argparse.Namespace,
+    command: Command[Any, Any] | None,
+    request: Message | None,
 ) -> int:
-    connection = Connection(protocol, ClientConfig(host=asked.host, command_port=asked.command_port))
+    connection = Connection(protocol, config)
     receiver = connection.receiver() if asked.reports else None
     await connection.connect()
     try:
