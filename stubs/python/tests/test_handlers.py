@@ -7,6 +7,7 @@ import functools
 import inspect
 import json
 import logging
+import os
 import subprocess
 import sys
 import sysconfig
@@ -310,7 +311,10 @@ async def main():
 
 asyncio.run(main())
 """
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
+        # The modules of these tests, wherever they were found.
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+        command = [sys.executable, "-c", program]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=True)
         self.assertIn("the handler of get_battery failed: LookupError at <string>:8 in get_battery", done.stderr)
         self.assertNotIn("secret", done.stderr)
 
