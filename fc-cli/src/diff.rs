@@ -130,7 +130,7 @@ fn keys() -> Part {
                 "wire",
                 both(
                     "old_app_new_robot 和 new_app_old_robot 的列表",
-                    "List of old_app_new_robot and new_app_old_robot",
+                    "Any of old_app_new_robot and new_app_old_robot",
                 ),
             ),
             ("source", both("语言的列表", "List of languages")),

@@ -23,7 +23,8 @@ const SOURCES: [&str; 6] = [
 const HOME: &str = "fc-spec/src/vocabulary.rs";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 29] = [
+const ALSO: [(&str, &str); 30] = [
+    ("behaviour", "a key of what `fcproto diff` prints as JSON"),
     (
         "code",
         "a key of operations, and of what products say of them",
