@@ -8,9 +8,10 @@ from .connection import Connection
 from .data import DataConnection
 from .following import Followable
 from .receivers import RawReport
+from .work import Work
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Generator
+    from collections.abc import AsyncIterator
     from types import TracebackType
 
     from .calls import Loss
@@ -114,27 +115,24 @@ class Client(Calls, Generic[A]):
         await self.connection.gone()
 
 
-class Connect(Generic[C]):
-    """A client on its way to being connected: to be awaited, or entered with `async with`."""
+class Connect(Work[C], Generic[C]):
+    """A client on its way to being connected: a coroutine, that can also be entered with `async with`."""
 
     def __init__(self, cls: type[C], config: ClientConfig | None) -> None:
         """Made by `Client.connect`."""
         self._cls: Final = cls
         self._config: Final = config
         self._client: C | None = None
+        super().__init__(self._start(), f"{cls.__name__}.connect")
 
     async def _start(self) -> C:
         connection = Connection(self._cls.protocol, self._config)
         await connection.connect()
         return self._cls(connection)
 
-    def __await__(self) -> Generator[Any, None, C]:
-        """Connect."""
-        return self._start().__await__()
-
     async def __aenter__(self) -> C:
         """Connect."""
-        self._client = await self._start()
+        self._client = await self
         return self._client
 
     async def __aexit__(

@@ -10,9 +10,9 @@ from .errors import BodyError
 from .message import is_in_order
 from .receivers import Interrupted, Missed, Resumed
 from .states import Closed
+from .work import Work
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
     from types import TracebackType
 
     from .connection import Connection
@@ -175,14 +175,18 @@ class Following(Generic[R, P]):
         self.close()
 
 
-class Follow(Generic[R, P]):
-    """A command on its way to being followed: to be awaited, or entered with `async with`."""
+class Follow(Work["Following[R, P]"], Generic[R, P]):
+    """A command on its way to being followed: a coroutine, that can also be entered with `async with`.
+
+    It calls the command and waits for its answer. Raises `CallError`; nothing is followed then.
+    """
 
     def __init__(self, call: Followable[R, Any], sets_off: SetsOff) -> None:
         """Made by `Followable.follow`."""
         self._call: Final = call
         self._sets_off: Final = sets_off
         self._following: Following[R, P] | None = None
+        super().__init__(self._start(), f"{call.command.method_name}.follow")
 
     async def _start(self) -> Following[R, P]:
         call = self._call
@@ -199,13 +203,9 @@ class Follow(Generic[R, P]):
             raise
         return Following(call.connection, self._sets_off, receiver, request, answer)
 
-    def __await__(self) -> Generator[Any, None, Following[R, P]]:
-        """Call the command and wait for its answer. Raises `CallError`; nothing is followed then."""
-        return self._start().__await__()
-
     async def __aenter__(self) -> Following[R, P]:
         """Call the command and wait for its answer."""
-        self._following = await self._start()
+        self._following = await self
         return self._following
 
     async def __aexit__(
@@ -216,8 +216,8 @@ class Follow(Generic[R, P]):
             self._following.close()
 
 
-class Followable(Generic[R, P]):
-    """A call of a command that sets reports off: await it for the answer alone, or `follow()` it to its end.
+class Followable(Work[R], Generic[R, P]):
+    """A call of a command that sets reports off: a coroutine with the answer alone, or `follow()` it to its end.
 
     Nothing is sent before that.
     """
@@ -236,10 +236,8 @@ class Followable(Generic[R, P]):
         self.request: Final = request
         self.timeout: Final = timeout
         self.repeat: Final = repeat
-
-    def __await__(self) -> Generator[Any, None, R]:
-        """Wait for the answer alone. Raises `CallError`."""
-        return self.connection.call(self.command, self.request, timeout=self.timeout, repeat=self.repeat).__await__()
+        call = connection.call(command, request, timeout=timeout, repeat=repeat)
+        super().__init__(call, command.method_name)
 
     @overload
     def follow(self) -> Follow[R, P]: ...
@@ -248,9 +246,12 @@ class Followable(Generic[R, P]):
     def follow(self, report: Report[S]) -> Follow[R, S]: ...
 
     def follow(self, report: Report[Any] | None = None) -> Follow[R, Any]:
-        """Follow what it sets off; where that is more than one kind of report, say which."""
+        """Follow what it sets off instead; where that is more than one kind of report, say which."""
+        if self.is_begun:
+            raise RuntimeError(f"{self.command.name} has been called already: follow another call")
         sets_off = [one for one in self.command.sets_off if report is None or one.report is report]
         if len(sets_off) != 1:
             names = ", ".join(one.report.name for one in self.command.sets_off)
             raise ValueError(f"{self.command.name} sets off {names or 'nothing'}: say which of them to follow")
+        self.close()
         return Follow(self, sets_off[0])

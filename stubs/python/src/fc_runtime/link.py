@@ -81,6 +81,7 @@ class Link(asyncio.Protocol):
         self._transport: asyncio.Transport | None = None
         self._out: list[bytes] = []
         self._out_bytes = 0
+        self._is_started = False
         self._is_reading = True
         self._is_over = False
         self._holds: Final[set[str]] = set()
@@ -141,6 +142,8 @@ class Link(asyncio.Protocol):
                     found.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), max(1, value))
         self._last_frame = self._loop.time()
         self._watch_idle()
+        # Python 3.10 begins to read behind this, also where reading has been paused here.
+        self._loop.call_soon(self._start)
         if self._on_made is not None:
             self._on_made(self)
 
@@ -330,10 +333,16 @@ class Link(asyncio.Protocol):
         self._begin(self._loop.time())
         self._loop.call_soon(self.take)
 
+    def _start(self) -> None:
+        self._is_started = True
+        self._read_or_rest()
+
     def _read_or_rest(self) -> None:
         """Read while nobody holds it, and while nothing waits to be looked at: what has come is bounded by that."""
         wants = not self._holds and self._next_turn is None
-        if wants == self._is_reading or self._transport is None or self._transport.is_closing():
+        if wants == self._is_reading or not self._is_started or self._transport is None:
+            return
+        if self._transport.is_closing():
             return
         self._is_reading = wants
         if wants:
