@@ -130,7 +130,7 @@ fn keys() -> Part {
                 "wire",
                 both(
                     "old_app_new_robot 和 new_app_old_robot 的列表",
-                    "Any of old_app_new_robot and new_app_old_robot",
+                    "old_app_new_robot, new_app_old_robot or both",
                 ),
             ),
             ("source", both("语言的列表", "List of languages")),

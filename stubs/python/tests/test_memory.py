@@ -14,12 +14,14 @@ GET = 0x0100
 STREAM = sample.SAMPLE.stream
 # More than a chunk of what a socket is read for.
 MANY = 20_000
+# A busy machine may take longer for all of it than a robot waits by default.
+PATIENT = {"header_timeout": 3600, "stall_timeout": 3600}
 
 
 class Memory(unittest.TestCase):
     @clocked
     async def test_frames_that_wait_are_not_read(self) -> None:
-        server = await serve(sample.ExampleRobot(), limits=limits(in_flight=10_000))
+        server = await serve(sample.ExampleRobot(), limits=limits(in_flight=10_000), **PATIENT)
         app = await Raw.connect(server.command_address)
         app.writer.write(app.frame(GET, b"{}") * MANY)
         most = 0
@@ -39,7 +41,7 @@ class Memory(unittest.TestCase):
 
     @clocked
     async def test_an_app_that_never_reads_is_not_read(self) -> None:
-        server = await serve(sample.ExampleRobot())
+        server = await serve(sample.ExampleRobot(), **PATIENT)
         app = await Raw.connect(server.command_address)
         app.writer.transport.pause_reading()  # type: ignore[attr-defined]
         app.writer.write(app.frame(GET, b"{}") * MANY * 40)
