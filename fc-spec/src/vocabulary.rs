@@ -92,7 +92,7 @@ words! {
     /// What the engine uses a header field for. A checked model has each role at most once, the head first, with the
     /// width that the role asks for; it may lack the status, the digest, and what only compressed data needs.
     pub enum HeaderRole {
-        /// The bytes that open a frame.
+        /// First bytes of a frame.
         /// 一帧开头的字节。
         Head = "head",
         /// One of `kinds`; u8.
@@ -104,10 +104,10 @@ words! {
         /// Ties a response to its request; u16 or u32.
         /// 把响应和请求对应起来；u16 或 u32。
         Id = "id",
-        /// One of `encodings`; u8. Without it nothing is compressed.
+        /// One of `encodings`; u8. Without it, data is never compressed.
         /// `encodings` 之一；u8。没有它就不压缩。
         Encoding = "encoding",
-        /// Sent as `value`, kept as received, never interpreted.
+        /// Sent as `value`, kept as received, not interpreted.
         /// 按 `value` 发送，接收时原样保留，不作解释。
         Status = "status",
         /// Header and data as sent, in bytes; u32.
@@ -116,7 +116,7 @@ words! {
         /// Data before compression, in bytes; u32. Compressed data needs it.
         /// 压缩前的数据，单位字节；u32。压缩的数据需要它。
         PlainLength = "plain_length",
-        /// Digest of the data as sent, by `algorithm`. Without it nothing is digested.
+        /// Digest of the data as sent, by `algorithm`. Without it, frames have no digest.
         /// 按实际发送的数据计算的摘要，算法见 `algorithm`。没有它就不计算摘要。
         Digest = "digest",
     }
@@ -181,13 +181,13 @@ words! {
         /// Raw bytes.
         /// 原始字节。
         Stream = "stream",
-        /// A command or its answer.
+        /// A command or its response.
         /// 指令或它的响应。
         Command = "command",
         /// A report or its acknowledgement.
         /// 上报或它的应答。
         Report = "report",
-        /// Refused by name.
+        /// Reserved; always refused.
         /// 预留，收到即拒绝。
         Reserved = "reserved",
     }
@@ -196,7 +196,7 @@ words! {
 words! {
     /// How the data of a frame is packed.
     pub enum EncodingRole {
-        /// As it is.
+        /// Uncompressed.
         /// 不压缩。
         Plain = "plain",
         /// One gzip member (RFC 1952).
@@ -208,14 +208,14 @@ words! {
 words! {
     /// What the engine uses an envelope key for.
     pub enum EnvelopeRole {
-        /// When the message was made; timestamp_ms.
+        /// Time of creation of the message; timestamp_ms.
         /// 消息生成的时间；timestamp_ms。
         Time = "time",
         /// One of `results`; responses only.
         /// `results` 之一；只用于响应。
         ResultCode = "result_code",
-        /// Text beside the result code; responses only.
-        /// 结果码旁的文本；只用于响应。
+        /// Text of the result code; responses only.
+        /// 结果码的说明文字；只用于响应。
         ResultText = "result_text",
     }
 }
@@ -223,14 +223,14 @@ words! {
 words! {
     /// When the engine itself answers with a result code. A checked model has each role exactly once.
     pub enum ResultRole {
-        /// All went well.
-        /// 一切正常。
+        /// Success.
+        /// 成功。
         Success = "success",
         /// Unknown command, reserved kind or bad digest.
-        /// 未知的指令、预留的数据类型或校验值错误。
+        /// 未知的指令、预留的数据类型或摘要错误。
         Protocol = "protocol",
-        /// No answer from the handler in time.
-        /// 处理程序没有及时回答。
+        /// No response from the handler in time.
+        /// 处理程序没有按时响应。
         Timeout = "timeout",
         /// A body that does not parse or violates a constraint.
         /// 消息体无法解析，或不符合约束。
@@ -244,10 +244,10 @@ words! {
 words! {
     /// What the `then` of an enum's values claims.
     pub enum StateOrder {
-        /// The order in which the values normally follow each other; any other change may occur as well.
+        /// The normal order of the values. Other changes may occur as well.
         /// 取值的正常顺序；也可能出现其他切换。
         Normal = "normal",
-        /// Every change there is: no other value follows.
+        /// All changes: no other change occurs.
         /// 全部的切换：不会出现其他切换。
         Complete = "complete",
     }
@@ -257,8 +257,8 @@ words! {
     /// A place where RFC 8259 leaves open what a JSON text means. What is done there is fixed, the same in
     /// every protocol and language; the vectors have it as examples, and `json:` of the spec says it in words.
     pub enum JsonRule {
-        /// What a body is: UTF-8, one object, nothing around it.
-        /// 消息体是什么：UTF-8，一个对象，前后没有别的内容。
+        /// A body is UTF-8 and one object, with nothing around it.
+        /// 消息体是 UTF-8，一个对象，前后没有别的内容。
         Text = "text",
         /// A known key that comes twice is refused.
         /// 已知的键出现两次时拒绝。
@@ -281,19 +281,19 @@ words! {
 words! {
     /// Purpose of a range of codes.
     pub enum RangeUse {
-        /// Handed to the upper body as it comes.
-        /// 原样转交上装。
+        /// Passed through to the upper body unchanged.
+        /// 原样透传给上装。
         PassThrough = "pass_through",
-        /// New commands count up here.
+        /// New commands take their codes here.
         /// 新的指令从这里依次取号。
         Commands = "commands",
-        /// New reports count up here.
+        /// New reports take their codes here.
         /// 新的上报从这里依次取号。
         Reports = "reports",
-        /// Not to be given out.
+        /// Not to be assigned.
         /// 不得分配。
         Reserved = "reserved",
-        /// Given out in the past, closed for new operations.
+        /// Assigned in the past, closed for new operations.
         /// 过去分配的，不再用于新的接口。
         Historic = "historic",
     }
@@ -302,10 +302,10 @@ words! {
 words! {
     /// What an operation is.
     pub enum Kind {
-        /// The app asks, the robot answers.
+        /// The app sends a request, the robot sends a response.
         /// app 请求，机器人响应。
         Command = "command",
-        /// The robot sends it by itself, the app acknowledges.
+        /// The robot sends it without a request, the app acknowledges it.
         /// 机器人主动发送，app 应答。
         Report = "report",
         /// Raw bytes on the data port.
@@ -341,10 +341,10 @@ words! {
 words! {
     /// Which way a message goes.
     pub enum Direction {
-        /// What a command asks, what a report says, what a stream carries.
+        /// The request of a command, a report, or the data of a stream.
         /// 指令的请求、上报的内容、数据流的内容。
         Request = "request",
-        /// The answer to a command, the acknowledgement of a report.
+        /// The response to a command, or the acknowledgement of a report.
         /// 指令的响应、上报的应答。
         Response = "response",
     }
@@ -353,17 +353,17 @@ words! {
 words! {
     /// What a command does to the robot.
     pub enum Effect {
-        /// Nothing changes; it may be repeated at will.
-        /// 不改变任何东西，可以随意重发。
+        /// Changes nothing; it is safe to resend.
+        /// 不改变任何东西，可以放心重发。
         Read = "read",
-        /// Changes what the robot remembers.
+        /// Changes the configuration that the robot stores.
         /// 改变机器人保存的内容。
         Config = "config",
         /// Moves the robot.
         /// 机器人会动。
         Motion = "motion",
-        /// Nothing says what it does; it counts as one that moves the robot.
-        /// 没有说明会做什么，按会动处理。
+        /// Unknown; treated like a command that moves the robot.
+        /// 未知，按会让机器人运动的指令处理。
         Unknown = "unknown",
     }
 }
@@ -371,14 +371,14 @@ words! {
 words! {
     /// How sure a fact is, the surest first.
     pub enum BodyState {
-        /// The source says it.
+        /// Stated in the source.
         /// 源文档写明了。
         Stated = "stated",
-        /// The owner of the protocol has said it.
+        /// Confirmed by the protocol owner.
         /// 协议负责人已确认。
         Confirmed = "confirmed",
-        /// The source gives the evidence.
-        /// 源文档中有依据。
+        /// Inferred from evidence in the source.
+        /// 由源文档中的依据推断。
         Inferred = "inferred",
         /// Lost; for a code: not assigned; for an effect: unknown.
         /// 缺失；功能码：未分配；影响：未知。
@@ -398,7 +398,7 @@ words! {
         /// The code.
         /// 功能码。
         Code = "code",
-        /// What it does to the robot.
+        /// Its effect on the robot.
         /// 对机器人的影响。
         Effect = "effect",
         /// The request.
@@ -472,7 +472,7 @@ words! {
 words! {
     /// How a value is sent. A spec says it only where it differs from the type.
     pub enum WireForm {
-        /// As its type says.
+        /// According to its type.
         /// 与类型一致。
         Plain = "plain",
         /// A number or bool inside a JSON string.
@@ -505,13 +505,13 @@ words! {
         /// Decided here until the protocol owner says otherwise.
         /// 在协议负责人另行说明之前按此执行。
         Decision = "decision",
-        /// Messages are irregular here and stay so; the decoder is lenient in this place.
+        /// Messages are irregular here and stay so; only here is the decoder lenient.
         /// 报文在这里不规则，并保持不变；只在这一处放宽解析。
         Quirk = "quirk",
-        /// Nothing to decide; said so that nobody wonders.
+        /// No decision needed; recorded to avoid misunderstanding.
         /// 无需决定，写明以免误解。
         Note = "note",
-        /// Nobody knows yet.
+        /// No answer yet.
         /// 尚无答案。
         Question = "question",
     }
@@ -520,22 +520,22 @@ words! {
 words! {
     /// What an open question holds up, the most pressing first; the sentence says what the tools do until it is settled.
     pub enum Impact {
-        /// Without a code it cannot be sent; types and documentation are made, dispatch is not.
+        /// Without a code it cannot be sent. Types and documentation are generated, dispatch is not.
         /// 没有功能码就不能发送：照常生成类型和文档，但不参与分发。
         NoCode = "no_code",
-        /// Every key of the body is kept as it comes; none is known by name.
+        /// The keys of the body are unknown; receivers keep every key.
         /// 不知道正文有哪些键；收到的键都原样保留。
         NoBody = "no_body",
         /// It is treated like a command that moves the robot.
         /// 按会让机器人运动的指令处理。
         NoEffect = "no_effect",
-        /// Values are handled as the spec says now, and may be misread.
+        /// Values follow the present spec and may be misread.
         /// 数值按规范现在的写法处理，可能被误读。
         Doubtful = "doubtful",
-        /// The inference is used, and is marked as one.
+        /// The inference is used and marked as such.
         /// 按推断使用，并注明是推断。
         Inferred = "inferred",
-        /// Nothing generated depends on it; robot and app may behave differently from what their teams expect.
+        /// Generated code does not depend on it, but robot and app may behave unexpectedly.
         /// 生成的内容与它无关，但机器人和 app 的行为可能与预期不同。
         Behaviour = "behaviour",
         /// The decision of the spec applies.

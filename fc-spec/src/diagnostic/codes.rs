@@ -1,33 +1,33 @@
-//! The table of fault codes. A code, once published, keeps its meaning; a retired one is not used again.
+//! The table of error codes. A published code keeps its meaning; a retired code is not used again.
 //!
-//! To add one: a line here, in order, and `explain/FC….md` and `explain/FC….zh.md` beside it, which say what is wrong
-//! and why that matters in a paragraph, then show the fault in a block fenced as `yaml bad` and its
-//! remedy in one fenced as `yaml good`.
+//! To add a code, add a line here, in order, and the files `explain/FC….md` and `explain/FC….zh.md`. A text starts with
+//! a paragraph about the error, its reason and its fix. An example with the error follows in a block fenced as `yaml bad`,
+//! and the corrected example in one fenced as `yaml good`.
 //!
 //! Ranges: `FC00xx` YAML itself, `FC01xx` shape (unknown key, missing key, wrong kind, bad scalar), `FC02xx`
 //! names and references, `FC03xx` codes, `FC04xx` fields, constraints and examples, `FC05xx` frame,
 //! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fcproto diff`, `FC08xx` those of
-//! the lint, which are declared where they look for what they find ([`Rule`]).
+//! the lint. Each lint rule is declared next to its search ([`Rule`]).
 
 use crate::lint::Rule;
 use crate::model::Lang;
 
 macro_rules! fault_codes {
     ($($code:ident $variant:ident $zh:literal $en:literal;)+) => {
-        /// Which fault it is.
+        /// A code of an error or a lint finding.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[allow(clippy::doc_markdown, reason = "the titles are shown to users, as plain text")]
         pub enum FaultCode {
             $(#[doc = $en] $variant,)+
-            /// What a rule of the lint has found.
+            /// A finding of a lint rule.
             Lint(&'static Rule),
         }
 
         impl FaultCode {
-            /// Every code but those of the lint, in order.
+            /// All codes except those of the lint, in order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// Its number, such as `FC0012`.
+            /// Returns the number, such as `FC0012`.
             #[must_use]
             pub const fn as_str(self) -> &'static str {
                 match self {
@@ -36,7 +36,7 @@ macro_rules! fault_codes {
                 }
             }
 
-            /// What it is about, in a few words.
+            /// Returns a title of a few words.
             #[must_use]
             pub fn title(self, lang: Lang) -> &'static str {
                 match self {
@@ -45,7 +45,7 @@ macro_rules! fault_codes {
                 }
             }
 
-            /// What is wrong, why it matters and what to write instead, as Markdown.
+            /// Returns the explanation as Markdown: the error, its reason and its fix.
             #[must_use]
             pub fn explain(self, lang: Lang) -> &'static str {
                 match self {
@@ -122,7 +122,7 @@ fault_codes! {
     FC0205 RecursiveType "包含自身的类型" "type that contains itself";
     FC0206 DuplicateFieldName "两个字段在代码中同名" "two fields with the same name in code";
     FC0207 DuplicateWireKey "一个对象中有重复的键名" "duplicate wire key in an object";
-    FC0208 UnusableName "键名无法得出代码中的名称" "wire key that gives no name in code";
+    FC0208 UnusableName "键名无法得出代码中的名称" "wire key without a valid name in code";
     FC0209 ReservedName "保留的名称" "reserved name";
     FC0210 NotAStruct "类型应当是结构" "type that should be a struct";
     FC0211 UnknownOperation "未知的接口" "unknown operation";
@@ -133,14 +133,14 @@ fault_codes! {
     FC0216 DuplicateName "两个名称在代码中相同" "two names that are the same in code";
     FC0217 BodyTooLarge "过大的消息体" "body that is too large";
     FC0218 SuccessAsError "把成功列为错误" "success listed as an error";
-    FC0219 SharedWord "一个词对应两条术语" "word that stands for two terms";
+    FC0219 SharedWord "一个词属于两条术语" "word that belongs to two terms";
     FC0220 UnknownValue "未知的枚举值" "unknown enum value";
     FC0221 NotAReport "接口应当是上报" "operation that should be a report";
     FC0222 UnknownEntity "未知的实体" "unknown entity";
     FC0223 UnusedEntity "未使用的实体" "unused entity";
     FC0224 IdTypes "同一实体的 ID 类型不同" "ids of one entity with different types";
-    FC0225 UnknownSibling "条件所用的字段不在旁边" "condition on a field that is not beside it";
-    FC0226 OwnCondition "字段以自己为条件" "condition of a field on itself";
+    FC0225 UnknownSibling "条件所用的字段不在同一个对象中" "condition on a field outside the object";
+    FC0226 OwnCondition "字段以自己为条件" "field with a condition on itself";
     FC0227 UnknownAvailability "未知的受众、机型或版本系列" "unknown audience, hardware or series of releases";
     FC0228 UnusedAvailability "未使用的受众、机型或版本系列" "unused audience, hardware or series of releases";
     FC0229 UnknownBodyKey "消息体中没有的键" "unknown key of a body";
@@ -150,25 +150,25 @@ fault_codes! {
     FC0233 NotAnEnum "状态的类型不是枚举" "state of a type that is not an enum";
     FC0234 UnseenState "机器人的消息中没有的状态" "state that no message of the robot carries";
     FC0235 NotACommand "接口应当是指令" "operation that should be a command";
-    FC0236 ComesBeforeItself "指令排在自己之前" "command that comes before itself";
+    FC0236 ComesBeforeItself "指令互为先后" "commands in a cycle of `after`";
     FC0237 UnknownField "未知的字段" "unknown field";
     FC0238 UnknownCoordinates "未知的坐标系" "unknown coordinate system";
     FC0239 UnusedCoordinates "未使用的坐标系" "unused coordinate system";
     FC0240 UnknownStore "未知的存储位置" "unknown store";
     FC0241 UnusedStore "未使用的存储位置" "unused store";
-    FC0242 BadWaiver "豁免没有对应的提示" "waiver of something that is not a finding";
+    FC0242 BadWaiver "豁免编号的写法不对" "malformed number of a waiver";
     FC0301 DuplicateCode "两个接口的功能码相同" "two operations with the same code";
-    FC0302 RetiredCode "停用的功能码" "retired code";
+    FC0302 RetiredCode "退役的功能码" "retired code";
     FC0303 CodeOutsideRanges "功能码不在任何号段中" "code outside all ranges";
     FC0304 CodeInWrongRange "功能码所在的号段另有用途" "code in a range for something else";
     FC0305 RangeInverted "号段的终点在起点之前" "range that ends before it starts";
     FC0306 RangesOverlap "号段重叠" "overlapping ranges";
-    FC0307 DuplicateRetired "功能码重复停用" "code that is retired twice";
+    FC0307 DuplicateRetired "功能码重复退役" "code that is retired twice";
     FC0401 ExampleType "示例的类型不对" "example of the wrong type";
     FC0402 ExampleRange "示例超出 min 和 max" "example outside min and max";
     FC0403 ExampleLength "示例的长度不对" "example of the wrong length";
     FC0404 ExamplePattern "示例与 pattern 不匹配" "example that does not match its pattern";
-    FC0405 ExampleValue "示例不在枚举中，或字段不取这个值" "example that is not in its enum, or that its field does not take";
+    FC0405 ExampleValue "示例不在枚举或 only 中" "example outside its enum or `only`";
     FC0406 MissingExample "必填字段没有示例" "required field without an example";
     FC0407 MinAboveMax "min 大于 max" "min larger than max";
     FC0408 BoundsOnWrongType "不是数值却写了 min 或 max" "min or max on something that is not a number";
@@ -178,7 +178,7 @@ fault_codes! {
     FC0412 PatternOnWrongType "不是字符串却写了 pattern" "pattern on something that is not a string";
     FC0413 BadPattern "正则表达式无效" "invalid regular expression";
     FC0414 DefaultOnRequired "必填字段写了默认值" "default on a required field";
-    FC0415 DefaultType "默认值的类型不对，或字段不取这个值" "default of the wrong type, or that its field does not take";
+    FC0415 DefaultType "默认值的类型不对，或不在 only 中" "default of the wrong type or outside `only`";
     FC0416 QuirkOnWrongType "quirk 不适用于这个类型" "quirk that does not apply to the type";
     FC0417 WireOnWrongType "wire 不适用于这个类型" "wire form that does not apply to the type";
     FC0418 EnumValueType "枚举值的类型不对" "enum value of the wrong type";
@@ -189,38 +189,38 @@ fault_codes! {
     FC0423 AbsentRequired "必填字段在示例中省略" "required field left out of examples";
     FC0424 ShortForm "字段没有说明" "field without a description";
     FC0425 DefaultConstraint "默认值不符合约束" "default that breaks a constraint";
-    FC0426 OnlyOnWrongType "不是枚举却写了 only" "only on something that is not an enum";
-    FC0427 OnlyValue "only 中有枚举没有的值" "only with a value that its enum does not have";
-    FC0428 OnlyTwice "only 中有重复的值" "only with a value twice";
-    FC0429 OrderWithoutStates "order 和 then 只写了一个" "order without `then`, or `then` without an order";
-    FC0430 UnreachedState "无法到达的状态" "state that nothing leads to";
-    FC0431 FollowedFinal "终态之后还有取值" "final state that something follows";
+    FC0426 OnlyOnWrongType "不是枚举却写了 only" "`only` on something that is not an enum";
+    FC0427 OnlyValue "only 中有枚举没有的值" "`only` with an unknown value";
+    FC0428 OnlyTwice "only 中有重复的值" "`only` with a duplicate value";
+    FC0429 OrderWithoutStates "order 和 then 只写了一个" "`order` without `then`, or the reverse";
+    FC0430 UnreachedState "无法到达的状态" "unreachable state";
+    FC0431 FollowedFinal "终态之后还有取值" "final state with a successor";
     FC0432 RefersOnWrongType "refers 用在不能作 ID 的类型上" "reference on a type that cannot be an id";
     FC0433 ConditionOnOptional "以可选字段为条件" "condition on an optional field";
     FC0434 ConditionOnWrongType "以没有单个取值的字段为条件" "condition on a field without single values";
     FC0435 ConditionValue "条件中的值字段不可能取到" "condition on a value that its field cannot have";
-    FC0436 ConditionTwice "条件中有重复的值" "condition with a value twice";
+    FC0436 ConditionTwice "条件中有重复的值" "condition with a duplicate value";
     FC0437 WhenAndUnless "字段同时写了 when 和 unless" "field with both `when` and `unless`";
-    FC0438 LimitsNothing "available 没有限制任何东西" "available that limits nothing";
-    FC0439 LimitedButRequired "并非人人都有的键却是必填" "required key that not everyone has";
-    FC0440 LimitBeyondOperation "面向的受众不在接口的受众之内" "available to an audience that the operation is not for";
+    FC0438 LimitsNothing "available 没有限制任何东西" "`available` without a limit";
+    FC0439 LimitedButRequired "带 available 的键却是必填" "required key with `available`";
+    FC0440 LimitBeyondOperation "面向的受众不在接口的受众之内" "audience outside those of the operation";
     FC0441 NothingLeft "某种受众没有可用的取值或选项" "audience without values or variants";
-    FC0442 BadRelease "版本号的写法不对" "malformed number of a release";
+    FC0442 BadRelease "版本号的写法不对" "malformed release number";
     FC0443 ReleasesOutOfOrder "最后的版本早于最初的版本" "last release before the first";
-    FC0444 TieType "相互对应的键不可能是同一个 ID" "tie between keys that cannot have the same ID";
-    FC0445 NotAState "state_in 所指的键没有状态" "state in a key that has none";
-    FC0446 NoPrecondition "受理条件没有内容" "precondition that says nothing";
-    FC0447 StateValue "枚举没有的状态" "state that its enum does not have";
+    FC0444 TieType "相互对应的键不可能是同一个 ID" "tie between keys that cannot hold the same ID";
+    FC0445 NotAState "state_in 所指的键没有状态" "`state_in` on a key without states";
+    FC0446 NoPrecondition "受理条件为空" "empty precondition";
+    FC0447 StateValue "枚举没有的状态" "unknown state of an enum";
     FC0448 CadenceRules "上报时机没有规则或有几条规则" "cadence without a rule, or with several";
-    FC0449 StepOnWrongType "不是数值却写了步长" "step of something that is not a number";
-    FC0450 StepOfNothing "字段变化不了的步长" "step that its field cannot take";
-    FC0451 DeadlineOfNothing "上报有期限却没有引起它的指令" "deadline of a report that no command sets off";
+    FC0449 StepOnWrongType "不是数值却写了步长" "step on something that is not a number";
+    FC0450 StepOfNothing "步长不适用于字段" "step that does not fit its field";
+    FC0451 DeadlineOfNothing "上报有期限却没有引起它的指令" "`within_ms` without a command that sets off the report";
     FC0452 CoordinatesOnWrongType "不是对象却写了坐标系" "coordinates on something that is not an object";
-    FC0453 CoordinatesWithoutLength "有坐标系却没有长度单位" "coordinates without a length";
+    FC0453 CoordinatesWithoutLength "有坐标系却没有长度单位" "coordinates without a unit of length";
     FC0454 CoordinatesTwice "一个对象有两个坐标系" "two coordinate systems for one object";
-    FC0501 RoleMissing "作用没有指定" "unassigned role";
-    FC0502 RoleTwice "作用重复指定" "role assigned twice";
-    FC0503 HeaderWidth "包头字段的宽度与作用不符" "header field of the wrong width for its role";
+    FC0501 RoleMissing "角色没有指定" "unassigned role";
+    FC0502 RoleTwice "角色重复指定" "role assigned twice";
+    FC0503 HeaderWidth "包头字段的宽度与角色不符" "header field of the wrong width for its role";
     FC0504 BadHeaderType "包头字段的类型未知" "unknown header field type";
     FC0505 HeadNotFirst "帧不以帧头开始" "frame that does not start with the head";
     FC0506 HeadLength "帧头的长度不对" "head of the wrong length";
@@ -229,7 +229,7 @@ fault_codes! {
     FC0509 HeaderQuirk "quirk 用在错误的包头字段上" "quirk on the wrong header field";
     FC0510 KindPort "数据类型所在的端口不对" "kind on the wrong port";
     FC0511 SamePort "同一个端口用了两次" "same port used twice";
-    FC0512 EnvelopeType "公共字段的类型与作用不符" "envelope key of the wrong type for its role";
+    FC0512 EnvelopeType "公共字段的类型与角色不符" "envelope key of the wrong type for its role";
     FC0513 ResultInRequest "请求的公共字段中有结果" "result in the envelope of requests";
     FC0514 LimitTooSmall "帧的上限小于包头" "frame limit below the header";
     FC0515 AlgorithmWithoutDigest "不是摘要的包头字段写了 algorithm" "algorithm on a header field without a digest";
@@ -239,22 +239,22 @@ fault_codes! {
     FC0603 TextSpacing "文本首尾有空白" "text with surrounding white space";
     FC0604 SameText "两种语言的文本相同" "same text in both languages";
     FC0605 NotChinese "中文文本没有汉字" "Chinese text without Chinese characters";
-    FC0606 NotEnglish "英文文本是中文" "English text that is Chinese";
-    FC0607 DatesOutOfOrder "停用早于出现" "deprecated before it was added";
+    FC0606 NotEnglish "英文文本是中文" "English text written in Chinese";
+    FC0607 DatesOutOfOrder "弃用早于加入" "deprecated before it was added";
     FC0608 UnknownConflict "答复了未知的疑问" "answer to an unknown conflict";
     FC0609 UnansweredConflict "没有答复的疑问" "unanswered conflict";
-    FC0610 SectionRetained "缺失的章节被写作出处" "missing section used as a source";
-    FC0611 SectionGap "源文档有章节没有交代" "section of the source that is not accounted for";
+    FC0610 MissingSectionUsed "缺失的章节被写作出处" "missing section used as a source";
+    FC0611 SectionGap "源文档的章节既未使用，也未列为缺失" "section of the source that is neither used nor listed";
     FC0612 LostButStated "同一项内容既标为缺失，又当作已写明" "fact that is marked both missing and stated";
     FC0613 Placeholder "待写的文本" "text still to be written";
-    FC0614 AnswerToNothing "答复没有说明答复什么" "answer that does not say what it answers";
-    FC0615 GovernsNothing "答复的内容不存在" "answer about something that is not there";
-    FC0616 GovernedFact "疑问未决而内容已改" "fact changed although its question is open";
-    FC0617 SettledButUntouched "疑问已决而内容未改" "question settled although its fact is as before";
+    FC0614 AnswerToNothing "答复没有 ids，也没有 about" "answer without `ids` and `about`";
+    FC0615 GovernsNothing "答复涉及的内容不存在" "answer about something that does not exist";
+    FC0616 GovernedFact "问题未确认而内容已改" "fact changed although its question is open";
+    FC0617 SettledButUntouched "问题已确认而内容未改" "question settled although its fact has not changed";
 }
 
 impl FaultCode {
-    /// The code with this number, in any case, with or without its `FC` and zeros in front.
+    /// Returns the code with this number. Case, the prefix `FC` and leading zeros make no difference.
     #[must_use]
     pub fn parse(number: &str) -> Option<Self> {
         let upper = number.trim().to_ascii_uppercase();

@@ -8,7 +8,7 @@ use crate::diagnostic::Faults;
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
     CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
-    JsonRule, Limits, Operation, Protocol, Question, ResultCode, RetainedSection, RetiredCode,
+    JsonRule, Limits, MissingSection, Operation, Protocol, Question, ResultCode, RetiredCode,
     Store, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::syntax::{Node, Span};
@@ -161,7 +161,7 @@ pub(crate) struct Draft<'a> {
     pub availability: AvailabilityDraft<'a>,
     pub glossary: Vec<Placed<'a, Term>>,
     pub waivers: Vec<Placed<'a, Waiver>>,
-    pub sections: Vec<Placed<'a, RetainedSection>>,
+    pub sections: Vec<Placed<'a, MissingSection>>,
     /// Whether `sections:` is there and sound.
     pub sections_known: bool,
     pub conflicts: Vec<Placed<'a, Conflict>>,

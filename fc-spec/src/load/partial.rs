@@ -3,8 +3,8 @@
 use super::draft::{Draft, Placed};
 use crate::model::{
     Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
-    Envelope, Frame, FrameKinds, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
-    RangeUse, ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport,
+    Envelope, Frame, FrameKinds, Group, JsonRule, Limits, MissingSection, Model, Operation,
+    Protocol, Question, RangeUse, ResultCode, RetiredCode, Store, Table, Term, Text, Transport,
     TypeDef, TypeShape, Types, Waiver, link, next_code,
 };
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ pub struct Partial {
     pub availability: Availability,
     pub glossary: Vec<Term>,
     pub waivers: Vec<Waiver>,
-    pub retained_sections: Vec<RetainedSection>,
+    pub missing_sections: Vec<MissingSection>,
     pub conflicts: Vec<Conflict>,
     pub answers: Vec<Answer>,
     pub questions: Vec<Question>,
@@ -101,7 +101,7 @@ impl Partial {
                 availability,
                 glossary,
                 waivers,
-                retained_sections,
+                missing_sections,
                 conflicts,
                 answers,
                 questions,
@@ -127,7 +127,7 @@ impl Partial {
                 availability,
                 glossary,
                 waivers,
-                retained_sections,
+                missing_sections,
                 conflicts,
                 answers,
                 questions,
@@ -186,7 +186,7 @@ pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
         availability: draft.availability.model(),
         glossary: items(draft.glossary),
         waivers: items(draft.waivers),
-        retained_sections: items(draft.sections),
+        missing_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
         answers: shrunk(draft.answers.into_iter().map(|answer| answer.item)),
         questions: draft.questions,

@@ -4,9 +4,9 @@
 
 use super::{
     Answer, Availability, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem,
-    Entity, Envelope, Frame, Group, JsonRule, Limits, Model, Operation, Protocol, Question,
-    ResultCode, RetainedSection, RetiredCode, Store, Table, Term, Text, Transport, TypeShape,
-    Types, Unlinked, Waiver,
+    Entity, Envelope, Frame, Group, JsonRule, Limits, MissingSection, Model, Operation, Protocol,
+    Question, ResultCode, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types,
+    Unlinked, Waiver,
 };
 use crate::text;
 use schemars::JsonSchema;
@@ -54,7 +54,7 @@ pub struct Dump {
     /// What only the owner of the protocol can say, the most pressing first.
     questions: Vec<Question>,
     /// Sections of the source of which nothing is left.
-    lost_sections: Vec<RetainedSection>,
+    lost_sections: Vec<MissingSection>,
     /// Of the protocol as a whole.
     changes: Vec<Change>,
 }
@@ -156,7 +156,7 @@ impl From<&Model> for Dump {
             conflicts: model.conflicts,
             answers: model.answers,
             questions: model.questions,
-            lost_sections: model.retained_sections,
+            lost_sections: model.missing_sections,
             changes: model.changes,
         }
     }
@@ -216,7 +216,7 @@ impl Dump {
             availability: self.availability,
             glossary: self.glossary,
             waivers: self.waivers,
-            retained_sections: self.lost_sections,
+            missing_sections: self.lost_sections,
             conflicts: self.conflicts,
             answers: self.answers,
             questions: self.questions,

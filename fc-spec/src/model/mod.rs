@@ -51,7 +51,7 @@ pub(crate) use process::{enums, way};
 pub use projection::ProjectionError;
 pub use protocol::{
     CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
-    HeaderField, HeaderType, Limits, Party, Port, Ports, Protocol, ResultCode, RetainedSection,
+    HeaderField, HeaderType, Limits, MissingSection, Party, Port, Ports, Protocol, ResultCode,
     RetiredCode, Table, Transport,
 };
 pub use question::{Confirmation, Governed, Question};
@@ -110,7 +110,7 @@ pub struct Model {
     /// Findings that are accepted for a time.
     pub waivers: Vec<Waiver>,
     /// Section numbers of the source document of which nothing is left.
-    pub retained_sections: Vec<RetainedSection>,
+    pub missing_sections: Vec<MissingSection>,
     /// The gaps and slips of the source document that the spec must answer.
     pub conflicts: Vec<Conflict>,
     /// What the spec answers to them, in the order in which the answers stand.

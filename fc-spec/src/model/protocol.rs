@@ -510,9 +510,9 @@ pub struct Table {
     pub location: Location,
 }
 
-/// A section number of the source of which nothing is left.
+/// A section that is missing from the source document.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct RetainedSection {
+pub struct MissingSection {
     /// Number.
     pub section: u16,
     /// What is known.

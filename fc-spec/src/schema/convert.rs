@@ -244,7 +244,7 @@ impl Definitions {
             (
                 "description",
                 string(
-                    "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
+                    "A built-in type or the name of a declared one. `[T]` is a list of `T`. A `?` at the end marks an optional field.",
                 ),
             ),
             ("if", object([("type", string("array"))])),

@@ -119,8 +119,8 @@ fn types() -> Part {
         id: TYPE,
         name: both(Doc::new(TYPE, "类型")),
         text: both(Doc::new(
-            "A built-in type or the name of a declared one; `[T]` is a list of it; `?` behind it marks an optional field.",
-            "内置类型或已声明的类型名；`[T]` 是它的列表；后面加 `?` 表示字段可选。",
+            "A built-in type or the name of a declared one. `[T]` is a list of `T`. A `?` at the end marks an optional field.",
+            "内置类型或已声明的类型名；`[T]` 是 `T` 的列表；末尾加 `?` 表示字段可选。",
         )),
         example: None,
         faults: Vec::new(),
@@ -150,7 +150,7 @@ const PLAIN: [Meaning; 6] = [
     ),
     (
         "json",
-        "Any JSON value, kept as it is.",
+        "Any JSON value, kept unchanged.",
         "任意 JSON 值，原样保留。",
     ),
 ];
@@ -160,8 +160,8 @@ fn units() -> Part {
         id: UNIT,
         name: both(Doc::new(UNIT, "单位")),
         text: both(Doc::new(
-            "A unit of measurement, as it is printed.",
-            "计量单位，按印出的样子书写。",
+            "A unit of measurement, as the pages print it.",
+            "计量单位，写法与页面上显示的相同。",
         )),
         example: None,
         faults: Vec::new(),

@@ -229,9 +229,9 @@ fn every_node_of_a_model_has_its_place() {
         .iter()
         .for_each(|it| expect("term", &[&it.id]));
     model
-        .retained_sections
+        .missing_sections
         .iter()
-        .for_each(|it| expect("retained section", &[&it.section]));
+        .for_each(|it| expect("missing section", &[&it.section]));
     model
         .conflicts
         .iter()

@@ -35,16 +35,16 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                         _ => place.key_at(COMMAND.request),
                     },
                     text!(
-                        "用 `request_state: inferred` 或 `open` 注明",
-                        "say so with `request_state: inferred` or `open`"
+                        "改写为 `request_state: inferred` 或 `open`",
+                        "write `request_state: inferred` or `open`"
                     ),
                 ),
                 Fact::Response if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Response),
                     place.key_at(COMMAND.response),
                     text!(
-                        "用 `response_state: inferred` 或 `open` 注明",
-                        "say so with `response_state: inferred` or `open`"
+                        "改写为 `response_state: inferred` 或 `open`",
+                        "write `response_state: inferred` or `open`"
                     ),
                 ),
                 _ => continue,
@@ -86,8 +86,8 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
     if let (true, Some(first)) = (known.is_empty(), draft.answers.first()) {
         let answers = draft.answers.len();
         let message = text!(
-            "规范有答复（{answers} 条），却没有 `conflicts`",
-            "the spec has answers ({answers}) but no `conflicts`"
+            "规范有 {answers} 条答复，但没有 `conflicts`",
+            "the spec has {answers} answers but no `conflicts`"
         );
         faults.push(
             Diagnostic::error(
@@ -97,8 +97,8 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
             )
             .label(text!("这是第一条", "this is the first"))
             .note(text!(
-                "疑问在 `conflicts:` 下声明；是不是缺少那个文件？",
-                "conflicts are declared under `conflicts:`; is their file missing?"
+                "在 `conflicts:` 下声明疑问；检查是否缺少那个文件",
+                "declare conflicts under `conflicts:`; check whether their file is missing"
             )),
         );
         return;
@@ -112,8 +112,8 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
             let message = text!("没有疑问 {id}", "there is no conflict {id}");
             faults.push(
                 Diagnostic::error(FaultCode::UnknownConflict, node.span(), message).note(text!(
-                    "疑问在 `conflicts:` 下声明",
-                    "conflicts are declared under `conflicts:`"
+                    "在 `conflicts:` 下声明",
+                    "declare it under `conflicts:`"
                 )),
             );
         }
@@ -135,7 +135,7 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
             let message = text!("{id} 没有答复", "{id} has no answer", id = conflict.item.id);
             faults.push(
                 Diagnostic::error(FaultCode::UnansweredConflict, conflict.place.name(), message)
-                    .note(text!("在相关内容的 `answers:` 下答复；还不知道答案时写 `as: question`", "answer it under `answers:` where it belongs; `as: question` means that the answer is not known yet")),
+                    .note(text!("在相关内容的 `answers:` 下答复；还没有答案时写 `as: question`", "answer it under `answers:` where it belongs; write `as: question` if there is no answer yet")),
             );
         }
     }
@@ -165,7 +165,7 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
             }
         }
     }
-    let retained: HashMap<u16, Span> = draft
+    let missing: HashMap<u16, Span> = draft
         .sections
         .iter()
         .map(|section| (section.item.section, section.place.name()))
@@ -174,17 +174,17 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
         let number = section.item.section;
         if let Some(claim) = claimed.get(&number) {
             let message = text!(
-                "第 {number} 节并未缺失：有接口写明出自这一节",
-                "section {number} is not missing: an operation names it as its source"
+                "第 {number} 节列为缺失，却是某个接口的出处",
+                "section {number} is listed as missing, but an operation names it as its source"
             );
             faults.push(
-                Diagnostic::error(FaultCode::SectionRetained, section.place.name(), message)
-                    .also(*claim, text!("在这里", "here")),
+                Diagnostic::error(FaultCode::MissingSectionUsed, section.place.name(), message)
+                    .also(*claim, text!("写作出处", "named as a source")),
             );
         }
     }
     let mut before = 0;
-    let mut known: Vec<(u16, Span)> = claimed.into_iter().chain(retained).collect();
+    let mut known: Vec<(u16, Span)> = claimed.into_iter().chain(missing).collect();
     known.sort_unstable();
     for (section, span) in known {
         if section > before + 1 {

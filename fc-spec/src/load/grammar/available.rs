@@ -4,21 +4,21 @@ use super::common::TEXT;
 use super::form::{Entries, List, Name, Str};
 
 grammar! {
-    /// The words that `available` uses: for whom a thing may be, on which machines, in which releases.
+    /// The words that `available` uses: audiences, lines of machines, and series of releases.
     /// `available` 所用的词：面向谁、哪些机型、哪些版本。
     AVAILABILITY: Availability = "availability" "适用范围" {
-        /// For whom something may be: kinds of app, by name.
-        /// 可以面向谁：各种 app，以名称为键。
+        /// Audiences: kinds of app, by name.
+        /// 受众：各种 app，以名称为键。
         optional audiences: Entries<Name, Audience, 1>, faults [UnusedAvailability];
         /// Lines of machines, by name.
         /// 机型，以名称为键。
         optional hardware: Entries<Name, Machine, 1>, faults [UnusedAvailability];
-        /// What is counted in releases, such as a firmware, by name.
-        /// 有版本号的东西，例如某种固件，以名称为键。
+        /// Series of releases, such as those of a firmware, by name.
+        /// 版本系列，例如某种固件的版本，以名称为键。
         optional releases: Entries<Name, Series, 1>, faults [UnusedAvailability];
     }
 
-    /// A kind of app for which some things are and others are not.
+    /// A kind of app that has some things and lacks others.
     /// 一种 app：有的内容面向它，有的不面向它。
     _: Audience = "audience" "受众" {
         use TEXT.zh, TEXT.en;
@@ -30,14 +30,14 @@ grammar! {
         use TEXT.zh, TEXT.en;
     }
 
-    /// What is counted in releases.
-    /// 有版本号的东西。
+    /// A series of numbered releases.
+    /// 一个版本系列。
     _: Series = "series of releases" "版本系列" {
         use TEXT.zh, TEXT.en;
     }
 
-    /// Who has a thing, and where; what is not said limits nothing.
-    /// 哪些人、在哪里才有；没有写的不作限制。
+    /// The audiences, machines and releases that have a thing. A key that is left out limits nothing.
+    /// 哪些受众、机型和版本才有；没有写的键不作限制。
     AVAILABLE: Available = "limit" "适用限制" {
         /// Only these audiences have it; `fcproto generate --for` leaves it out for others.
         /// 只面向这些受众；用 `fcproto generate --for` 为其他受众生成时不包含它。

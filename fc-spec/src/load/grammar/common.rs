@@ -19,8 +19,8 @@ grammar! {
         required en: Str, example "Battery level", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
     }
 
-    /// Keys that stand in many places.
-    /// 多处都有的键。
+    /// Keys that many mappings share.
+    /// 多种映射共用的键。
     COMMON: Common = "common key" "通用键" {
         /// Longer description, as Markdown paragraphs.
         /// 详细说明，用 Markdown 分段书写。
@@ -28,7 +28,7 @@ grammar! {
         /// When it first appeared.
         /// 最早出现的时间。
         optional since: Date;
-        /// For whom it is, on which machines and in which releases; everyone and everywhere if it is not said.
+        /// The audiences, machines and releases that have it; all of them if left out.
         /// 面向谁、哪些机型、哪些版本；不写时不作限制。
         optional available: Available, faults [LimitsNothing, LimitedButRequired];
         /// Its dated changes.
@@ -43,8 +43,8 @@ grammar! {
         /// Name in code, if the one derived from the wire key is not suitable.
         /// 代码中的名称；由键名得出的名称不合适时才写。
         optional name: Name, example "battery_level";
-        /// Where it is kept; of an operation, what it reads and sets. Declared under `stores`.
-        /// 内容保存在哪里；接口则指它读写的内容。存储位置在 `stores` 中声明。
+        /// Store in which it is kept, declared under `stores`. For an operation: the store that it reads and sets.
+        /// 内容的存储位置，在 `stores` 中声明。接口则指它读写的存储位置。
         optional kept: Name, example "config_file", faults [UnknownStore];
     }
 
@@ -68,38 +68,38 @@ grammar! {
         use TEXT.zh, TEXT.en;
     }
 
-    /// What the spec answers to gaps and slips of the source.
+    /// An answer of the spec to gaps and slips of the source.
     /// 对源文档中缺失和笔误的答复。
     ANSWER: Answer = "answer" "答复" {
-        /// Ids of the conflicts it answers; an answer without any says in `about` what it answers.
-        /// 所答复的疑问的编号；没有编号的答复用 `about` 说明所答复的内容。
+        /// Ids of the conflicts it answers. An answer without ids names its facts in `about`.
+        /// 所答复的疑问的编号；没有编号的答复在 `about` 中写明涉及的内容。
         optional ids: List<ConflictId, 1>, faults [UnknownConflict];
-        /// What kind of answer it is.
+        /// Kind of answer.
         /// 答复的种类。
         required r#as: AnswerKind;
-        /// The facts it governs, and what the spec says of each until the owner has answered: `code: open`, `request: inferred`, or keys from here on and a value, such as `response.data.x.unit: absent`.
-        /// 它约束的内容，以及负责人答复之前规范中的写法：`code: open`、`request: inferred`，或从此处起的键路径和值，例如 `response.data.x.unit: absent`。
+        /// The facts it governs, each with its state in the spec until the owner has answered: `code: open`, `request: inferred`, or a path of keys with a value, such as `response.data.x.unit: absent`.
+        /// 它涉及的内容，以及负责人答复之前规范中的写法：`code: open`、`request: inferred`，或从此处起的键路径和值，例如 `response.data.x.unit: absent`。
         optional about: Entries<Str, Scalar, 1>, example "{ code: open }", faults [GovernsNothing, GovernedFact];
-        /// Whether it says what the runtime does, which no value of the spec changes.
-        /// 说的是不是运行库的做法：规范中没有可改的值。
+        /// `true` if it describes the runtime: no value of the spec changes that.
+        /// 写 `true` 表示描述的是运行库的做法，规范中没有可改的值。
         optional runtime: Bool, default "false";
-        /// The owner's word, which settles it.
+        /// The owner's confirmation, which settles it.
         /// 负责人的确认；有了它，疑问即告解决。
         optional confirmed: Confirmed, faults [SettledButUntouched];
         use TEXT.zh, TEXT.en;
     }
 
-    /// The word of the protocol's owner.
+    /// The confirmation of the protocol owner.
     /// 协议负责人的确认。
     CONFIRMED: Confirmed = "confirmation" "确认" {
-        /// Who said it.
+        /// Name of the person who confirmed it.
         /// 确认人。
         required by: Str, example "Li Wei";
         use CHANGE.date;
-        /// Where it can be looked up, such as a mail or a ticket.
+        /// Reference, such as a mail or a ticket.
         /// 凭据，例如邮件、工单。
         optional reference: Str, example "mail of 2024-05-06";
-        /// In their own words, in the language they were said.
+        /// The owner's words, in the original language.
         /// 原话，照录。
         optional reply: Str, example "单位是毫米";
     }
@@ -107,30 +107,30 @@ grammar! {
     /// A gap or slip of the source document.
     /// 源文档中的一处缺失或笔误。
     CONFLICT: Conflict = "conflict" "疑问" {
-        /// What it concerns, such as `frame`, `codes`, `fields`.
+        /// Its topic, such as `frame`, `codes`, `fields`.
         /// 涉及什么，例如 `frame`、`codes`、`fields`。
         required category: Str, example "fields";
-        /// How serious it is.
-        /// 影响有多大。
+        /// Its severity.
+        /// 严重程度。
         required severity: Severity;
         use TEXT.zh, TEXT.en;
     }
 
-    /// Withdrawn: why, and what to use instead.
-    /// 已停用：为什么，改用什么。
-    FIELD_DEPRECATED: FieldDeprecated = "field deprecation" "字段停用" {
-        /// Since when.
-        /// 从什么时候起。
+    /// Deprecated: the reason, and the replacement.
+    /// 已弃用：原因，以及改用什么。
+    FIELD_DEPRECATED: FieldDeprecated = "field deprecation" "字段弃用" {
+        /// Date since which it is deprecated.
+        /// 从什么时候起弃用。
         optional since: Date, faults [DatesOutOfOrder];
-        /// Last day or month in which it is there.
+        /// Last day or month in which it works.
         /// 保留到哪一天或哪个月为止。
         optional sunset: Date;
         use TEXT.zh, TEXT.en;
     }
 
-    /// Withdrawn: why, and what to use instead.
-    /// 已停用：为什么，改用什么。
-    DEPRECATED: Deprecated = "deprecation" "停用" {
+    /// Deprecated: the reason, and the replacement.
+    /// 已弃用：原因，以及改用什么。
+    DEPRECATED: Deprecated = "deprecation" "弃用" {
         use FIELD_DEPRECATED.since, FIELD_DEPRECATED.sunset, TEXT.zh, TEXT.en;
         /// Operation to use instead.
         /// 改用的接口。

@@ -39,34 +39,34 @@ grammar! {
         /// Its type, followed by `?` if the field is optional.
         /// 类型；可选字段在后面加 `?`。
         required r#type: Type, example "u16?";
-        /// Whether it may be absent.
-        /// 是否可以没有。
+        /// `true` if it may be absent.
+        /// 写 `true` 表示可以没有。
         optional optional: Bool, default "false";
-        /// Fields beside it and the values, as they are sent, under which it is there; all must fit. A required field is always there, but valid only then.
-        /// 旁边的字段取哪些值时（按发送的形式书写）才有这个字段，须全部符合；必填字段总是有，但只在这时有效。
+        /// Condition: other fields of the object, each with the values that are sent; all must match. An optional field is present only then. A required field is valid only then.
+        /// 条件：同一个对象的其他字段，各写须发送的值，须全部符合。可选字段只在这时出现；必填字段总是出现，但只在这时有效。
         optional when: Condition,
             example "{ mode: 1 }",
             faults [UnknownSibling, OwnCondition, ConditionOnOptional, ConditionOnWrongType, ConditionValue, ConditionTwice];
-        /// The opposite of `when`: it is there, or valid, unless all of these fit.
+        /// The opposite of `when`: the field is present, or valid, unless all of these match.
         /// 与 `when` 相反：全部符合时没有这个字段，或者无效。
         optional unless: Condition,
             example "{ mode: [0, 2] }",
             faults [UnknownSibling, OwnCondition, ConditionOnOptional, ConditionOnWrongType, ConditionValue, ConditionTwice, WhenAndUnless];
-        /// Values of an enum that this field takes, as they are sent. Any other is refused, also where the enum is open.
+        /// The values of an enum that this field takes, in the form that is sent. Any other value is refused, even if the enum is open.
         /// 这个字段只取枚举的哪些值，按发送的形式书写；其他的值一律拒收，开放的枚举也不例外。
         optional only: List<Scalar, 1>, example "[0, 1]", faults [OnlyOnWrongType, OnlyValue, OnlyTwice, NothingLeft];
         use COMMON.available;
-        /// The entity of which its value is the id, or each value of its list; declared under `entities`.
+        /// The entity that its value identifies, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
         optional refers: Name, example "station", faults [UnknownEntity, RefersOnWrongType];
         use COMMON.kept, COMMON.name;
         /// Other wire keys that the decoder accepts for it.
         /// 解析时还接受哪些键名。
         optional also: List<Str, 1>, example "[id]", faults [DuplicateWireKey];
-        /// How it is sent, if that differs from its type.
+        /// Form in which it is sent, if that differs from its type.
         /// 发送的形式；与类型不同时才写。
         optional wire: OtherForm, faults [WireOnWrongType];
-        /// The coordinate system in which its positions are given; declared under `coordinates`.
+        /// The coordinate system of its positions; declared under `coordinates`.
         /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
         optional coordinates: Name,
             example "map",
@@ -87,16 +87,16 @@ grammar! {
         /// Unit, such as `m`, `rad`, `ms`.
         /// 单位，例如 `m`、`rad`、`ms`。
         optional unit: Unit, example "mm";
-        /// Where the decoder is lenient; the encoder is not.
-        /// 在哪一点上放宽解析；发送时不放宽。
+        /// Leniencies of the decoder; the encoder has none.
+        /// 解析时的放宽处理；发送时不放宽。
         optional quirk: List<Quirk, 1>, faults [QuirkOnWrongType];
-        /// Value the receiver uses if the field is absent; given in the documentation and the code, not sent.
+        /// Value that the receiver uses if the field is absent. It is in the documentation and the code, and is not sent.
         /// 没有这个字段时接收方采用的值；写进文档和代码，不发送。
         optional default: Scalar, example "0", faults [DefaultOnRequired, DefaultType, DefaultConstraint];
         /// Never shown in logs.
         /// 不写进日志。
         optional sensitive: Bool, default "false";
-        /// Value in generated examples, as it is sent; `absent` leaves an optional field out.
+        /// Value in generated examples, in the form that is sent; `absent` leaves an optional field out.
         /// 示例中的值，按发送的形式书写；写 `absent` 时，示例中不出现这个可选字段。
         optional example: Json,
             example "7",
@@ -105,25 +105,25 @@ grammar! {
         /// Additional notes, such as special values and origin.
         /// 补充说明，例如特殊取值、出处。
         optional note: BothLanguages;
-        /// Withdrawn.
-        /// 已停用。
+        /// Deprecated.
+        /// 已弃用。
         optional deprecated: FieldDeprecated;
         use COMMON.answers;
     }
 
-    /// A field that holds an object written in place.
-    /// 就地写出的对象字段。
+    /// A field that holds an inline object.
+    /// 内嵌对象字段。
     OBJECT: Object = "inline object" "内嵌对象" {
         use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also;
-        /// Name of its type in code, if the one made of the keys that lead to it is not suitable.
-        /// 它的类型在代码中的名称；由一路的键名得出的名称不合适时才写。
+        /// Name of its type in code, if the one derived from its keys is not suitable.
+        /// 它的类型在代码中的名称；由各级键名得出的名称不合适时才写。
         optional type_name: TypeName, example "MapHeader";
         use FIELD.coordinates, COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example;
         // The key `data` has a default text, so that the table cannot ask for one; a check does.
-        /// In Chinese; only `data` goes without.
+        /// In Chinese; only `data` may leave it out.
         /// 中文；只有 `data` 可以不写。
         optional zh: Str, example "地图信息", faults [EmptyText, TextSpacing, NotChinese, Placeholder];
-        /// In English; only `data` goes without.
+        /// In English; only `data` may leave it out.
         /// 英文；只有 `data` 可以不写。
         optional en: Str, example "About the map", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
         use FIELD.note, FIELD.deprecated;
@@ -133,8 +133,8 @@ grammar! {
         use COMMON.answers;
     }
 
-    /// A field that holds a list of objects written in place.
-    /// 就地写出的对象列表字段。
+    /// A field that holds a list of inline objects.
+    /// 内嵌对象列表字段。
     ITEMS: Items = "inline list" "内嵌列表" {
         use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also, OBJECT.type_name,
             FIELD.coordinates, COMMON.since, FIELD.length, FIELD.quirk, FIELD.sensitive, FIELD.example, OBJECT.zh, OBJECT.en, FIELD.note,
@@ -145,13 +145,13 @@ grammar! {
         use COMMON.answers;
     }
 
-    /// A field that holds one of several objects, told apart by which keys are present; one that fits none is refused.
-    /// 在几种对象中取其一的字段，凭有哪些键来区分；都不符合的拒收。
+    /// A field that holds one of several objects, distinguished by their keys. An object that matches none is refused.
+    /// 在几种对象中取其一的字段，靠键区分；都不符合的拒收。
     CHOICE: Choice = "inline choice" "内嵌多选一" {
         use FIELD.optional, FIELD.when, FIELD.unless, COMMON.available, COMMON.kept, COMMON.name, FIELD.also, OBJECT.type_name,
             COMMON.since, FIELD.quirk, FIELD.sensitive, FIELD.example, OBJECT.zh, OBJECT.en, FIELD.note, FIELD.deprecated;
-        /// The objects, in the order in which they are tried.
-        /// 各种对象，按尝试的顺序书写。
+        /// The objects, in the order of matching.
+        /// 各种对象，按匹配的顺序书写。
         required one_of: Entries<Name, Variant>, faults [EmptyEnum, SameVariants];
         use COMMON.answers;
     }
@@ -165,8 +165,8 @@ grammar! {
         use COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated;
     }
 
-    /// A variant written in place.
-    /// 就地写出的一种对象。
+    /// An inline variant.
+    /// 内嵌的一种对象。
     _: InlineVariant = "inline variant" "内嵌选项" {
         use OBJECT.type_name, COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated, OBJECT.fields;
     }
@@ -180,15 +180,15 @@ grammar! {
     /// A choice of named values.
     /// 一组命名的取值。
     ENUM: Enum = "enum" "枚举" {
-        /// Type of the values as they are sent.
+        /// Type in which the values are sent.
         /// 发送时取值的类型。
         required r#enum: EnumType;
         /// `true`: an unknown value is an error instead of being kept.
         /// 写 `true` 时，未知的值算错误，不予保留。
         optional closed: Bool, default "false";
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.since;
-        /// The values are the states of a process; what their `then` claims: the normal order, or every change there is.
-        /// 取值是一个过程的各个状态；这里说明 `then` 写的是正常顺序，还是全部的切换。
+        /// Meaning of `then`, if the values are states of a process: the normal order, or all changes.
+        /// 取值是一个过程的各个状态时，`then` 的含义：正常顺序，还是全部切换。
         optional order: StateOrder, faults [OrderWithoutStates];
         /// Its values, each under the value that is sent.
         /// 各个取值，以发送的值为键。
@@ -202,25 +202,25 @@ grammar! {
         /// Name in code.
         /// 代码中的名称。
         required name: Name, example "moving", faults [DuplicateName];
-        /// Where the process begins.
-        /// 过程从这里开始。
+        /// `true` if the process begins here.
+        /// 写 `true` 表示过程从这里开始。
         optional start: Bool, default "false";
-        /// Names of the values that follow it; the enum's `order` says whether normally or exclusively.
-        /// 接在它后面的取值的名称；是正常情况下的还是全部的，由枚举的 `order` 说明。
+        /// Names of the values that can follow it. The `order` of the enum gives the meaning of the list.
+        /// 接在它后面的取值的名称；这个列表的含义由枚举的 `order` 决定。
         optional then: List<Name, 1>,
             example "[arrived, failed]",
             faults [UnknownValue, OrderWithoutStates, FollowedFinal];
-        /// Where the process ends: nothing follows.
-        /// 过程到此结束，其后没有别的取值。
+        /// `true` if the process ends here: no value follows.
+        /// 写 `true` 表示过程到此结束，其后没有别的取值。
         optional r#final: Bool, default "false";
-        /// It means that something failed.
-        /// 表示失败或异常。
+        /// `true` if it means that something failed.
+        /// 写 `true` 表示失败或异常。
         optional error: Bool, default "false";
         use COMMON.available, COMMON.since, TEXT.zh, TEXT.en;
     }
 
-    /// A choice of objects, told apart by which keys are present; one that fits none is refused.
-    /// 在几种对象中取其一，凭有哪些键来区分；都不符合的拒收。
+    /// A choice of objects, distinguished by their keys. An object that matches none is refused.
+    /// 在几种对象中取其一，靠键区分；都不符合的拒收。
     _: OneOf = "choice" "多选一" {
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.since, CHOICE.one_of, COMMON.changes, COMMON.answers;
     }
@@ -232,7 +232,7 @@ grammar! {
         /// Struct of a row.
         /// 一行的结构。
         required row: TypeName, example "Station", faults [NotAStruct];
-        /// Rows, in wire form.
+        /// Rows, in the form that is sent.
         /// 各行，按发送的形式书写。
         required rows: List<Json>, example "[{ id: 1, name: dock }]", faults [RowMismatch];
         use COMMON.answers;

@@ -14,7 +14,7 @@ use super::wire::{
 };
 
 grammar! {
-    /// A file of the spec. `protocol.yaml` says what lies below the messages, `commands/*.yaml` hold one group of operations each.
+    /// A file of the spec. `protocol.yaml` describes the layers below the messages. Each file in `commands/` holds one group of operations.
     /// 规范的一个文件。`protocol.yaml` 规定消息以下的各层，`commands/*.yaml` 每个文件是一组接口。
     FILE: File = "file" "文件" {
         /// The group of operations in this file.
@@ -44,23 +44,23 @@ grammar! {
         /// Host and ports.
         /// 地址和端口。
         optional transport: Transport;
-        /// How a frame is laid out.
+        /// Layout of a frame.
         /// 帧的结构。
         optional frame: Frame;
-        /// How bodies are read where JSON leaves it open.
-        /// JSON 没有规定的地方怎么读。
+        /// Rules for JSON that RFC 8259 leaves open.
+        /// RFC 8259 没有规定的 JSON 读法。
         optional json: Json;
-        /// The keys that every message carries besides its own.
-        /// 每条消息除自己的键以外都带的键。
+        /// Keys of every message, in addition to those of its body.
+        /// 消息体的键之外，每条消息都带的键。
         optional envelope: Envelope;
         /// Result codes, by number.
         /// 结果码，以数值为键。
         optional results: Entries<ResultNumber, ResultCode>, faults [RoleMissing];
-        /// How long the two sides wait.
-        /// 双方各等多久。
+        /// Waiting times of both sides.
+        /// 双方的等待时间。
         optional calls: Calls;
-        /// How often a report is resent by default.
-        /// 上报默认重发几次。
+        /// Default resending of reports.
+        /// 上报默认的重发。
         optional ack: Ack;
         /// Default limits of client and server.
         /// 客户端和服务端默认的上限。
@@ -70,29 +70,29 @@ grammar! {
         optional codes: Codes;
         /// Numbers of the sections missing from the source document.
         /// 源文档中缺失的各节的节号。
-        optional sections: Entries<Int<u16, 1>, Section>, faults [SectionRetained, SectionGap];
-        /// For whom things may be, and where. At most one in a spec.
-        /// 可以面向谁、用于哪里。整个规范最多一份。
+        optional sections: Entries<Int<u16, 1>, Section>, faults [MissingSectionUsed, SectionGap];
+        /// Audiences, machines and releases. At most one in a spec.
+        /// 受众、机型和版本系列。整个规范最多一份。
         optional availability: Availability;
         /// Dated changes of the protocol as a whole.
         /// 整个协议的历次变更。
         optional changes: List<Change>;
-        /// What ids stand for, by name. At most one list in a spec.
-        /// 各种 ID 所指的实体，以名称为键。整个规范最多一份。
+        /// Entities, the things with ids, by name. At most one list in a spec.
+        /// 实体，即有 ID 的东西，以名称为键。整个规范最多一份。
         optional entities: Entries<Name, Entity, 1>, faults [UnusedEntity];
         /// Coordinate systems, by name. At most one list in a spec.
         /// 坐标系，以名称为键。整个规范最多一份。
         optional coordinates: Entries<Name, CoordinateSystem, 1>, faults [UnusedCoordinates];
-        /// Where things are kept, by name. At most one list in a spec.
-        /// 内容保存在哪些地方，以名称为键。整个规范最多一份。
+        /// Stores, by name. At most one list in a spec.
+        /// 存储位置，以名称为键。整个规范最多一份。
         optional stores: Entries<Name, Store, 1>, faults [UnusedStore];
-        /// What the words of the protocol mean, by id. At most one in a spec.
+        /// Terms of the protocol, by id. At most one in a spec.
         /// 术语表，以 id 为键。整个规范最多一份。
         optional glossary: Entries<Name, Term, 1>;
-        /// Findings that are accepted for a time, by rule and fingerprint as `fcproto diff` prints them. At most one list in a spec.
-        /// 暂时接受的提示，以 `fcproto diff` 给出的规则号加指纹为键。整个规范最多一份。
+        /// Waivers, by the rule number and fingerprint that `fcproto diff` and `fcproto lint` print. At most one list in a spec.
+        /// 豁免，以 `fcproto diff` 和 `fcproto lint` 打印的规则号加指纹为键。整个规范最多一份。
         optional waivers: Entries<Str, Waiver>, faults [BadWaiver];
-        /// Gaps and mistakes in the source document that the spec has to answer.
+        /// Gaps and mistakes in the source document that the spec must answer.
         /// 源文档中需要规范答复的缺失和错误。
         optional conflicts: Entries<ConflictId, Conflict>, faults [UnansweredConflict];
     }

@@ -94,12 +94,12 @@ forms! {
     State: Kind::Word(&[
         (
             BodyState::Inferred.name(),
-            "The source gives the evidence for the body.",
+            "The source gives evidence for the body.",
             "源文档中有这个消息体的依据。",
         ),
         (
             BodyState::Open.name(),
-            "The body is missing: no keys are known, and every key is kept as received.",
+            "The body is missing: no keys are known, and receivers keep every key.",
             "消息体缺失：不知道有哪些键，收到的键都原样保留。",
         ),
     ]) => BodyState, word;

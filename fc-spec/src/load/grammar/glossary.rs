@@ -4,7 +4,7 @@ use super::common::BothLanguages;
 use super::form::{List, Str};
 
 grammar! {
-    /// A word of the protocol, in both languages. The pages link its first use to what it means.
+    /// A term of the protocol, in both languages. The pages link its first use to its meaning.
     /// 一条术语，中英文都写。各页中第一次出现时链接到它的解释。
     TERM: Term = "term" "术语" {
         /// In Chinese.
@@ -16,7 +16,7 @@ grammar! {
         /// Other forms of it, which are linked as well: synonyms, plurals.
         /// 别的写法，出现时同样链接：同义词、英文复数。
         optional also: OtherForms;
-        /// What it means.
+        /// Its meaning.
         /// 含义。
         required means: BothLanguages;
     }

@@ -4,18 +4,18 @@ use super::common::{COMMON, TEXT};
 use super::form::Bool;
 
 grammar! {
-    /// A coordinate system. Structs whose values are given in it say so with `coordinates`.
+    /// A coordinate system. Structs with positions in it name it in `coordinates`.
     /// 一个坐标系。数值以它为准的结构用 `coordinates` 指明。
     _: CoordinateSystem = "coordinate system" "坐标系" {
         use TEXT.zh, TEXT.en, COMMON.about;
     }
 
-    /// A place where things are kept, such as a configuration file. What is kept there says so with `kept`.
-    /// 一处保存内容的地方，例如一个配置文件。保存在那里的内容用 `kept` 指明。
+    /// A store, such as a configuration file. Operations, fields and tables name it in `kept`.
+    /// 一个存储位置，例如一个配置文件。接口、字段和常量表用 `kept` 指明。
     STORE: Store = "store" "存储位置" {
         use TEXT.zh, TEXT.en, COMMON.about;
-        /// Whether what is kept there is still there after a restart; left out where that is not known.
-        /// 重启后内容是否还在；不清楚时不写。
+        /// `true` if its content survives a restart; leave it out if that is unknown.
+        /// 写 `true` 表示重启后内容还在；不清楚时不写。
         optional survives_restart: Bool;
     }
 }

@@ -18,7 +18,7 @@ pub(crate) const DIGEST: DigestAlgorithm = DigestAlgorithm::Md5;
 type Milliseconds = Int<u32>;
 
 grammar! {
-    /// What the protocol is called and who talks.
+    /// Name and parties of the protocol.
     /// 协议的名称和通信双方。
     PROTOCOL: Protocol = "protocol" "协议" {
         /// Short name; the Rust protocol type is its Pascal case.
@@ -28,7 +28,7 @@ grammar! {
         /// 规范的版本，要加引号。
         required version: Str, example r#""1.0""#;
         use TEXT.zh, TEXT.en;
-        /// What it is for.
+        /// Its purpose.
         /// 用途。
         required about: BothLanguages;
         /// The party that listens.
@@ -44,8 +44,8 @@ grammar! {
     /// 通信的一方。
     PARTY: Party = "party" "通信方" {
         use TEXT.zh, TEXT.en;
-        /// What it is, and its other names in documents.
-        /// 它是什么，文档中还有哪些叫法。
+        /// Description, with its other names in documents.
+        /// 说明，包括文档中的其他叫法。
         required about: BothLanguages;
     }
 
@@ -70,17 +70,17 @@ grammar! {
         use TEXT.zh, TEXT.en;
     }
 
-    /// How a frame is laid out. `zh` and `en` describe its data area.
+    /// Layout of a frame. `zh` and `en` describe its data area.
     /// 帧的结构。`zh` 和 `en` 说明数据区。
     FRAME: Frame = "frame" "帧" {
-        /// Order of the bytes of every integer of the header.
+        /// Byte order of the integers in the header.
         /// 包头中整数的字节序。
         required byte_order: ByteOrder;
         use TEXT.zh, TEXT.en;
-        /// The bytes that open a frame.
+        /// First bytes of a frame.
         /// 一帧开头的字节。
         required heads: Heads;
-        /// Header fields in the order in which they are sent.
+        /// Header fields, in the order sent.
         /// 包头的字段，按发送的顺序书写。
         required header: Entries<WireKey, HeaderField, 1>,
             faults [RoleMissing, HeadNotFirst, DuplicateFieldName, UnusableName];
@@ -93,13 +93,13 @@ grammar! {
         use COMMON.answers;
     }
 
-    /// The bytes that open a frame.
+    /// First bytes of a frame.
     /// 一帧开头的字节。
     HEADS: Heads = "heads" "帧头" {
-        /// Of a command or a report.
+        /// Head of commands and reports.
         /// 指令和上报的帧头。
         required request: List<Int<u8>, 1>, example "[0x01, 0x02]", faults [HeadLength];
-        /// Of a response or an acknowledgement.
+        /// Head of responses and acknowledgements.
         /// 响应和应答的帧头。
         required response: List<Int<u8>, 1>, example "[0x03, 0x04]", faults [HeadsEqual];
     }
@@ -110,18 +110,18 @@ grammar! {
         /// Its width: `u8`, `u16`, `u32`, `u64` or `bytes(16)`.
         /// 宽度：`u8`、`u16`、`u32`、`u64` 或 `bytes(16)`。
         required r#type: HeaderWidth, faults [HeaderWidth, BadHeaderType];
-        /// What it is used for; a field without a role is only sent.
-        /// 作用；没有作用的字段只发送，不解释。
+        /// Its role. The runtime sends a field without a role and does not interpret it.
+        /// 角色；没有角色的字段只发送，不解释。
         optional role: HeaderRole, faults [RoleTwice];
-        /// How a digest is computed.
+        /// Algorithm of a digest.
         /// 摘要的算法。
         optional algorithm: DigestAlgorithm, default DIGEST.name(), faults [AlgorithmWithoutDigest];
         use COMMON.name;
-        /// What is sent if nothing else determines it.
-        /// 没有别的规定时发送的值。
+        /// Value to send, for a field without a role or with the role `status`.
+        /// 没有角色、或角色为 `status` 的字段发送的值。
         optional value: Int<u64>, example "0", faults [HeaderValue];
-        /// Where the decoder is lenient.
-        /// 在哪一点上放宽解析。
+        /// Leniencies of the decoder.
+        /// 解析时的放宽处理。
         optional quirk: List<HeaderQuirk, 1>, faults [HeaderQuirk];
         use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
     }
@@ -132,10 +132,10 @@ grammar! {
         /// Its name.
         /// 名称。
         required name: Name, example "command", faults [DuplicateName];
-        /// What it carries.
-        /// 装的是什么。
+        /// Content of its frames.
+        /// 帧的内容。
         required role: KindRole;
-        /// Port it is sent on.
+        /// Port on which it is sent.
         /// 在哪个端口上发送。
         required port: PortRole, faults [KindPort];
         use TEXT.zh, TEXT.en;
@@ -147,19 +147,19 @@ grammar! {
         /// Its name.
         /// 名称。
         required name: Name, example "packed", faults [DuplicateName];
-        /// How the data is packed.
+        /// Compression of the data.
         /// 数据如何压缩。
         required role: EncodingRole;
         use TEXT.zh, TEXT.en;
     }
 
-    /// The keys that every message carries beside its own; `{}` for none.
-    /// 每条消息除自己的键以外都带的键；没有时写 `{}`。
+    /// Keys of every message, in addition to those of its body; `{}` for none.
+    /// 消息体的键之外，每条消息都带的键；没有时写 `{}`。
     ENVELOPE: Envelope = "envelope" "公共字段" {
-        /// Of every command and report. Without a time, no message is too old.
+        /// Envelope of commands and reports. Without a time, no message expires.
         /// 指令和上报的公共字段。没有时间时，任何消息都不会过期。
         required request: Entries<WireKey, EnvelopeField>, faults [DuplicateFieldName];
-        /// Of every response and acknowledgement. Without a result code, what is refused is not answered.
+        /// Envelope of responses and acknowledgements. Without a result code, refused messages get no response.
         /// 响应和应答的公共字段。没有结果码时，被拒绝的消息得不到响应。
         required response: Entries<WireKey, EnvelopeField>, faults [RoleMissing, DuplicateFieldName];
         use COMMON.answers;
@@ -171,56 +171,56 @@ grammar! {
         /// Its type, followed by `?` if it may be missing in received messages.
         /// 类型；收到的消息里可以没有它时，在后面加 `?`。
         required r#type: Type, example "string?", faults [EnvelopeType];
-        /// What it is used for.
-        /// 作用。
+        /// Its role.
+        /// 角色。
         required role: EnvelopeRole, faults [RoleTwice, ResultInRequest];
         use COMMON.name;
-        /// What composed examples show.
+        /// Value in generated examples.
         /// 生成的示例中的值。
         required example: Scalar, example "7", faults [ExampleType];
         use TEXT.zh, TEXT.en, COMMON.aliases, COMMON.answers;
     }
 
-    /// A result code. Its Chinese text is also the text sent beside it.
+    /// A result code. Its Chinese text is also sent as the result text.
     /// 一个结果码。它的中文文本也是随它发送的说明。
     RESULT: ResultCode = "result code" "结果码" {
         /// Name in code.
         /// 代码中的名称。
         required name: Name, example "busy", faults [DuplicateName];
-        /// When the runtime returns it by itself.
-        /// 运行库在什么情况下自行返回它。
+        /// When the runtime returns it automatically.
+        /// 运行库在什么情况下自动返回它。
         optional role: ResultRole, faults [RoleTwice];
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.answers;
     }
 
-    /// How long the two sides wait.
-    /// 双方各等多久。
+    /// Waiting times of both sides.
+    /// 双方的等待时间。
     CALLS: Calls = "calls" "超时" {
-        /// How long an app waits for a response.
+        /// Time an app waits for a response.
         /// app 等待响应的时间。
         required timeout_ms: Milliseconds, example "3000";
-        /// How long the robot waits for a handler.
+        /// Time the robot waits for a handler.
         /// 机器人等待处理程序的时间。
         required handler_timeout_ms: Milliseconds, example "2500";
-        /// Age past which a message is refused as expired.
+        /// Age above which a message is refused as expired.
         /// 消息超过这个时间就按过期拒绝。
         required max_age_ms: (Milliseconds, Never), example "60000", faults [AgeWithoutTime];
         use COMMON.answers;
     }
 
-    /// How often a report is sent again until it is acknowledged.
-    /// 上报没有应答时重发几次。
+    /// Resending of a report until it is acknowledged.
+    /// 上报没有应答时的重发。
     ACK: Ack = "acknowledgement" "应答" {
-        /// Wait before it is sent again.
+        /// Wait before it is resent.
         /// 重发前等待的时间。
         required timeout_ms: Milliseconds, example "2000";
-        /// How often it is resent; 0 to send it only once.
-        /// 重发几次；0 表示只发送一次。
+        /// Maximum number of resends; 0 sends it only once.
+        /// 最多重发几次；0 表示只发送一次。
         required retries: Int<u32>, example "3";
         use COMMON.answers;
     }
 
-    /// Default limits of both stubs.
+    /// Default limits of both sides.
     /// 两端默认的上限。
     LIMITS: Limits = "limits" "上限" {
         /// Maximum frame length, including the header.
@@ -270,18 +270,18 @@ grammar! {
         use TEXT.zh, TEXT.en, COMMON.answers;
     }
 
-    /// A code that must not be used again; the texts say why.
-    /// 一个不得再用的功能码；文本说明原因。
-    RETIRED: Retired = "retired code" "停用的功能码" {
+    /// A code that must not be used again, with the reason.
+    /// 一个不得再用的功能码，以及原因。
+    RETIRED: Retired = "retired code" "退役的功能码" {
         /// The code.
         /// 功能码。
         required code: Code, faults [DuplicateRetired];
         use TEXT.zh, TEXT.en;
     }
 
-    /// A section number of the source document of which nothing is left.
+    /// A section whose whole content is missing from the source document.
     /// 源文档中内容全部缺失的一节。
-    _: Section = "retained section" "缺失的章节" {
+    _: Section = "missing section" "缺失的章节" {
         use TEXT.zh, TEXT.en, COMMON.answers;
     }
 }
@@ -330,8 +330,8 @@ impl Form for Json {
         name: "JSON rules",
         name_zh: "JSON 规则",
         doc: Doc::new(
-            "What is done where JSON leaves open what a text means. It is the same in every protocol; the texts explain it.",
-            "JSON 没有规定含义的地方怎么处理。各个协议都一样；文本加以说明。",
+            "Rules for JSON that RFC 8259 leaves open. They are the same in every protocol; the texts explain them.",
+            "RFC 8259 没有规定的 JSON 读法。各个协议都一样；文本加以说明。",
         ),
         example: include_str!("examples/Json.yaml"),
         keys: &[

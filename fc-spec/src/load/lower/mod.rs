@@ -91,7 +91,7 @@ impl<'a> Lowering<'a, '_> {
             (FILE.glossary.name, Self::term),
             (FILE.waivers.name, Self::waiver),
             (FILE.conflicts.name, Self::conflict),
-            (FILE.sections.name, Self::retained_section),
+            (FILE.sections.name, Self::missing_section),
         ];
         let whatever: [Lower<'a, Self>; 3] = [
             (FILE.group.name, Self::group),

@@ -12,7 +12,7 @@ use crate::load::{names, scalar};
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
     EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
-    Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode, RetainedSection, RetiredCode,
+    MissingSection, Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode, RetiredCode,
     Severity, Subject, Transport, Type,
 };
 use crate::syntax::{Entries, Node};
@@ -255,9 +255,9 @@ impl<'a> Lowering<'a, '_> {
         self.answers(place.node, &Subject::Codes);
     }
 
-    pub(super) fn retained_section(&mut self, place: Place<'a>) {
+    pub(super) fn missing_section(&mut self, place: Place<'a>) {
         if let Some(section) = scalar::small_int(place.key) {
-            let item = RetainedSection {
+            let item = MissingSection {
                 section,
                 text: text(place.node),
             };

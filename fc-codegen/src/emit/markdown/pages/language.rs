@@ -14,8 +14,8 @@ pub(in crate::emit::markdown) struct LanguageView {
 #[derive(Debug, Serialize)]
 struct PartView {
     link: PartLink,
-    /// What faults call it, where that is another word.
-    id: Option<&'static str>,
+    /// The name that errors print, on the page in Chinese.
+    printed: Option<String>,
     text: String,
     example: Option<&'static str>,
     /// What can be wrong with it as a whole.
@@ -87,7 +87,7 @@ pub(in crate::emit::markdown) fn language(desk: Desk<'_, '_>) -> LanguageView {
     };
     let part = |part: &Part| PartView {
         link: link(part),
-        id: desk.lang.pick(Some(part.id), None),
+        printed: desk.lang.pick(Some(part.name.zh.clone()), None),
         text: desk.lang.text(&part.text).to_owned(),
         example: part.example,
         faults: numbers(&part.faults),

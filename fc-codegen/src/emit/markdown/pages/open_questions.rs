@@ -213,8 +213,8 @@ fn command(question: &Question) -> String {
 }
 
 fn sections(desk: Desk<'_, '_>) -> Vec<SectionView> {
-    let sections = desk.book.model.retained_sections.iter();
-    let view = |section: &fc_spec::model::RetainedSection| SectionView {
+    let sections = desk.book.model.missing_sections.iter();
+    let view = |section: &fc_spec::model::MissingSection| SectionView {
         anchor: Anchor::of("section", &section.section.to_string()).id(),
         number: section.section,
         text: desk.sentence(&section.text),
