@@ -242,7 +242,7 @@ impl Entry<'_> {
             ),
             Holder::Retired { zh, en } => format!(
                 "{code}  {}{}",
-                lang.pick("已停用：", "retired: "),
+                lang.pick("已退役：", "retired: "),
                 lang.pick(zh, en)
             ),
         }

@@ -174,7 +174,7 @@ impl NoRelease {
     #[must_use]
     pub fn text(&self) -> Text {
         let known = match self.known.as_slice() {
-            [] => text!("还没有发布版本", "there is none yet"),
+            [] => text!("还没有发布版本", "there is no release yet"),
             known => text!(
                 "已有：{known}",
                 "there are {known}",
@@ -249,11 +249,11 @@ impl Objection {
             ],
             Self::GoesBack { version } => [
                 format!("规范的版本已是 {version}，请取这个版本号或更大的"),
-                format!("the spec is of version {version} already; choose that or a later number"),
+                format!("the version of the spec is {version}; choose that or a later number"),
             ],
             Self::Unchanged => [
                 "上一次发布以来没有变更".to_owned(),
-                "nothing has changed since the last release".to_owned(),
+                "there are no changes since the last release".to_owned(),
             ],
             Self::TooSmall { part, changes } => {
                 let number = part + 1;
@@ -271,7 +271,7 @@ impl Objection {
                 [
                     format!("新旧 app 与机器人之间会出现误解：请撤销这些变更，或逐一豁免：{ids}"),
                     format!(
-                        "old and new apps and robots would misunderstand each other: undo these changes, or accept each with a waiver: {ids}"
+                        "old and new apps and robots would misunderstand each other: undo these changes, or waive each of them: {ids}"
                     ),
                 ]
             }

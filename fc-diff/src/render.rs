@@ -137,7 +137,7 @@ fn breaks(finding: &Finding, lang: Lang) -> String {
         parts.push(pick(lang, ["programs behave differently", "程序行为"]).to_owned());
     }
     if finding.silent {
-        parts.push(pick(lang, ["nothing fails", "不报错"]).to_owned());
+        parts.push(pick(lang, ["without an error", "不报错"]).to_owned());
     }
     parts.join(pick(lang, ["; ", "；"]))
 }

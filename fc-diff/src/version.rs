@@ -78,12 +78,12 @@ impl VersionError {
                 )
             }
             Self::Git(name, why) => text!(
-                "git 没有给出 `{name}`：{why}",
-                "git does not give `{name}`: {why}"
+                "git 无法读取 `{name}`：{why}",
+                "git cannot read `{name}`: {why}"
             ),
             Self::NoSpec(name) => text!(
-                "`{name}` 不是有规范的目录，不是 `fcproto inspect` 的输出，不是发布版本，也不是 git:REF",
-                "`{name}` is neither a directory with a spec, nor what `fcproto inspect` prints, nor a release, nor git:REF"
+                "`{name}` 应为规范的目录、`fcproto inspect` 的输出、发布版本或 git:REF",
+                "`{name}` is not a directory with a spec, an output of `fcproto inspect`, a release or git:REF"
             ),
             Self::NoRelease(error) => error.text(),
             Self::TooLarge(name) => {
@@ -205,7 +205,7 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
     };
     if reference.is_empty() || reference.starts_with('-') {
         return Err(fails(
-            "a branch, tag or commit is wanted, such as git:main".to_owned(),
+            "expected a branch, tag or commit, such as git:main".to_owned(),
         ));
     }
     // From the project's directory, wherever that is in its repository.

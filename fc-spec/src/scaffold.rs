@@ -93,7 +93,7 @@ impl ScaffoldError {
             ),
             Self::Taken { name, place } => text!(
                 "已经有 `{name}`，在 {place}",
-                "there is a `{name}` already, in {place}"
+                "`{name}` already exists, in {place}"
             ),
             Self::NotACommand(name) => text!("没有指令 `{name}`", "there is no command `{name}`"),
             Self::Code {
@@ -111,8 +111,8 @@ impl ScaffoldError {
                 next: None,
             } => text!("0x{code:04X} {why}", "0x{code:04X} {why}", why = why),
             Self::Codes => text!(
-                "供新接口使用的范围内没有空闲的功能码；在 `codes.ranges` 中加一个范围，或用 --code 指定功能码",
-                "no code is free in the ranges that new operations get theirs from; add a range to `codes.ranges`, or name a code with --code"
+                "供新接口使用的号段中没有空闲的功能码；在 `codes.ranges` 中加一个号段，或用 --code 指定功能码",
+                "no code is free in the ranges for new operations; add a range to `codes.ranges`, or pass a code with --code"
             ),
             Self::Layout { path, section } => text!(
                 "{path} 中的 `{section}` 写在大括号中；改成逐行书写，或手工加上接口",
@@ -231,13 +231,13 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
     }
     if model.retired.iter().any(|retired| retired.code == code) {
         return Some(text!(
-            "已经停用，不能再用",
-            "was retired and must not be used again"
+            "已退役，不能再用",
+            "is retired and must not be used again"
         ));
     }
     let mut ranges = model.ranges.iter();
     let Some(range) = ranges.find(|range| (range.first..=range.last).contains(&code)) else {
-        return Some(text!("不在任何功能码范围内", "is in none of the ranges"));
+        return Some(text!("不在任何号段内", "is outside all code ranges"));
     };
     let why = match (range.usage, new.kind) {
         (RangeUse::Historic, Kind::Command | Kind::Report) => {
@@ -254,15 +254,15 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
         ),
         (RangeUse::PassThrough, Kind::Report | Kind::Stream) => {
             text!(
-                "透传给上身，只能有指令",
-                "is passed through to the upper body and only contains commands"
+                "透传给上装，只能有指令",
+                "is passed through to the upper body and contains only commands"
             )
         }
         _ => return None,
     };
     let (first, last) = (&range.first_spelling, &range.last_spelling);
     Some(text!(
-        "在 {first} 到 {last} 的范围内，这个范围{why}",
+        "在号段 {first} 到 {last} 内，这个号段{why}",
         "is in the range {first} to {last}, which {why}",
         why = why
     ))
@@ -346,15 +346,15 @@ fn beginning(new: &NewOperation<'_>, code: Option<u16>) -> String {
             let started_by = new.started_by.map(|by| format!("  started_by: {by}\n"));
             format!(
                 "  from: robot # or app\n{}  source: {{ sections: [] }}\n  \
-                   body: # or, of raw bytes, content: and their media type\n    {field}\n",
+                   body: # for raw bytes, write content: and their media type instead\n    {field}\n",
                 started_by.unwrap_or_default()
             )
         }
         Kind::Command => format!(
-            "  effect: read # or config, motion, unknown: only what reads is repeated by itself\n  \
+            "  effect: read # or config, motion, unknown: clients resend only read commands\n  \
                source: {{ sections: [] }}\n  \
-               request: # drop it if there is nothing to say\n    data:\n      {field}\n  \
-               response: # the same\n    data:\n      {field}\n"
+               request: # delete it if the request has no keys\n    data:\n      {field}\n  \
+               response: # delete it if the response has no keys\n    data:\n      {field}\n"
         ),
     };
     head + &rest

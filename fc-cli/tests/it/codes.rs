@@ -36,7 +36,7 @@ fn the_map_says_who_has_what_and_what_comes_next() {
     for line in [
         "下一个指令  0x0105",
         "0x0100–0x010F · 指令 · 新增指令，剩余 12 个",
-        "  0x0103  已停用：曾用于 a|b",
+        "  0x0103  已退役：曾用于 a|b",
         "还没有功能码",
     ] {
         assert!(chinese.stdout.lines().any(|it| it == line), "{line}");

@@ -192,7 +192,7 @@ fn git_has_the_old_version() {
     assert!(run.stdout.starts_with("FC0701 port.command"), "{run:#?}");
     let run = project.fc(&["diff", "git:nowhere"]).expect(2);
     assert!(
-        run.stderr.contains("git does not give `git:nowhere`"),
+        run.stderr.contains("git cannot read `git:nowhere`"),
         "{run:#?}"
     );
     let run = project.fc(&["diff", "git:--all"]).expect(2);

@@ -132,7 +132,7 @@ fn what_cannot_be_begun_changes_nothing() {
         (
             &["get_battery", "--group", "lamp", "--code", "0xFFFF"],
             2,
-            "0xFFFF is in none of the ranges; the next free code is 0x01",
+            "0xFFFF is outside all code ranges; the next free code is 0x01",
         ),
         (
             &["get_battery", "--group", "lamp", "--code", "65536"],
@@ -223,7 +223,7 @@ fn what_is_still_to_be_written_is_a_warning() {
         .fc(&["new", "get_battery", "--group", "lamp"])
         .expect(0);
     let run = project.fc(&["check"]).expect(0);
-    let said = "warning[FC0613]: this text is still to be written";
+    let said = "warning[FC0613]: this text is a placeholder";
     assert!(run.stderr.contains(said), "{run:#?}");
     assert!(run.stdout.contains("checked "), "{run:#?}");
     let run = project.fc(&["generate"]).expect(0);

@@ -235,10 +235,10 @@ fn a_sheet_with_a_line_that_cannot_be_used_settles_nothing() {
     for (sheet, why) in [
         (
             good.replace("without power?", "without light?"),
-            "has been reworded",
+            "has changed since the export",
         ),
         (good.replace("C902,", "C909,"), "there is no such question"),
-        (good.replace("李娜", ""), "nobody is named in `by`"),
+        (good.replace("李娜", ""), "`by` is empty"),
         (good.replace("answer", "reply"), "no column `answer`"),
         (good.replace(",ms,", ",parsec,"), "FC"),
         ("\u{feff}".to_owned(), "no column `id`"),

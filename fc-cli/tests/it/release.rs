@@ -133,7 +133,7 @@ fn a_number_that_does_not_fit_is_refused_and_nothing_is_written() {
         let run = project.fc(&["release", number]).expect(1);
         assert!(run.stderr.contains(why), "{run:#?}");
     };
-    refused("8", "nothing has changed since the last release");
+    refused("8", "there are no changes since the last release");
     assert_eq!(project.files("spec"), before);
     add_command(&project);
     break_it(&project);
@@ -330,7 +330,7 @@ fn the_first_release_is_not_before_the_version_of_the_spec() {
     let run = project.fc(&["release", "6.9"]).expect(1);
     assert_eq!(
         run.stderr,
-        "error: the spec is of version 7 already; choose that or a later number\n6.9 is not released\n"
+        "error: the version of the spec is 7; choose that or a later number\n6.9 is not released\n"
     );
     let run = project
         .fc(&["release", "7", "--dry-run", "--today", "2026-09-01"])
@@ -370,7 +370,7 @@ First release, with 8 operations.
         "version: \"7.3\"",
     );
     let run = project.fc(&["release", "7.2"]).expect(1);
-    assert!(run.stderr.contains("is of version 7.3 already"), "{run:#?}");
+    assert!(run.stderr.contains("the version of the spec is 7.3"), "{run:#?}");
     project.fc(&["release", "7.3"]).expect(0);
 }
 
@@ -450,7 +450,7 @@ fn a_release_counts_before_a_directory_of_its_name() {
     let run = project.fc(&["diff", "./7"]).expect(2);
     assert!(
         run.stderr
-            .contains("`./7` is neither a directory with a spec"),
+            .contains("`./7` is not a directory with a spec"),
         "{run:#?}"
     );
 }

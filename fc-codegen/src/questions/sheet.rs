@@ -63,7 +63,7 @@ impl SheetError {
     pub fn text(&self) -> Text {
         match self {
             Self::Malformed(why) => text!(
-                "无法读取表格：{why}；请存为 UTF-8 编码的 CSV",
+                "无法读取表格：{why}；存为 UTF-8 编码的 CSV",
                 "the sheet cannot be read: {why}; save it as comma-separated values in UTF-8"
             ),
             Self::NoColumn(en, zh) => text!(
@@ -196,15 +196,15 @@ pub fn read(
         let texts = [Lang::Zh, Lang::En].map(|lang| lang.text(&question.text));
         if !asked.is_empty() && !texts.contains(&asked) {
             errors.push(fail(text!(
-                "导出表格之后问题已改写；请重新导出",
-                "the question has been reworded since the sheet was made; make a new one"
+                "导出表格之后问题已改写；重新导出表格",
+                "the question has changed since the export; export a new sheet"
             )));
             continue;
         }
         let Some(by) = Some(cell(Column::By)).filter(|by| !by.is_empty()).or(by) else {
             errors.push(fail(text!(
-                "`答复人` 为空；请填写，或用 `--by` 指定",
-                "nobody is named in `by`; name them there, or with `--by`"
+                "`答复人` 为空；填写它，或用 `--by` 指定",
+                "`by` is empty; fill it in, or pass `--by`"
             )));
             continue;
         };
@@ -247,8 +247,8 @@ fn values(about: &[Governed], answer: &str) -> Result<Values, Text> {
             let values = parts.map(|part| match part.split_once(['=', '＝', ':', '：']) {
                 Some((path, value)) => Ok((path.trim().to_owned(), value.trim().to_owned())),
                 None => Err(text!(
-                    "它涉及多项；写成 `{first}=VALUE`，各项之间用 `;` 隔开",
-                    "it is about several things; say `{first}=VALUE` and so on, with `;` between them",
+                    "问题涉及多项内容；每项写成 `{first}=VALUE`，用 `;` 隔开",
+                    "the question has several facts; write `{first}=VALUE` for each, separated by `;`",
                     first = several.first().map_or("", |first| first.path.as_str())
                 )),
             });

@@ -135,8 +135,8 @@ impl Clash<'_> {
             }
             Reason::SameFile(other) => {
                 let message = text!(
-                    "在 {language} 中 `{spelling}` 单独成为一个文件，其文件名与另一个只有大小写不同",
-                    "in {language} `{spelling}` has a file of its own, whose name differs from another only in case"
+                    "{language} 中 `{spelling}` 的文件与另一个文件只有大小写不同",
+                    "the file of `{spelling}` in {language} differs from another one only in case"
                 );
                 same(other, message)
             }

@@ -13,7 +13,7 @@ rules! {
         mirror: &[53],
         title: ["an open enum has a new value", "开放枚举新增取值"],
         text: [
-            "Old receivers keep it as an unknown value. An exhaustive match has one more case.",
+            "Old receivers keep it as an unknown value. An exhaustive match needs another case.",
             "旧接收方当作未知值保留。穷尽匹配的代码要多一个分支。",
         ],
     }
@@ -50,7 +50,7 @@ rules! {
         mirror: &[54],
         title: ["a value of an enum is sent differently", "枚举取值的编号变更"],
         text: [
-            "Each side reads the other's value as another one or as unknown, and often nothing fails.",
+            "Each side reads the other's value as a different value or as unknown, often without an error.",
             "双方会把对方的值当成别的取值或未知值，通常不会报错。",
         ],
     }
@@ -62,9 +62,9 @@ rules! {
         mirror: &[55],
         title: ["an enum was closed or opened", "枚举由开放改为封闭，或相反"],
         text: [
-            "Closed: unknown values that old senders pass on are refused. Opened: old receivers refuse unknown values that new \
-             senders pass on, and programs have a case for them to handle.",
-            "改为封闭：旧发送方转发的未知值会被拒绝。改为开放：新发送方转发的未知值会被旧接收方拒绝，代码也要处理未知值。",
+            "Closed: new receivers refuse unknown values from old senders. Opened: old receivers refuse unknown values from new \
+             senders, and programs need a case for them.",
+            "改为封闭：新接收方会拒绝旧发送方的未知值。改为开放：旧接收方会拒绝新发送方的未知值，代码也要处理未知值。",
         ],
     }
     VARIANT {
@@ -75,9 +75,9 @@ rules! {
         mirror: &[56],
         title: ["a choice has another variant, or lacks one", "选项增加或减少"],
         text: [
-            "A receiver that does not have the variant refuses the object, or takes it for another one whose required keys \
-             are all there.",
-            "没有该选项的接收方会拒绝，或当成另一个必填键都齐全的选项。",
+            "A receiver without the variant refuses the object, or reads it as another variant whose required keys are all \
+             present.",
+            "没有该选项的接收方会拒绝，或当成另一个必填键齐全的选项。",
         ],
     }
     VARIANT_ORDER {
@@ -89,9 +89,9 @@ rules! {
         mirror: &[57],
         title: ["another variant of a choice matches", "匹配到的选项变更"],
         text: [
-            "The first variant whose required keys are all there is taken. In another order, the same object may be \
-             taken for another variant, and nothing fails. Changed keys are judged as fields.",
-            "取第一个必填键都齐全的选项。顺序变了，同一个对象可能匹配到别的选项，且不会报错。键的变更按字段评估。",
+            "Receivers take the first variant whose required keys are all present. In another order, they may read the same \
+             object as another variant, without an error. Changed keys are judged as fields.",
+            "接收方取第一个必填键齐全的选项。顺序变了，同一个对象可能匹配到别的选项，且不会报错。键的变更按字段评估。",
         ],
     }
 }

@@ -11,7 +11,7 @@ rules! {
         mirror: &[45],
         title: ["fewer values are valid", "取值范围收窄"],
         text: [
-            "`min`, `max` or `only` leaves out values that old senders may send, and new receivers refuse them.",
+            "`min`, `max` or `only` excludes values that old senders may send. New receivers refuse them.",
             "`min`、`max` 或 `only` 排除了旧发送方可能发送的值，新接收方会拒绝。",
         ],
     }
@@ -55,9 +55,9 @@ rules! {
         mirror: &[48],
         title: ["a pattern was added, changed or removed", "正则约束新增、变更或删除"],
         text: [
-            "Which texts match only the old or only the new pattern is not decided here: an added one is taken to refuse texts of \
-             old senders, a removed one to let new senders send what old receivers refuse, a changed one for both.",
-            "这里不判断哪些文本只符合新的或旧的正则：新增按旧发送方可能被拒处理，删除按旧接收方可能拒绝处理，变更按两者都可能处理。",
+            "This rule does not compare the patterns. An added pattern may refuse texts from old senders. After a removed pattern, old \
+             receivers may refuse texts from new senders. A changed pattern may do both.",
+            "这条规则不比较两个正则。新增正则：可能拒绝旧发送方的文本。删除正则：旧接收方可能拒绝新发送方的文本。变更正则：两者都可能。",
         ],
     }
     DEFAULT {
@@ -68,7 +68,7 @@ rules! {
         mirror: &[49],
         title: ["an absent field means something else", "缺省含义变更"],
         text: [
-            "`default` is not sent: each side takes its own for an absent field, so the two disagree and nothing fails.",
+            "`default` is not sent. Each side uses its own default for an absent field, so the two disagree without an error.",
             "`default` 不随报文发送，双方各按自己的缺省值理解，结果不一致，且不会报错。",
         ],
     }
@@ -76,7 +76,7 @@ rules! {
         number: 50,
         name: "sensitive-dropped",
         behaviour: true,
-        no_mirror: ["to hide more breaks nobody", "多隐藏一个字段不影响任何一方"],
+        no_mirror: ["hiding another field has no effect on programs", "多隐藏一个字段不影响任何程序"],
         title: ["a field is no longer sensitive", "字段不再标为敏感"],
         text: [
             "Its values appear in logs from this version on.",

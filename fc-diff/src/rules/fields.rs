@@ -48,8 +48,8 @@ rules! {
         mirror: &[26],
         title: ["an optional field is gone", "删除了可选字段"],
         text: [
-            "What an old sender says in it is passed over; an old receiver takes it for absent.",
-            "旧发送方填写的内容会被忽略；旧接收方当作没有填。",
+            "New receivers ignore the value from old senders. Old receivers read it as absent.",
+            "新接收方忽略旧发送方的值；旧接收方当作没有这个字段。",
         ],
     }
     BECAME_REQUIRED {
@@ -60,7 +60,7 @@ rules! {
         mirror: &[30],
         title: ["an optional field is required now", "可选字段改为必填"],
         text: [
-            "Old senders may leave it out, and new receivers refuse that.",
+            "Old senders may leave it out, and new receivers refuse the message.",
             "旧发送方可能不发，新接收方会拒绝。",
         ],
     }
@@ -72,7 +72,7 @@ rules! {
         mirror: &[29],
         title: ["a required field is optional now", "必填字段改为可选"],
         text: [
-            "New senders may leave it out, and old receivers refuse that.",
+            "New senders may leave it out, and old receivers refuse the message.",
             "新发送方可能不发，旧接收方会拒绝。",
         ],
     }
@@ -84,9 +84,9 @@ rules! {
         mirror: &[31, 32],
         title: ["a field has another key in messages", "报文中的键名变更"],
         text: [
-            "Each version looks for a key that the other does not send. A required field is missing; the value of an optional \
-             one is lost, and nothing fails. Keep the old key in `also`.",
-            "双方都找不到自己要的键。必填字段会报缺失；可选字段的值会丢失，且不会报错。请把旧键名写进 `also`。",
+            "Each version reads a key that the other does not send. A required field is missing. The value of an optional \
+             field is lost without an error. Keep the old key in `also`.",
+            "双方都读不到自己的键。必填字段会报缺失；可选字段的值会丢失，且不会报错。把旧键名写进 `also`。",
         ],
     }
     KEY_CHANGED_WITH_ALSO {
@@ -106,11 +106,11 @@ rules! {
         name: "also-removed",
         wire: Wire::OldSender,
         silent: true,
-        no_mirror: ["a further key that is read breaks nobody", "多接收一个键名不影响任何一方"],
+        no_mirror: ["reading another key has no effect on programs", "多接收一个键名不影响任何程序"],
         title: ["a further key is no longer read", "不再接收备用键名"],
         text: [
-            "Senders that still use this key lose the value, or have the message refused where it is required.",
-            "仍使用该键名的发送方，值会丢失；若字段必填，报文会被拒绝。",
+            "Receivers ignore the value of senders that still use this key. If the field is required, they refuse the message.",
+            "发送方仍使用该键名时，接收方忽略它的值；若字段必填，接收方拒绝报文。",
         ],
     }
     NAME_CHANGED {
@@ -120,7 +120,7 @@ rules! {
         mirror: &[34],
         title: ["it has another name in code", "代码中的名称变更"],
         text: [
-            "Messages are the same; programs that name it do not compile.",
+            "Messages are the same. Programs with the old name do not compile.",
             "报文不变，引用旧名称的代码无法编译。",
         ],
     }
@@ -132,8 +132,8 @@ rules! {
         mirror: &[35, 43],
         title: ["it has another type", "类型变更"],
         text: [
-            "A receiver refuses a value of another type. The finding says in which directions; where every value of one type is \
-             also read as the other, that direction holds.",
+            "A receiver refuses a value of another type. The finding names the directions that break. A direction works if the \
+             receiver can read every value of the sender's type.",
             "接收方会拒绝类型不符的值。结果中写明了哪个方向不兼容；若一种类型的值都能按另一种读取，该方向不受影响。",
         ],
     }
@@ -145,7 +145,7 @@ rules! {
         mirror: &[37],
         title: ["a number type is wider", "数值类型变宽"],
         text: [
-            "New senders may send numbers that the old type does not hold. A range that both versions share prevents that.",
+            "New senders may send numbers that the old type cannot hold. A range within the old type prevents that.",
             "新发送方可能发出旧类型放不下的数。若新旧版本的取值范围都在旧类型之内，则不受影响。",
         ],
     }
@@ -157,8 +157,8 @@ rules! {
         mirror: &[36, 37],
         title: ["a number type is narrower or has another sign", "数值类型变窄或符号变更"],
         text: [
-            "Old senders may send numbers that the new type does not hold. With another sign, new senders may also send what the \
-             old type does not hold.",
+            "Old senders may send numbers that the new type cannot hold. With another sign, new senders may also send numbers that \
+             the old type cannot hold.",
             "旧发送方可能发出新类型放不下的数。若有无符号也变了，反方向同样可能超出范围。",
         ],
     }
@@ -181,8 +181,7 @@ rules! {
         mirror: &[39],
         title: ["a value is sent in another form", "值的发送形式变更"],
         text: [
-            "A number in a string is not a number, nor the reverse, unless the receiver is lenient (`lenient_number`, \
-             `lenient_bool`).",
+            "Receivers do not read a number from a string, or the reverse, without a quirk (`lenient_number`, `lenient_bool`).",
             "字符串里的数值与数值本身不能互换，除非接收方有 `lenient_number` 或 `lenient_bool`。",
         ],
     }
@@ -195,7 +194,7 @@ rules! {
         mirror: &[40],
         title: ["a time is in another unit", "时间戳单位变更"],
         text: [
-            "Milliseconds are read as seconds, or the reverse. Nothing fails, and every time is wrong by a factor of 1000.",
+            "Milliseconds are read as seconds, or the reverse. Every time is wrong by a factor of 1000, without an error.",
             "毫秒被当作秒，或相反。不会报错，但时间差 1000 倍。",
         ],
     }
@@ -207,8 +206,8 @@ rules! {
         mirror: &[41],
         title: ["a number is in another unit", "单位变更"],
         text: [
-            "The number is read as before and means something else. If only the text was wrong, say so in the changelog.",
-            "数值照常读取，但含义变了。如果只是更正文字，请在变更记录中说明。",
+            "The number is read as before, but its meaning changed. If only the unit in the spec was wrong, record that in the changelog.",
+            "数值照常读取，但含义变了。如果只是更正规范中的单位，在变更记录中说明。",
         ],
     }
     TYPE_RENAMED {
@@ -218,9 +217,9 @@ rules! {
         mirror: &[42],
         title: ["a type has another name", "类型改名"],
         text: [
-            "An inline object got a name, or a type another one. Messages are the same; programs that name it \
+            "An inline object got a name, or a type got another name. Messages are the same. Programs with the old name \
              do not compile.",
-            "内联对象有了名称，或类型改了名。报文不变，引用旧名称的代码无法编译。",
+            "内嵌对象有了名称，或类型改了名。报文不变，引用旧名称的代码无法编译。",
         ],
     }
     JSON_TYPED {
@@ -231,7 +230,7 @@ rules! {
         mirror: &[35],
         title: ["any JSON became a type", "任意 JSON 改为具体类型"],
         text: [
-            "Old senders may send any JSON, and new receivers refuse what is not of the type.",
+            "Old senders may send any JSON, and new receivers refuse values that do not fit the type.",
             "旧发送方可能发送任意 JSON，新接收方会拒绝不符合类型的值。",
         ],
     }

@@ -11,7 +11,7 @@ rules! {
         mirror: &[1],
         title: ["a port has another number", "端口号变更"],
         text: [
-            "Apps connect to the number of their own version, so an app and a robot of different versions do not meet.",
+            "Apps connect to the port of their version, so an app cannot connect to a robot of another version.",
             "app 按自己版本里的端口号连接，版本不同的 app 和机器人连不上。",
         ],
     }
@@ -33,9 +33,9 @@ rules! {
         mirror: &[3],
         title: ["the layout of the header changed", "包头布局变更"],
         text: [
-            "A header field was added, removed, moved, resized or given another role. Every field behind it is read at \
+            "A header field was added, removed, moved, resized or got another role. The other version reads all later fields at \
              the wrong place.",
-            "包头字段有增删、移位、改长度或改用途，它后面的字段都会读错位置。",
+            "包头字段有增删、移位、改长度或改角色，另一个版本会读错其后所有字段的位置。",
         ],
     }
     BYTE_ORDER {
@@ -54,10 +54,10 @@ rules! {
         name: "head-bytes-changed",
         wire: Wire::Both,
         mirror: &[5],
-        title: ["the bytes that open a frame changed", "帧头字节变更"],
+        title: ["the first bytes of a frame changed", "帧头字节变更"],
         text: [
-            "A receiver of the other version does not recognize the beginning of a frame and refuses the connection's bytes.",
-            "另一个版本的接收方认不出帧头，收到的字节都被拒绝。",
+            "A receiver of the other version does not recognise the start of a frame and closes the connection.",
+            "另一个版本的接收方认不出帧头，会断开连接。",
         ],
     }
     KIND_VALUE {
@@ -67,8 +67,8 @@ rules! {
         mirror: &[6],
         title: ["a frame kind has another value or is gone", "数据类型的值变更或被删除"],
         text: [
-            "Frames of this kind carry a value that the other version does not know, or knows as another kind. A reserved \
-             kind that is gone changes only the name of the error.",
+            "The other version does not know the value of this kind, or reads it as another kind. Without a reserved kind, only \
+             the name of the error changes.",
             "这类帧的数据类型值，另一个版本不认识，或当成别的类型。删除预留的类型只会改变错误名称。",
         ],
     }
@@ -79,7 +79,7 @@ rules! {
         mirror: &[6],
         title: ["a reserved kind is in use", "预留的数据类型已启用"],
         text: [
-            "Receivers of the old version refuse this kind by name.",
+            "Receivers of the old version refuse this kind as reserved.",
             "旧版本的接收方会按预留类型拒绝这类帧。",
         ],
     }
@@ -90,8 +90,8 @@ rules! {
         mirror: &[9],
         title: ["an encoding is gone", "删除了一种压缩方式"],
         text: [
-            "Old senders may still pack data this way, and new receivers refuse it as an unknown encoding. A changed value \
-             counts as one that is gone and one that is new.",
+            "Old senders may still use this encoding, and new receivers refuse it as unknown. A changed value counts as a removal \
+             and an addition.",
             "旧发送方仍可能这样压缩，新接收方会因压缩方式未知而拒绝。改了值，按删除一种、新增一种处理。",
         ],
     }
@@ -114,7 +114,7 @@ rules! {
         mirror: &[10],
         title: ["the digest is computed differently", "校验算法变更"],
         text: [
-            "Each side finds a digest that is not the one it computes, and refuses the frame.",
+            "Each side computes another digest than it receives, and refuses the frame.",
             "双方算出的校验值不一致，帧被拒绝。",
         ],
     }
@@ -125,7 +125,7 @@ rules! {
         mirror: &[12],
         title: ["a limit of frames or bodies is lower", "帧或消息体的上限降低"],
         text: [
-            "What an old sender may send is too large for a new receiver.",
+            "An old sender may send a frame or body that is too large for a new receiver.",
             "旧发送方按旧上限发送的内容，超出新接收方的上限。",
         ],
     }
@@ -136,7 +136,7 @@ rules! {
         mirror: &[11],
         title: ["a limit of frames or bodies is higher", "帧或消息体的上限提高"],
         text: [
-            "What a new sender may send is too large for an old receiver.",
+            "A new sender may send a frame or body that is too large for an old receiver.",
             "新发送方按新上限发送的内容，超出旧接收方的上限。",
         ],
     }

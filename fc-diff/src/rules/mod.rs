@@ -1,4 +1,4 @@
-//! The rules, by section: what each judges, whom it can break, and its texts in both languages.
+//! The rules, by section, with their effects and their texts in both languages.
 
 pub(crate) mod choices;
 pub(crate) mod constraints;
@@ -22,7 +22,7 @@ pub(crate) const ALL: [&[&Rule]; 8] = [
     process::RULES,
 ];
 
-/// The last rule that judges a change; what follows judges waivers.
+/// Number of the last rule for changes. Later rules are for waivers.
 pub(crate) const LAST_OF_CHANGES: u8 = 64;
 
 /// Programs in every language.
@@ -35,7 +35,7 @@ const EVERY: &[Language] = &[
     Language::Typescript,
 ];
 
-/// What a rule has unless it says otherwise.
+/// Defaults of a rule.
 const BASE: Rule = Rule {
     number: 0,
     name: "",
@@ -50,7 +50,7 @@ const BASE: Rule = Rule {
     text: ["", ""],
 };
 
-/// Declares the rules of a section, each by what is not as in [`BASE`], and the list of them.
+/// Declares the rules of a section by their differences from [`BASE`], and the list of them.
 macro_rules! rules {
     ($($NAME:ident { $($field:ident: $value:expr,)+ })+) => {
         $(pub(crate) static $NAME: Rule = Rule { $($field: $value,)+ ..BASE };)+
@@ -66,14 +66,14 @@ use rules;
 pub(crate) static UNJUDGED: Rule = Rule {
     name: "unjudged",
     no_mirror: [
-        "where a rule judges one way only, the way back is left here",
+        "rules of one direction leave the opposite change to this rule",
         "有的规则只评估一个方向，反方向的变更归在这里",
     ],
     title: ["a change that no rule judges", "没有规则评估的变更"],
     text: [
-        "The two versions differ here, and no rule says whom that breaks. Most such changes are texts, conditions, \
-         examples and notes; read them.",
-        "两个版本在这里不同，但没有规则说明会影响谁。多数是文字、条件、示例和备注，请人工查看。",
+        "The two versions differ here, and no rule judges the effect. Most such changes are texts, conditions, \
+         examples and notes. Read them.",
+        "两个版本在这里不同，但没有规则评估其影响。多数是文字、条件、示例和备注，请人工查看。",
     ],
     ..BASE
 };

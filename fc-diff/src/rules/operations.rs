@@ -13,9 +13,9 @@ rules! {
         mirror: &[14],
         title: ["a command is gone", "删除了指令"],
         text: [
-            "Old apps still send it, and a new robot answers that it does not know it. The same holds for a stream that \
-             the app sends.",
-            "旧 app 仍会发送，新机器人回复“未知指令”。app 发送的数据流也一样。",
+            "Old apps still send it, and a new robot refuses it as an unknown command. The same applies to a stream of \
+             the app.",
+            "旧 app 仍会发送，新机器人按未知指令拒绝。app 发送的数据流也一样。",
         ],
     }
     COMMAND_ADDED {
@@ -27,9 +27,9 @@ rules! {
         mirror: &[13],
         title: ["a command is new", "新增了指令"],
         text: [
-            "Old robots do not know it; new apps must expect that. On the robot side, a program that handles every command \
-             has one more to handle.",
-            "旧机器人不认识，新 app 要处理这种情况。机器人一侧，要求处理全部指令的程序需要补上它。",
+            "Old robots refuse it as an unknown command, and new apps must expect that. A robot program that handles every \
+             command needs another handler.",
+            "旧机器人按未知指令拒绝，新 app 要处理这种情况。处理全部指令的机器人程序需要补上它。",
         ],
     }
     REPORT_REMOVED {
@@ -40,8 +40,8 @@ rules! {
         mirror: &[16],
         title: ["a report is gone", "删除了上报"],
         text: [
-            "An old app waits for what a new robot never sends. The same holds for a stream that the robot sends.",
-            "旧 app 会一直等新机器人不再发送的内容。机器人发送的数据流也一样。",
+            "An old app waits for a report that a new robot never sends. The same applies to a stream of the robot.",
+            "旧 app 会一直等待新机器人不再发送的上报。机器人发送的数据流也一样。",
         ],
     }
     REPORT_ADDED {
@@ -52,9 +52,9 @@ rules! {
         mirror: &[15],
         title: ["a report is new", "新增了上报"],
         text: [
-            "Old apps do not know it and refuse it; a robot that repeats it until it is acknowledged does so without success. \
-             An exhaustive match over all reports has one more case.",
-            "旧 app 不认识，会拒绝；机器人会重发但得不到应答。穷尽匹配所有上报的代码要多一个分支。",
+            "Old apps refuse it, and a robot resends it without an acknowledgement. An exhaustive match over all reports \
+             needs another case.",
+            "旧 app 会拒绝，机器人会重发但得不到应答。穷尽匹配所有上报的代码要多一个分支。",
         ],
     }
     CODE_CHANGED {
@@ -64,8 +64,8 @@ rules! {
         mirror: &[17, 20],
         title: ["an operation has another code", "功能码变更"],
         text: [
-            "Each version sends a code that the other does not know. Keep the code, or add a new operation beside the old one.",
-            "双方发送的功能码对方都不认识。请保留原功能码，或另加一个新接口。",
+            "Each version sends a code that the other does not know. Keep the code, or add a new operation and keep the old one.",
+            "双方发送的功能码对方都不认识。保留原功能码；或另加一个新接口，旧接口不变。",
         ],
     }
     CODE_REUSED {
@@ -75,25 +75,25 @@ rules! {
         silent: true,
         is_error: true,
         no_mirror: [
-            "to give the code up again is to remove the operation (FC0713) or to change its code (FC0717)",
-            "重新放弃该功能码，即删除接口（FC0713）或变更功能码（FC0717）",
+            "the opposite change removes the operation (FC0713) or changes its code (FC0717)",
+            "反向变更是删除接口（FC0713）或变更功能码（FC0717）",
         ],
         title: ["a code with an earlier meaning is in use", "旧功能码另作他用"],
         text: [
-            "The code was retired, or belonged to another operation. A peer of the other version reads the message as that \
-             one, and nothing fails. This must not be waived.",
-            "该功能码已停用，或属于另一个接口。另一个版本会按旧含义处理，且不会报错。不允许豁免。",
+            "The code was retired, or belonged to another operation. A peer of the other version reads the message in the \
+             old meaning, without an error. A waiver is not allowed.",
+            "该功能码已退役，或属于另一个接口。另一个版本会按旧含义处理，且不会报错。不允许豁免。",
         ],
     }
     TOMBSTONE_REMOVED {
         number: 19,
         name: "tombstone-removed",
         is_error: true,
-        no_mirror: ["to retire a code breaks nobody", "停用功能码不影响任何一方"],
-        title: ["a retired code is no longer listed", "停用的功能码从列表中消失"],
+        no_mirror: ["retiring a code has no effect on programs", "退役功能码不影响任何程序"],
+        title: ["a retired code is no longer listed", "退役的功能码从列表中消失"],
         text: [
-            "Without its entry nothing keeps the code from being assigned again.",
-            "没有这条记录，该功能码可能被再次分配。",
+            "Without its entry, the code can be assigned again. Keep the entry.",
+            "没有这条记录，该功能码可能被再次分配。保留这条记录。",
         ],
     }
     CODE_ASSIGNED {
@@ -103,9 +103,9 @@ rules! {
         mirror: &[17],
         title: ["an operation got its code", "接口分配了功能码"],
         text: [
-            "It could not be sent before. A robot of the old version answers a command with this code that it does not know it; a \
-             report is passed over.",
-            "之前无法发送。旧机器人会答复不认识这个指令；主动上报则被忽略。",
+            "Without a code it could not be sent. An old robot refuses a command with this code as unknown; an old app ignores \
+             a report.",
+            "没有功能码时无法发送。旧机器人按未知指令拒绝；旧 app 忽略上报。",
         ],
     }
     OPERATION_RENAMED {
@@ -115,7 +115,8 @@ rules! {
         mirror: &[21],
         title: ["an operation has another name", "接口改名"],
         text: [
-            "Kind and code are the same, so messages are; programs that name it do not compile. Check that it still means the same.",
+            "Kind and code are the same, so messages are the same. Programs with the old name do not compile. Check that its \
+             meaning is unchanged.",
             "类型和功能码不变，报文不受影响；引用旧名称的代码无法编译。请确认含义没有变。",
         ],
     }
@@ -125,9 +126,9 @@ rules! {
         wire: Wire::Both,
         source: EVERY,
         mirror: &[22],
-        title: ["an operation is of another kind or has another sender", "接口的类型或发送方变更"],
+        title: ["an operation has another kind or sender", "接口的类型或发送方变更"],
         text: [
-            "Its frames are of another kind, or come from the other side, and the other version does not expect that.",
+            "Its frames have another kind or another sender, and the other version does not expect them.",
             "帧的类型或发送方变了，另一个版本不会这样处理。",
         ],
     }
@@ -136,13 +137,13 @@ rules! {
         name: "effect-raised",
         behaviour: true,
         no_mirror: [
-            "a command that does less than its callers guard against breaks none of them",
+            "callers that guard against a larger effect still work",
             "影响变小，调用方原有的防护依然够用",
         ],
-        title: ["a command does more to the robot", "指令对机器人的影响变大"],
+        title: ["a command has a larger effect on the robot", "指令对机器人的影响变大"],
         text: [
-            "Programs that repeat it at will, or allow it without a permission, were written for a command that did less.",
-            "按原来较小的影响编写的程序，可能会随意重发，或不做权限检查。",
+            "Programs may resend it freely, or allow it without a permission, because its effect was smaller. Check them.",
+            "程序按原来较小的影响编写，可能会随意重发，或不做权限检查。检查这些程序。",
         ],
     }
     GROUP_MOVED {
@@ -150,9 +151,9 @@ rules! {
         name: "group-moved",
         source: &[Rust, Kotlin, Cpp],
         mirror: &[24],
-        title: ["it moved to another group", "移到了另一个分组"],
+        title: ["an operation moved to another group", "接口移到另一个分组"],
         text: [
-            "In languages whose modules follow the groups its path changes.",
+            "Its path changes in languages with one module per group.",
             "在按分组生成模块的语言里，引用路径会变。",
         ],
     }

@@ -10,9 +10,9 @@ rules! {
         wire: Wire::Both,
         silent: true,
         mirror: &[58],
-        title: ["a result has another code or role", "结果码的编号或用途变更"],
+        title: ["a result has another code or role", "结果码的编号或角色变更"],
         text: [
-            "One side takes for a success, or for another error, what the other meant differently. Nothing fails.",
+            "One side may read an error of the other as a success or as another error, without an error message.",
             "一方的失败可能被另一方当成成功或别的错误，且不会报错。",
         ],
     }
@@ -20,11 +20,11 @@ rules! {
         number: 59,
         name: "operation-error-added",
         behaviour: true,
-        no_mirror: ["an error that no longer occurs breaks nobody", "不再出现的错误不影响任何一方"],
-        title: ["an operation may answer another error", "接口新增可能返回的错误"],
+        no_mirror: ["an error that no longer occurs has no effect on programs", "不再出现的错误不影响任何程序"],
+        title: ["an operation may return another error", "接口新增可能返回的错误"],
         text: [
-            "Old apps get a result that they were not written for.",
-            "旧 app 会收到没有考虑过的结果。",
+            "Old apps may not handle the new result.",
+            "旧 app 可能没有处理新的结果。",
         ],
     }
     ACK_TIMING {
@@ -32,9 +32,9 @@ rules! {
         name: "ack-timing-changed",
         behaviour: true,
         mirror: &[60],
-        title: ["reports are repeated at other times", "上报的重发时机变更"],
+        title: ["reports are resent at other times", "上报的重发时机变更"],
         text: [
-            "A shorter wait or more retries make duplicates, fewer retries make losses.",
+            "A shorter wait or more resends cause duplicates. Fewer resends cause losses.",
             "等待变短或重发变多会产生重复，重发变少会造成丢失。",
         ],
     }
@@ -44,13 +44,13 @@ rules! {
         wire: Wire::OldSender,
         behaviour: true,
         no_mirror: [
-            "more time and a later expiry refuse nothing that was accepted before",
-            "时间放宽不会拒绝原来能接受的内容",
+            "more time and a later expiry keep everything accepted",
+            "时间放宽后，原来能接受的仍能接受",
         ],
-        title: ["handlers outlast calls, or messages expire earlier", "处理超时长于调用超时，或消息过期提前"],
+        title: ["handlers can take longer than calls, or messages expire earlier", "处理超时长于调用超时，或消息过期提前"],
         text: [
-            "Where handlers may take longer than calls wait, apps give up although the robot goes on. Where messages expire, or \
-             earlier than before, old senders with queues or wrong clocks are refused.",
+            "If a handler may take longer than a call waits, apps give up while the robot continues. If messages expire, or expire \
+             earlier, the robot refuses old senders with queues or wrong clocks.",
             "处理时间可以长于调用等待时间时，app 已放弃而机器人还在执行。过期时间新设或缩短后，有排队或时钟不准的旧发送方会被拒绝。",
         ],
     }
@@ -58,10 +58,10 @@ rules! {
         number: 62,
         name: "quirk-removed",
         wire: Wire::OldSender,
-        no_mirror: ["a receiver that takes more breaks nobody", "接收方放宽不影响任何一方"],
+        no_mirror: ["a more lenient receiver has no effect on programs", "接收方放宽不影响任何程序"],
         title: ["a receiver is no longer lenient", "接收方不再放宽"],
         text: [
-            "Senders that rely on the leniency are refused. Make sure that none is left.",
+            "Receivers refuse senders that rely on the leniency. Make sure that no such sender is left.",
             "依赖这一放宽处理的发送方会被拒绝。请先确认已没有这样的发送方。",
         ],
     }

@@ -1,7 +1,8 @@
-//! Faults of a spec and how they are shown.
+//! Errors of a spec, and their output.
 //!
-//! A [`Diagnostic`] says what is wrong, where, and what to do; its [`FaultCode`] is fixed and has an
-//! explanation. All that it says is a [`Text`], in both languages. Whoever finds a fault pushes it to [`Faults`] and goes on, so that one run shows all.
+//! A [`Diagnostic`] describes an error, its place and its fix. Its [`FaultCode`] is fixed and has an explanation. Every
+//! sentence is a [`Text`] in both languages. A check pushes each error to [`Faults`] and continues, so that one run
+//! shows all.
 
 mod codes;
 mod render;
@@ -14,60 +15,60 @@ pub use suggest::nearest;
 use crate::model::Text;
 use crate::syntax::Span;
 
-/// How bad it is.
+/// The severity of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Nothing can be generated.
+    /// Stops `fcproto generate`.
     Error,
-    /// Worth a look.
+    /// Does not stop anything.
     Warning,
 }
 
-/// A place and what to say about it.
+/// A place with a short text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// A few words beside it; may be empty for the primary place.
+    /// A few words next to the place; may be empty for the primary place.
     pub text: Text,
 }
 
-/// A change that mends the fault.
+/// A change that fixes the error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
-    /// What to replace; empty to insert.
+    /// The text to replace; empty to insert.
     pub span: Span,
-    /// With what; empty to delete.
+    /// The new text; empty to delete.
     pub replacement: String,
-    /// What the change does, such as "a type with a similar name exists".
+    /// Describes the change, such as "a type with a similar name exists".
     pub message: Text,
-    /// Other places of the same fault, at which the same is replaced.
+    /// Other places with the same replacement.
     pub elsewhere: Vec<Span>,
 }
 
 impl Fix {
-    /// All places of the fault, its first one first.
+    /// Returns all places, starting with [`span`](Self::span).
     pub fn places(&self) -> impl Iterator<Item = Span> {
         std::iter::once(self.span).chain(self.elsewhere.iter().copied())
     }
 }
 
-/// A fault of the spec.
+/// An error or warning of the spec.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Which fault it is.
+    /// The code.
     pub code: FaultCode,
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
-    /// What is wrong: one sentence, no full stop, starting in lower case.
+    /// The message: one sentence without a full stop, starting in lower case.
     pub message: Text,
-    /// Where.
+    /// The place of the error.
     pub primary: Label,
-    /// Other places to blame ("first used here").
+    /// Other places involved ("first used here").
     pub secondary: Vec<Label>,
-    /// What to do or to know.
+    /// Notes, in the imperative where they tell what to do.
     pub notes: Vec<Text>,
-    /// Changes that mend it.
+    /// Changes that fix it.
     pub fixes: Vec<Fix>,
 }
 
@@ -98,28 +99,28 @@ impl Diagnostic {
         }
     }
 
-    /// A few words at the primary place.
+    /// Adds a few words at the primary place.
     #[must_use]
     pub fn label(mut self, text: Text) -> Self {
         self.primary.text = text;
         self
     }
 
-    /// Another place to blame.
+    /// Adds another place.
     #[must_use]
     pub fn also(mut self, span: Span, text: Text) -> Self {
         self.secondary.push(Label { span, text });
         self
     }
 
-    /// What to do or to know.
+    /// Adds a note.
     #[must_use]
     pub fn note(mut self, text: Text) -> Self {
         self.notes.push(text);
         self
     }
 
-    /// A change that mends it.
+    /// Adds a change that fixes the error.
     #[must_use]
     pub fn fix(mut self, span: Span, replacement: impl Into<String>, message: Text) -> Self {
         self.fixes.push(Fix {
@@ -131,7 +132,7 @@ impl Diagnostic {
         self
     }
 
-    /// Another place at which each fix so far replaces the same.
+    /// Adds another place with the same replacement to each fix.
     #[must_use]
     pub fn fix_also(mut self, span: Span) -> Self {
         for fix in &mut self.fixes {
@@ -141,10 +142,10 @@ impl Diagnostic {
     }
 }
 
-/// Most diagnostics that are kept; the rest is only counted.
+/// Maximum number of diagnostics to keep; further ones are only counted.
 const KEPT: usize = 1000;
 
-/// The faults found so far.
+/// The errors found so far.
 #[derive(Clone, Debug, Default)]
 pub struct Faults {
     list: Vec<Diagnostic>,
@@ -156,13 +157,13 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// None yet.
+    /// An empty list.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds one. Past a thousand they are counted, not kept.
+    /// Adds a diagnostic. Above the maximum it is counted and not kept.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if diagnostic.severity == Severity::Error {
             self.errors += 1;
@@ -174,39 +175,38 @@ impl Faults {
         }
     }
 
-    /// Notes that because of a fault nobody reads this text: what seems to be missing may be in it.
+    /// Marks a text that is not read because of an error. It may contain keys that seem to be missing.
     pub(crate) fn hide(&mut self, text: Span) {
         self.hidden.push(text);
     }
 
-    /// Notes that there are entries in this text, which is hidden as it is no YAML: what it stands in lacks them.
+    /// Marks a hidden text that is not YAML and contains entries. The surrounding value lacks them.
     pub(crate) fn leave_out(&mut self, text: Span) {
         self.hide(text);
         self.gaps.push(text);
     }
 
-    /// Texts that are left out.
+    /// Returns the hidden texts with entries.
     pub(crate) fn gaps(&self) -> &[Span] {
         &self.gaps
     }
 
-    /// Notes that because of a fault something has lost its name, or is lost with it: of nothing can be said that it is
-    /// missing.
+    /// Marks that an error hides a name or a thing. Afterwards no thing can be reported as missing.
     pub(crate) fn lose(&mut self) {
         self.nameless = true;
     }
 
-    /// Whether something is lost of which the name is not known.
+    /// Returns `true` if an error hides something with an unknown name.
     pub(crate) fn has_lost(&self) -> bool {
         self.nameless
     }
 
-    /// Texts that nobody reads because of one of these faults.
+    /// Returns the texts that are not read because of these errors.
     pub(crate) fn hidden(&self) -> &[Span] {
         &self.hidden
     }
 
-    /// Adds all of another list behind these.
+    /// Adds all of another list at the end.
     pub fn append(&mut self, other: Self) {
         self.hidden.extend(other.hidden);
         self.gaps.extend(other.gaps);
@@ -217,7 +217,7 @@ impl Faults {
         self.list.extend(other.list.into_iter().take(room));
     }
 
-    /// Keeps those of which this is true; those that are only counted stay counted.
+    /// Keeps the diagnostics for which the predicate is true. Counts of diagnostics that were not kept stay.
     pub(crate) fn retain(&mut self, is_kept: impl Fn(&Diagnostic) -> bool) {
         let errors = &mut self.errors;
         self.list.retain(|fault| {
@@ -227,55 +227,55 @@ impl Faults {
         });
     }
 
-    /// Whether one of them says to write this.
+    /// Returns `true` if a fix has this replacement.
     pub(crate) fn suggests(&self, text: &str) -> bool {
         let mut fixes = self.list.iter().flat_map(|fault| &fault.fixes);
         fixes.any(|fix| fix.replacement == text)
     }
 
-    /// Whether there is none.
+    /// Returns `true` if the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// How many are kept.
+    /// Returns the number of diagnostics kept.
     #[must_use]
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// Whether anything stands in the way of generating.
+    /// Returns `true` if there are errors, so that nothing can be generated.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
-    /// Number of errors, also of those that are not kept.
+    /// Returns the number of errors, including those not kept.
     #[must_use]
     pub fn errors(&self) -> usize {
         self.errors
     }
 
-    /// Number of warnings, also of those that are not kept.
+    /// Returns the number of warnings, including those not kept.
     #[must_use]
     pub fn warnings(&self) -> usize {
         self.list.len() + self.omitted - self.errors
     }
 
-    /// How many were counted but not kept.
+    /// Returns the number of diagnostics counted but not kept.
     #[must_use]
     pub fn omitted(&self) -> usize {
         self.omitted
     }
 
-    /// Puts them in the order of the files and of their places in them.
+    /// Sorts them by file and by place.
     pub fn sort(&mut self) {
         self.list
             .sort_by_key(|fault| (fault.primary.span, fault.severity, fault.code));
     }
 
-    /// Those that are kept.
+    /// Returns the diagnostics kept.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.list.iter()
     }

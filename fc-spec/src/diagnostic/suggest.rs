@@ -1,7 +1,7 @@
 //! "Did you mean".
 
-/// The candidate that `word` is most likely a slip of: a third of its characters may differ, case
-/// counts for nothing. The first of several equally near.
+/// Returns the candidate nearest to `word`. Up to a third of its characters may differ, and case makes no
+/// difference. Of several equally near, returns the first.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let allowed = (word.chars().count() / 3).max(1);

@@ -16,9 +16,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["text that repeats the name", "只重复名称的说明"],
         text: [
-            "The English text is the key in other words: `Lamp name` for `lampName`. A reader who did not know it before does not know it now. Say \
-             what it is good for, where it comes from, or what its odd values mean. Off by default: for some keys there is nothing else to say.",
-            "英文说明只是把键名拆开写了一遍：`lampName` 写成 `Lamp name`，看了等于没看。请写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
+            "The English text only repeats the key: `Lamp name` for `lampName`. Describe its purpose, its origin or its special values. Off by \
+             default: some keys need no more words.",
+            "英文说明只重复了键名：`lampName` 写成 `Lamp name`。写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
         ],
         find: Some(text_repeats_name),
     },
@@ -29,7 +29,7 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["title with a full stop", "标题末尾有句号"],
         text: [
-            "Titles and descriptions stand in tables and lists, without a full stop. Only a text of several sentences ends in one.",
+            "Titles and descriptions appear in tables and lists, without a full stop. Only a text of several sentences ends with one.",
             "标题和说明显示在表格和列表中，末尾不加句号。只有由多句组成的文本才以句号结尾。",
         ],
         find: Some(full_stop),
@@ -41,9 +41,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["punctuation of the other language", "用了另一种语言的标点"],
         text: [
-            "A Chinese text has an ASCII comma, semicolon or colon behind a Chinese character, or an English one has full-width punctuation. It \
-             looks like what it is: copied from the other text.",
-            "中文里汉字后面用了半角的逗号、分号或冒号，或者英文里用了全角标点，一看就是从另一种语言复制过来的。",
+            "A Chinese text has an ASCII comma, semicolon or colon after a Chinese character, or an English text has full-width punctuation. \
+             Usually it was copied from the other text. Use the punctuation of the language.",
+            "中文里汉字后面用了半角的逗号、分号或冒号，或者英文里用了全角标点，多半是从另一种语言复制过来的。改用本语言的标点。",
         ],
         find: Some(foreign_punctuation),
     },
@@ -54,9 +54,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["name in one language only", "只有一种语言提到的名称"],
         text: [
-            "One of the two texts names something between back quotes that the other one does not. Mostly one of them was changed later, and \
-             its readers learn what the others do not.",
-            "中英文两份文本中，只有一份提到了反引号里的某个名称。多半是后来只改了其中一份，另一种语言的读者就看不到。",
+            "One of the two texts has a name in back quotes that the other lacks. Usually only one of them was changed later. Add the name to the \
+             other text.",
+            "中英文两份文本中，只有一份提到了反引号里的某个名称，多半是后来只改了其中一份。把名称补到另一份中。",
         ],
         find: Some(code_in_one_language),
     },
@@ -65,14 +65,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Docs,
         name: "no-replacement",
         level: Level::Warning,
-        title: [
-            "withdrawn without naming what to use instead",
-            "停用时没有指明改用什么",
-        ],
+        title: ["deprecated without a replacement", "弃用时没有写明改用什么"],
         text: [
-            "An operation is `deprecated` without `replaced_by`. Generated packages warn anyone who uses it; say to what they should move. Where \
-             nothing replaces it, waive this.",
-            "接口标记为 `deprecated`，但没有 `replaced_by`。生成的代码会提醒使用者，请写明改用哪个接口。确实没有替代的，可加豁免。",
+            "An operation is `deprecated` without `replaced_by`. Generated packages warn its users, who need to know what to use instead. Write \
+             `replaced_by`, or waive this if there is no replacement.",
+            "接口标记为 `deprecated`，但没有 `replaced_by`。生成的代码会提醒使用者，使用者需要知道改用什么。写上 `replaced_by`；确实没有替代的，可加豁免。",
         ],
         find: Some(no_replacement),
     },
@@ -83,9 +80,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["new operation without a date", "没有写明日期的新接口"],
         text: [
-            "An operation that the source document never had does not say since when it exists. Robots in the field are older than the spec: \
-             a caller has to know which of them have it. Write `since`.",
-            "源文档中没有的接口，没有写明从什么时候起有。现场的机器人比规范旧，调用者需要知道哪些机器人支持。请写 `since`。",
+            "An operation that is not in the source document has no `since`. Robots in the field are older than the spec, and a caller needs to \
+             know which of them have the operation. Write `since`.",
+            "接口不在源文档中，也没有写 `since`。现场的机器人比规范旧，调用方需要知道哪些机器人支持。写上 `since`。",
         ],
         find: Some(new_without_since),
     },
@@ -96,8 +93,8 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["translation with fewer paragraphs", "两种语言段落数不同"],
         text: [
-            "The two texts have different numbers of paragraphs: most likely one of them lacks something.",
-            "中英文的段落数不同，很可能有一份缺了内容。",
+            "The two texts have different numbers of paragraphs, so one of them probably lacks something. Compare them.",
+            "中英文的段落数不同，很可能有一份缺了内容。对照两份文本。",
         ],
         find: Some(paragraphs_differ),
     },
@@ -120,8 +117,8 @@ fn text_repeats_name(search: &mut Search<'_>) {
             search.report(
                 of_field(ty, field),
                 text!(
-                    "“{said}”没有比 `{key}` 多说明什么",
-                    "\"{said}\" says no more than `{key}`",
+                    "“{said}”只重复了 `{key}`",
+                    "\"{said}\" only repeats `{key}`",
                     said = field.text.en,
                     key = field.wire
                 ),
@@ -171,7 +168,7 @@ fn foreign_punctuation(search: &mut Search<'_>) {
                 item,
                 text!(
                     "中文里汉字后面用了半角的 `{sign}`",
-                    "the Chinese text has `{sign}` behind a Chinese character"
+                    "the Chinese text has `{sign}` after a Chinese character"
                 ),
             );
             search.add(finding.about(format!("zh {about}")));
@@ -238,8 +235,9 @@ fn no_replacement(search: &mut Search<'_>) {
             search.report(
                 of_operation(operation),
                 text!(
-                    "已停用，但没有 `replaced_by`",
-                    "this is deprecated without `replaced_by`"
+                    "`{name}` 的 `deprecated` 没有 `replaced_by`",
+                    "`deprecated` of `{name}` has no `replaced_by`",
+                    name = operation.name
                 ),
             );
         }
@@ -256,8 +254,9 @@ fn new_without_since(search: &mut Search<'_>) {
             search.report(
                 of_operation(operation),
                 text!(
-                    "源文档中没有这个接口，也没有写明从什么时候起有",
-                    "this is not in the source document, and does not say since when it exists"
+                    "`{name}` 不在源文档中，也没有 `since`",
+                    "`{name}` is not in the source document and has no `since`",
+                    name = operation.name
                 ),
             );
         }

@@ -15,10 +15,11 @@ pub(super) const HOUSE_RULE: &Rule = &Rule {
     category: Category::House,
     name: "house-rule",
     level: Level::Warning,
-    title: ["against a rule of this project", "违反本项目的规则"],
+    title: ["violation of a rule of this project", "违反本项目的规则"],
     text: [
-        "A rule under `lint` in `fc.yaml` objects. The message is its own; its `id` follows it, and `levels` sets its level by that.",
-        "`fc.yaml` 的 `lint` 中写的规则不通过。提示内容就是规则自己的文字，旁边是它的 `id`；在 `levels` 中用 `id` 设置级别。",
+        "A rule under `lint` in `fc.yaml` is violated. The message is the text of the rule, followed by its `id`. Use the `id` in `levels` to \
+         set its level.",
+        "违反了 `fc.yaml` 的 `lint` 中的规则。提示内容是规则的文字，后面是它的 `id`；在 `levels` 中用 `id` 设置级别。",
     ],
     find: None,
 };
@@ -34,8 +35,8 @@ pub(super) const WAIVER_OVER: &Rule = &Rule {
         "该提示的豁免已过期",
     ],
     text: [
-        "The date up to which the finding was accepted has passed. Correct what the lint found, or agree on another date.",
-        "接受该提示的期限已过。请改正提示的问题，或商定新的期限。",
+        "The waiver of a finding has expired. Fix the finding, or agree on another date.",
+        "提示的豁免已过期。改正提示的问题，或商定新的期限。",
     ],
     find: None,
 };
@@ -46,11 +47,11 @@ pub(super) const WAIVER_UNUSED: &Rule = &Rule {
     category: Category::House,
     name: "unused-waiver",
     level: Level::Error,
-    title: ["the waiver accepts no finding", "豁免没有对应的提示"],
+    title: ["waiver without a finding", "豁免没有对应的提示"],
     text: [
-        "The lint finds nothing that this waiver accepts: it has been corrected, or the thing has another name now. Remove the waiver. Levels do \
-         not matter here: a waiver of a rule that is off is used as long as the rule would find something.",
-        "没有这条豁免所接受的提示：问题已经改正，或者对象改了名。请删除这条豁免。与级别无关：规则虽然关闭，只要它能找到问题，豁免就算有用。",
+        "The lint has no finding for this waiver: the problem was fixed, or the thing was renamed. Remove the waiver. Levels make no difference: \
+         a rule that is off still has findings for its waivers.",
+        "这条豁免没有对应的提示：问题已经改正，或者对象改了名。删除这条豁免。与级别无关：关闭的规则仍会查找，供豁免对应。",
     ],
     find: None,
 };
@@ -61,14 +62,11 @@ pub(super) const SETTINGS: &Rule = &Rule {
     category: Category::House,
     name: "lint-settings",
     level: Level::Error,
-    title: [
-        "setting of the lint that cannot be used",
-        "无法使用的检查设置",
-    ],
+    title: ["invalid setting of the lint", "无效的检查设置"],
     text: [
-        "What stands under `lint` in `fc.yaml` has a key, a level, a path or a test that there is not. Paths are those of `fcproto inspect`. \
-         Nothing is checked until it is corrected: a rule that silently never finds anything would be worse than none.",
-        "`fc.yaml` 的 `lint` 中有不存在的键、级别、路径或判断方式。路径与 `fcproto inspect` 输出的一致。改正之前不作检查：一条永远不会有提示的规则比没有更糟。",
+        "`lint` in `fc.yaml` has an unknown key, level, path or test. Paths are those of `fcproto inspect`. The lint does not run until you \
+         correct it, because a rule with a typo would silently find nothing.",
+        "`fc.yaml` 的 `lint` 中有未知的键、级别、路径或判断方式。路径与 `fcproto inspect` 的输出一致。改正之前不作检查：写错的规则永远不会有提示。",
     ],
     find: None,
 };

@@ -13,14 +13,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Minimal,
         name: "group-file",
         level: Level::Error,
-        title: [
-            "group that is not called as its file",
-            "接口组与文件名不一致",
-        ],
+        title: ["group and file with different names", "分组与文件名不一致"],
         text: [
-            "Anyone who looks for a command of a group opens the file of that name. Rename the file, or the `id` of the group where nobody uses \
-             the group's module in a generated package yet.",
-            "找某一组的指令时，人们会打开同名的文件。请改文件名；如果生成的代码还没有人使用，也可以改接口组的 `id`。",
+            "A reader looks for the commands of a group in the file of that name. Rename the file. If no program uses the generated module of the \
+             group yet, you can change the `id` of the group instead.",
+            "读者会在同名的文件里找某一组的指令。改文件名；如果还没有程序使用这一组生成的模块，也可以改分组的 `id`。",
         ],
         find: Some(group_file),
     },
@@ -31,9 +28,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Error,
         title: ["wire keys that differ only in case", "仅大小写不同的键名"],
         text: [
-            "Two keys of one object are the same but for upper and lower case, `_` or `-`. They are mixed up when programs are written by \
-             hand, and JSON readers that ignore case take one for the other. Give one of them another key.",
-            "同一个对象中有两个键，除大小写、`_`、`-` 之外完全相同。手写代码时容易混淆，忽略大小写的 JSON 库会把两者当成一个键。请为其中一个换一个键名。",
+            "Two keys of one object differ only in case, `_` or `-`. People confuse them in handwritten code, and JSON readers that ignore case \
+             treat them as one key. Rename one of them.",
+            "同一个对象中有两个键，只有大小写、`_` 或 `-` 不同。手写代码时容易混淆，忽略大小写的 JSON 库会把两者当成一个键。给其中一个改名。",
         ],
         find: Some(similar_keys),
     },
@@ -43,14 +40,13 @@ pub(super) const RULES: &[Rule] = &[
         name: "name-against-effect",
         level: Level::Error,
         title: [
-            "command whose name says another effect",
-            "名称与作用相反的指令",
+            "command with a name that contradicts its effect",
+            "名称与影响不符的指令",
         ],
         text: [
-            "Clients repeat a command that only reads, and ask before one that moves the robot. A name that begins with `get_`, `list_` or \
-             `query_` promises that nothing changes, one that begins with `set_`, `delete_`, `start_` and the like that something does. Correct \
-             the `effect`, or the name.",
-            "客户端会重发只读取的指令，发送让机器人运动的指令前会先询问。以 `get_`、`list_`、`query_` 开头的名称表示不会改变任何东西；以 `set_`、`delete_`、`start_` 等开头的则表示会改变。请改正 `effect` 或名称。",
+            "Clients resend a command that only reads, but not one that changes or moves the robot. A name with `get_`, `list_` or `query_` promises \
+             that nothing changes. A name with `set_`, `delete_`, `start_` or a similar verb promises a change. Correct the `effect` or the name.",
+            "客户端会重发只读取的指令，不会重发改变机器人或让它运动的指令。以 `get_`、`list_`、`query_` 开头的名称表示不会改变任何东西；以 `set_`、`delete_`、`start_` 等开头的则表示会改变。改正 `effect` 或名称。",
         ],
         find: Some(name_against_effect),
     },
@@ -64,8 +60,8 @@ fn group_file(search: &mut Search<'_>) {
             search.report(
                 of_group(group),
                 text!(
-                    "接口组 `{id}` 写在 `{file}` 中",
-                    "the group `{id}` is in a file called `{file}`",
+                    "分组 `{id}` 写在文件 `{file}` 中",
+                    "the group `{id}` is in the file `{file}`",
                     id = group.id
                 ),
             );
@@ -121,8 +117,8 @@ fn name_against_effect(search: &mut Search<'_>) {
         search.report(
             of_operation(operation),
             text!(
-                "名称以 `{verb}` 开头，而作用是 `{effect}`",
-                "the name begins with `{verb}`, but the effect is `{effect}`"
+                "名称以 `{verb}` 开头，而影响是 `{effect}`",
+                "the name starts with `{verb}`, but the effect is `{effect}`"
             ),
         );
     }

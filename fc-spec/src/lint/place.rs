@@ -50,7 +50,10 @@ fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
         fault = fault.note(note.clone());
     }
     let id = finding.waiver_id();
-    fault.note(text!("豁免编号：{id}", "a waiver of this has the id {id}"))
+    fault.note(text!(
+        "要接受这处提示，用编号 {id} 添加豁免",
+        "to accept this, add a waiver with the id {id}"
+    ))
 }
 
 /// Where a thing is written. All that a model has is in the files that it was read from.

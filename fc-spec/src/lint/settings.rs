@@ -99,8 +99,8 @@ fn read(
     if !whole {
         let message = text!("无法读取 `{name}`", "`{name}` cannot be read");
         let advice = text!(
-            "请改正 `{HOUSE}` 中的文件名",
-            "correct its name under `{HOUSE}`"
+            "改正 `{HOUSE}` 中的文件名",
+            "correct the file name under `{HOUSE}`"
         );
         reader.fault(Span::point(id, 0), message, advice);
         return Vec::new();
@@ -153,7 +153,7 @@ impl Reader<'_> {
             } else {
                 let words: Vec<_> = words.map(|word| format!("`{word}`")).collect();
                 let (zh, en) = (words.join("、"), words.join(", "));
-                fault.note(text!("可用的有：{zh}", "it is one of {en}"))
+                fault.note(text!("可以写：{zh}", "expected one of {en}"))
             });
     }
 
@@ -169,12 +169,12 @@ impl Reader<'_> {
         }
         if node.as_mapping().is_none() && !node.is_null() {
             let advice = text!(
-                "请在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
+                "在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
                 "write `{LEVELS}:` or `{HOUSE}:` below"
             );
             self.fault(
                 node.span(),
-                text!("这里没有设置", "these are no settings"),
+                text!("`lint` 应为映射", "`lint` must be a mapping"),
                 advice,
             );
         }
@@ -250,10 +250,13 @@ impl Reader<'_> {
         let mut files = Vec::new();
         if node.as_sequence().is_none() && !node.is_null() {
             let advice = text!(
-                "每条规则前写短横线：`- id: …`",
-                "write each rule behind a dash: `- id: …`"
+                "在每条规则前写短横线：`- id: …`",
+                "write a dash before each rule: `- id: …`"
             );
-            let message = text!("项目的规则应为列表", "the rules of the project are a list");
+            let message = text!(
+                "项目的规则应为列表",
+                "the rules of the project must be a list"
+            );
             self.fault(node.span(), message, advice);
         }
         for item in node.items() {

@@ -15,13 +15,13 @@ pub(super) const RULES: &[Rule] = &[
         name: "empty-answer",
         level: Level::Warning,
         title: [
-            "command that reads and answers nothing",
-            "读取却不返回内容的指令",
+            "reading command with an empty response",
+            "读取却没有响应内容的指令",
         ],
         text: [
-            "A command with the effect `read` has a response without a single key of its own. Write the response; where it is not known, say so \
-             with `response_state`; where there is none, the effect is another one.",
-            "作用为 `read` 的指令，响应中没有任何自己的键。请写出响应；响应内容未知时用 `response_state` 说明；确实没有响应内容时，作用就不是读取。",
+            "A command with the effect `read` has a response without keys. Write the response. If it is unknown, write `response_state: open`. If \
+             the response really is empty, correct the effect.",
+            "影响为 `read` 的指令，响应中没有键。写出响应；响应未知时写 `response_state: open`；确实没有响应内容时，改正影响。",
         ],
         find: Some(empty_answer),
     },
@@ -32,9 +32,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["fraction without a unit", "没有单位的小数"],
         text: [
-            "A number with a fraction is nearly always a measurement: metres or millimetres, radians or degrees. Write its `unit`. Numbers \
-             without one (a ratio, a version) are the reason why this rule is off by default.",
-            "小数几乎都是测量值：是米还是毫米，是弧度还是角度？请写明 `unit`。也有没有单位的数（比例、版本号），所以本规则默认关闭。",
+            "A number with a fraction is nearly always a measurement: metres or millimetres, radians or degrees. Write its `unit`. Off by default: \
+             some numbers have no unit, such as a ratio or a version.",
+            "小数几乎都是测量值：可能是米或毫米，弧度或角度。写上 `unit`。默认关闭：有的数没有单位，例如比例、版本号。",
         ],
         find: Some(number_without_unit),
     },
@@ -43,11 +43,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Standard,
         name: "id-without-entity",
         level: Level::Off,
-        title: ["ID that does not say of what", "没有说明指向什么的 ID"],
+        title: ["ID without an entity", "没有写明实体的 ID"],
         text: [
-            "The name of the field ends in `id`, and it does not say what it is the ID of. With `refers`, pages link it and packages can give it a \
-             type of its own. Off by default: where a source leaves it open, a guess would be worse.",
-            "字段名以 `id` 结尾，但没有说明是什么的 ID。写上 `refers` 后，页面会加上链接，代码中也可以有专门的类型。默认关闭：源文档没有写明时，猜测比不写更糟。",
+            "The name of the field ends in `id`, but the field has no `refers`. With `refers`, pages link the field to its entity, and packages can \
+             give it a separate type. Off by default: if the source does not name the entity, a guess would be worse.",
+            "字段名以 `id` 结尾，但没有写 `refers`。写上之后，页面会链接到实体，代码中也可以有专门的类型。默认关闭：源文档没有写明时，猜测比不写更糟。",
         ],
         find: Some(id_without_entity),
     },
@@ -58,9 +58,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["one key in two units", "同一个键有两种单位"],
         text: [
-            "The same wire key stands in several bodies, once in one unit and once in another. Who has learnt it in one place reads it wrong in the \
-             other, and nothing fails. Use one unit, or say in the key which one it is.",
-            "同一个键名出现在多个报文中，单位却不同。在一处看惯了的人会在另一处读错，而且不会报错。请统一单位，或在键名中写明单位。",
+            "The same wire key has different units in different bodies. Readers who know one of them misread the other, without an error. Use one \
+             unit, or put the unit into the key.",
+            "同一个键名在不同报文中的单位不同。熟悉其中一处的人会在另一处读错，而且不会报错。统一单位，或在键名中写明单位。",
         ],
         find: Some(one_key_two_units),
     },
@@ -71,8 +71,8 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Warning,
         title: ["bool with a negative name", "名称为否定式的布尔值"],
         text: [
-            "`notReady: false` has to be read twice. Name what is true: `ready`.",
-            "`notReady: false` 要想两遍才能明白。请用肯定的说法命名：`ready`。",
+            "`notReady: false` is hard to read. Use the positive name: `ready`.",
+            "`notReady: false` 不易看懂。用肯定的说法命名：`ready`。",
         ],
         find: Some(negative_bool),
     },
@@ -81,9 +81,9 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Standard,
         name: "list-in-singular",
         level: Level::Off,
-        title: ["list that is named in the singular", "用单数命名的列表"],
+        title: ["list with a singular name", "用单数命名的列表"],
         text: [
-            "A list holds several, so that `points` or `pointList` says more than `point`. Off by default: a wire key that is in use stays.",
+            "A list holds several items, so `points` or `pointList` is clearer than `point`. Off by default: wire keys in use do not change.",
             "列表里有多项，`points`、`pointList` 比 `point` 清楚。默认关闭：已经在用的键名不改。",
         ],
         find: Some(list_in_singular),
@@ -93,14 +93,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Standard,
         name: "report-without-cadence",
         level: Level::Warning,
-        title: [
-            "report that does not say when it comes",
-            "没有说明何时发送的上报",
-        ],
+        title: ["report without a cadence", "没有上报时机的上报"],
         text: [
-            "An app can only tell a lost report from one that was never due if it knows when reports come. Write the `cadence`: at each change, at \
-             intervals, or within a time; where nobody knows it yet, it is worth asking.",
-            "只有知道什么时候该有上报，应用才能分清是丢失还是本来就没有。请写明 `cadence`：变化时、定时或在某段时间之内；还没有人知道的，值得去问。",
+            "Without the `cadence` of a report, an app cannot distinguish a lost report from one that was never due. Write `cadence`: at each \
+             change, at intervals, or within a time. If it is unknown, ask the protocol owner.",
+            "没有 `cadence`，app 就分不清上报是丢失了，还是本来就没有。写上 `cadence`：变化时、定时，或在某段时间之内。不清楚时，请协议负责人确认。",
         ],
         find: Some(report_without_cadence),
     },
@@ -110,13 +107,13 @@ pub(super) const RULES: &[Rule] = &[
         name: "motion-without-process",
         level: Level::Warning,
         title: [
-            "motion of which nothing else is said",
+            "motion without preconditions and reports",
             "没有任何条件和后续的运动指令",
         ],
         text: [
-            "A command that moves the robot says neither in which states it is accepted (`accepted`) nor which reports follow it (`sets_off`). \
-             A caller cannot know whether it was taken nor when it is over.",
-            "让机器人运动的指令既没有说明在什么状态下接受（`accepted`），也没有说明之后有什么上报（`sets_off`）。调用者无从知道指令是否被接受、何时结束。",
+            "A command moves the robot but has neither `accepted` (the states in which it is accepted) nor `sets_off` (the reports that follow). A \
+             caller cannot know whether the robot will accept it, or when the motion is over.",
+            "让机器人运动的指令，既没有 `accepted`（受理的状态），也没有 `sets_off`（之后的上报）。调用方无法知道指令会不会被受理、运动何时结束。",
         ],
         find: Some(motion_without_process),
     },
@@ -127,9 +124,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["one key of two types", "同一个键有两种类型"],
         text: [
-            "The same wire key is a number in one body and a text in another. Off by default: short keys such as `type` mean something else in \
+            "The same wire key is a number in one body and a text in another. Off by default: short keys such as `type` have a different meaning in \
              each body.",
-            "同一个键名在一个报文中是数，在另一个报文中是文本。默认关闭：`type` 这样的短键名在各个报文中含义本来就不同。",
+            "同一个键名在一个报文中是数值，在另一个报文中是文本。默认关闭：`type` 这样的短键名在各个报文中含义本来就不同。",
         ],
         find: Some(one_key_two_types),
     },
@@ -150,8 +147,9 @@ fn empty_answer(search: &mut Search<'_>) {
             search.report(
                 of_operation(operation),
                 text!(
-                    "这条指令用于读取，响应却没有任何键",
-                    "this command reads, and its response has no keys"
+                    "`{name}` 的影响是 `read`，响应却没有键",
+                    "`{name}` has the effect `read`, but its response has no keys",
+                    name = operation.name
                 ),
             );
         }
@@ -184,8 +182,8 @@ fn id_without_entity(search: &mut Search<'_>) {
             search.report(
                 of_field(ty, field),
                 text!(
-                    "`{key}` 没有说明是什么的 ID",
-                    "`{key}` does not say of what it is the ID",
+                    "`{key}` 没有 `refers`",
+                    "`{key}` has no `refers`",
                     key = field.wire
                 ),
             );
@@ -267,8 +265,8 @@ fn negative_bool(search: &mut Search<'_>) {
             search.report(
                 of_field(ty, field),
                 text!(
-                    "`{key}` 用否定式命名",
-                    "`{key}` says what is not",
+                    "`{key}` 是否定式的名称",
+                    "`{key}` is a negative name",
                     key = field.wire
                 ),
             );
@@ -290,7 +288,7 @@ fn list_in_singular(search: &mut Search<'_>) {
                 of_field(ty, field),
                 text!(
                     "`{key}` 是列表，却用单数命名",
-                    "`{key}` is a list, named in the singular",
+                    "`{key}` is a list with a singular name",
                     key = field.wire
                 ),
             );
@@ -304,8 +302,9 @@ fn report_without_cadence(search: &mut Search<'_>) {
             search.report(
                 of_operation(operation),
                 text!(
-                    "没有说明何时发送这个上报",
-                    "nothing says when this report is sent"
+                    "`{name}` 没有 `cadence`",
+                    "`{name}` has no `cadence`",
+                    name = operation.name
                 ),
             );
         }
@@ -319,8 +318,9 @@ fn motion_without_process(search: &mut Search<'_>) {
             search.report(
                 of_operation(operation),
                 text!(
-                    "没有说明何时接受这个动作，也没有说明之后有什么上报",
-                    "nothing says when this motion is accepted, nor what follows it"
+                    "`{name}` 没有 `accepted`，也没有 `sets_off`",
+                    "`{name}` has neither `accepted` nor `sets_off`",
+                    name = operation.name
                 ),
             );
         }

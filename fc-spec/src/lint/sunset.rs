@@ -12,11 +12,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Sunset,
         name: "sunset-near",
         level: Level::Warning,
-        title: ["its last day is near", "停用日期临近"],
+        title: ["removal date is near", "移除日期临近"],
         text: [
-            "What is deprecated goes in this month or in one of the next three. Programs that still use it have to move now; the owner \
-             either prepares the removal (`fcproto retire`) or agrees on a later date.",
-            "已停用的内容将在本月或之后三个月内移除。还在使用的一方现在就要改；负责人则准备移除（`fcproto retire`），或商定更晚的日期。",
+            "A deprecated thing will be removed this month or in one of the next three. Programs that use it must change now. The owner prepares \
+             the removal (`fcproto retire`) or agrees on a later date.",
+            "弃用的内容将在本月或之后三个月内移除。还在使用的程序现在就要改；负责人准备移除（`fcproto retire`），或商定更晚的日期。",
         ],
         find: Some(sunset_near),
     },
@@ -25,11 +25,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Sunset,
         name: "sunset-passed",
         level: Level::Error,
-        title: ["its last day has passed", "停用日期已过"],
+        title: ["removal date has passed", "移除日期已过"],
         text: [
-            "The date that `sunset` promised is over, and it is still there. Remove it with `fcproto retire`, or agree on another date. A date that \
-             nobody keeps teaches everybody not to believe the next one.",
-            "`sunset` 写明的日期已过，内容还在。请用 `fcproto retire` 移除，或商定新的日期。日期不算数，下一个日期就没有人信了。",
+            "The date in `sunset` has passed, and the deprecated thing is still there. Remove it with `fcproto retire`, or agree on another date. If \
+             dates are not kept, users stop believing them.",
+            "`sunset` 的日期已过，弃用的内容还在。用 `fcproto retire` 移除，或商定新的日期。日期不算数，使用者就不再相信。",
         ],
         find: Some(sunset_passed),
     },
@@ -38,11 +38,11 @@ pub(super) const RULES: &[Rule] = &[
         category: Category::Sunset,
         name: "no-sunset",
         level: Level::Off,
-        title: ["withdrawn without a last day", "停用却没有截止日期"],
+        title: ["deprecated without a removal date", "弃用却没有移除日期"],
         text: [
-            "It is deprecated, and nothing says until when it works. Without a `sunset` nobody plans to move. Off by default: an old protocol may \
-             keep what it has withdrawn for ever.",
-            "已停用，但没有写明用到什么时候。没有 `sunset`，就没有人安排改造。默认关闭：旧协议可能永远保留停用的内容。",
+            "A deprecated thing has no `sunset`, so its users do not know how long it works. Off by default: an old protocol may keep deprecated \
+             things for ever.",
+            "弃用的内容没有 `sunset`，使用者不知道还能用多久。默认关闭：旧协议可能永远保留弃用的内容。",
         ],
         find: Some(no_sunset),
     },
@@ -85,7 +85,7 @@ fn with_sunset(search: &mut Search<'_>, is_wanted: impl Fn(&str, &str) -> bool, 
         let mut finding =
             Finding::new(search.rule, item, text!("{zh}{sunset}", "{en} {sunset}")).about(sunset);
         if let Some(by) = &deprecated.replaced_by {
-            finding = finding.note(text!("请改用 `{by}`", "`{by}` is to be used instead"));
+            finding = finding.note(text!("改用 `{by}`", "use `{by}` instead"));
         }
         search.add(finding);
     }
@@ -96,11 +96,21 @@ fn sunset_near(search: &mut Search<'_>) {
         let left = months(sunset).zip(months(today));
         !is_past(sunset, today) && left.is_some_and(|(last, now)| last - now <= NEAR)
     };
-    with_sunset(search, is_near, ["this goes by", "停用截止日期："]);
+    with_sunset(
+        search,
+        is_near,
+        [
+            "deprecated, and to be removed after",
+            "弃用，最后可用日期：",
+        ],
+    );
 }
 
 fn sunset_passed(search: &mut Search<'_>) {
-    let what = ["this was to be gone by", "应在此日期前移除："];
+    let what = [
+        "deprecated, and still there after",
+        "弃用，仍未移除，最后可用日期：",
+    ];
     with_sunset(search, is_past, what);
 }
 
@@ -109,10 +119,7 @@ fn no_sunset(search: &mut Search<'_>) {
         if deprecated.sunset.is_none() {
             search.report(
                 item,
-                text!(
-                    "已停用，但没有写明用到什么时候",
-                    "this is deprecated, and nothing says until when it works"
-                ),
+                text!("`deprecated` 没有 `sunset`", "`deprecated` has no `sunset`"),
             );
         }
     }

@@ -19,7 +19,10 @@ pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str) {
             Some(_) if waiver.is_over(today) => wrong.push(Finding::new(
                 WAIVER_OVER,
                 item,
-                text!("接受期限到 {until} 为止", "this was accepted until {until}"),
+                text!(
+                    "豁免已过期，期限到 {until} 为止",
+                    "the waiver expired: it was valid until {until}"
+                ),
             )),
             Some(finding) => finding.waived = Some(waiver.clone()),
             None => wrong.push(Finding::new(
@@ -27,7 +30,7 @@ pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str) {
                 item,
                 text!(
                     "这条豁免没有对应的提示",
-                    "this waiver accepts nothing that the lint finds"
+                    "the lint has no finding for this waiver"
                 ),
             )),
         }

@@ -17,9 +17,9 @@ pub(super) const RULES: &[Rule] = &[
             "JavaScript 存不下的整数",
         ],
         text: [
-            "An integer of 64 bits travels as a JSON number, with no `max` up to 2^53 − 1. Readers that keep numbers as doubles, as every browser \
-             does, change larger values without a word. Bound it, or send it as a text (`wire: string`).",
-            "64 位整数以 JSON 数字发送，而 `max` 没有限制在 2^53 − 1 以内。用双精度浮点数保存数字的一方（例如所有浏览器）会悄悄改掉更大的值。请加上限，或以文本发送（`wire: string`）。",
+            "A 64-bit integer is sent as a JSON number, and its `max` is not limited to 2^53 − 1. Readers that store numbers as doubles, such as \
+             browsers, change larger values silently. Limit it with `max`, or send it as a string (`wire: string`).",
+            "64 位整数以 JSON 数字发送，而 `max` 没有限制在 2^53 − 1 以内。用双精度浮点数保存数字的一方（例如浏览器）会悄悄改掉更大的值。用 `max` 加上限，或以字符串发送（`wire: string`）。",
         ],
         find: Some(integer_beyond_double),
     },
@@ -30,8 +30,8 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["fraction without a range", "没有范围的小数"],
         text: [
-            "A fraction has neither `min` nor `max`: nothing refuses a speed of 1e300. Write what the robot can take.",
-            "小数没有 `min` 也没有 `max`：速度写成 1e300 也不会被拒绝。请写明机器人能接受的范围。",
+            "A fraction has neither `min` nor `max`, so a speed of 1e300 is accepted. Write the range of the robot.",
+            "小数没有 `min` 也没有 `max`，速度写成 1e300 也会接受。写上机器人能接受的范围。",
         ],
         find: Some(number_without_range),
     },
@@ -42,9 +42,9 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["text or list of any length", "长度不限的文本或列表"],
         text: [
-            "A text, a list or bytes without a `length` can be as large as a frame. Who stores it has to choose a limit, and each chooses another. \
-             Write one.",
-            "文本、列表或字节没有 `length`，最大可以和一帧一样长。保存它的一方只能自己定一个上限，而且各不相同。请写明。",
+            "A text, a list or bytes without a `length` can be as large as a frame. Every program that stores it then chooses a different limit. \
+             Write `length`.",
+            "文本、列表或字节没有 `length`，最大可以和一帧一样长。保存它的程序各自定上限，互不相同。写上 `length`。",
         ],
         find: Some(unbounded_length),
     },
@@ -54,13 +54,13 @@ pub(super) const RULES: &[Rule] = &[
         name: "closed-enum-in-report",
         level: Level::Off,
         title: [
-            "report that a new enum value makes unreadable",
-            "出现新枚举值就读不了的上报",
+            "report with a required closed enum",
+            "必填字段为封闭枚举的上报",
         ],
         text: [
-            "A required field of a report is of a `closed` enum. The day the robot learns another value, apps of today lose the whole report. \
-             Open the enum, or make the field optional.",
-            "上报中的必填字段使用了封闭（`closed`）的枚举。机器人一旦有新的取值，现在的应用就会丢掉整条上报。请改为开放的枚举，或把字段改为可选。",
+            "A required field of a report has a `closed` enum. If the robot gets a new value, present apps refuse the whole report. Open the enum, \
+             or make the field optional.",
+            "上报中的必填字段使用了封闭（`closed`）的枚举。机器人一旦有新的取值，现在的 app 就会拒绝整条上报。改为开放的枚举，或把字段改为可选。",
         ],
         find: Some(closed_enum_in_report),
     },
@@ -74,9 +74,9 @@ pub(super) const RULES: &[Rule] = &[
             "同时有秒和毫秒的时间",
         ],
         text: [
-            "One object has a time in seconds and one in milliseconds. Sooner or later one is compared with the other, and nothing fails. Use one \
-             of the two.",
-            "同一个对象里，有的时间以秒计，有的以毫秒计。迟早会有人直接比较两者，而且不会报错。请统一。",
+            "One object has a time in seconds and a time in milliseconds. A program that compares them is wrong, without an error. Use one of the \
+             two.",
+            "同一个对象里，有的时间以秒计，有的以毫秒计。程序直接比较两者会出错，而且不会报错。统一单位。",
         ],
         find: Some(seconds_beside_milliseconds),
     },
@@ -87,8 +87,8 @@ pub(super) const RULES: &[Rule] = &[
         level: Level::Off,
         title: ["value of any type", "没有类型的值"],
         text: [
-            "The type is `json`: nothing checks what is in it, and every program takes it apart by hand. Give it a type as soon as it is known.",
-            "类型是 `json`：内容不受任何检查，每个程序都要手工解析。一旦知道内容，请写出类型。",
+            "The type is `json`: its content is not checked, and every program parses it by hand. Give it a type once the content is known.",
+            "类型是 `json`：内容不作检查，每个程序都要手工解析。知道内容后，写出类型。",
         ],
         find: Some(untyped_value),
     },
@@ -168,7 +168,7 @@ fn closed_enum_in_report(search: &mut Search<'_>) {
                     of_field(ty, field),
                     text!(
                         "`{key}` 为必填，而它的枚举是封闭的",
-                        "`{key}` is required, and its enum is closed",
+                        "`{key}` is required, but its enum is closed",
                         key = field.wire
                     ),
                 );
@@ -204,8 +204,8 @@ fn untyped_value(search: &mut Search<'_>) {
             search.report(
                 of_field(ty, field),
                 text!(
-                    "`{key}` 可以是任何值",
-                    "`{key}` may be anything",
+                    "`{key}` 接受任意 JSON 值",
+                    "`{key}` accepts any JSON value",
                     key = field.wire
                 ),
             );

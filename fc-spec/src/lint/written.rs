@@ -33,8 +33,8 @@ impl Reader<'_> {
             if found.is_none() {
                 let message = missing(key);
                 let advice = text!(
-                    "规则要有 `id`、`zh`、`en`、`for` 和 `require`",
-                    "a rule has `id`, `zh`, `en`, `for` and `require`"
+                    "规则应为有 `id`、`zh`、`en`、`for` 和 `require` 的映射",
+                    "a rule must be a mapping with `id`, `zh`, `en`, `for` and `require`"
                 );
                 self.fault(
                     node.entries()
@@ -61,12 +61,12 @@ impl Reader<'_> {
         });
         let Some(require) = require else {
             let advice = text!(
-                "请写明要求，例如 `require: {{ since: present }}`",
-                "say what has to hold, such as `require: {{ since: present }}`"
+                "写上要求，例如 `require: {{ since: present }}`",
+                "write the requirement, such as `require: {{ since: present }}`"
             );
             self.fault(
                 node.span(),
-                text!("这条规则没有要求", "this rule requires nothing"),
+                text!("规则没有 `require`", "the rule has no `require`"),
                 advice,
             );
             return None;
@@ -86,8 +86,8 @@ impl Reader<'_> {
     fn kinds(&mut self, node: Node<'_>) -> Option<Vec<&'static str>> {
         let Some(on) = node.get("for") else {
             let advice = text!(
-                "请写明针对什么，例如 `for: command`",
-                "say what it is about, such as `for: command`"
+                "写上适用的对象，例如 `for: command`",
+                "name the kind of thing, such as `for: command`"
             );
             self.fault(node.span(), missing("for"), advice);
             return None;
@@ -99,7 +99,7 @@ impl Reader<'_> {
         let found = kinds().find(|kind| *kind == word);
         if found.is_none() {
             let words: Vec<_> = kinds().chain(GROUPS.map(|(name, _)| name)).collect();
-            self.unknown(on, &text!("这一类对象", "kind of thing"), words.into_iter());
+            self.unknown(on, &text!("对象种类", "kind of thing"), words.into_iter());
         }
         Some(vec![found?])
     }
@@ -107,22 +107,22 @@ impl Reader<'_> {
     /// What holds where each entry does: by path, or `all`, `any`, `not`.
     fn test(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Test> {
         let Some(depth) = depth.checked_sub(1) else {
-            let message = text!("嵌套太深", "this is nested too deeply");
+            let message = text!("判断嵌套太深", "the test is nested too deeply");
             self.fault(
                 node.span(),
                 message,
-                text!("请分成两条规则", "make two rules of it"),
+                text!("分成两条规则", "split the rule in two"),
             );
             return None;
         };
         if node.as_mapping().is_none() {
             let advice = text!(
-                "请写明哪个路径应是什么，例如 `{{ effect: motion }}`",
-                "write what is asked of which path: `{{ effect: motion }}`"
+                "写出路径和应有的值，例如 `{{ effect: motion }}`",
+                "write a path and its test: `{{ effect: motion }}`"
             );
             self.fault(
                 node.span(),
-                text!("判断应为映射", "a test is a mapping"),
+                text!("判断应为映射", "a test must be a mapping"),
                 advice,
             );
             return None;
@@ -147,10 +147,10 @@ impl Reader<'_> {
 
     fn each(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Vec<Test>> {
         if node.as_sequence().is_none() {
-            let advice = text!("每项判断前写短横线", "write each test behind a dash");
+            let advice = text!("在每项判断前写短横线", "write a dash before each test");
             self.fault(
                 node.span(),
-                text!("`all` 和 `any` 下应为列表", "`all` and `any` take a list"),
+                text!("`all` 和 `any` 应为列表", "`all` and `any` must be lists"),
                 advice,
             );
             return None;
@@ -172,19 +172,22 @@ impl Reader<'_> {
             if at.is_list() {
                 let list = path.get(..index).unwrap_or_default().join(".");
                 let advice = text!(
-                    "只能判断它有没有，以及长度：`min_length`、`max_length`",
-                    "a rule can ask whether it is there, and for its length: `min_length`, `max_length`"
+                    "改用 `present`、`absent`、`min_length` 或 `max_length`",
+                    "use `present`, `absent`, `min_length` or `max_length`"
                 );
                 self.fault(
                     key.span(),
-                    text!("`{list}` 是列表", "`{list}` is a list"),
+                    text!(
+                        "`{list}` 是列表，不能与值比较",
+                        "`{list}` is a list and cannot be compared with a value"
+                    ),
                     advice,
                 );
                 return None;
             }
             let message = text!(
-                "`fcproto inspect` 的输出在这里没有键 `{part}`",
-                "`fcproto inspect` prints no key `{part}` there"
+                "`fcproto inspect` 的输出中没有键 `{part}`",
+                "the output of `fcproto inspect` has no key `{part}` here"
             );
             let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), key.span(), message);
             let near = nearest(part, keys.keys().copied());
@@ -197,7 +200,7 @@ impl Reader<'_> {
             } else {
                 let keys: Vec<_> = keys.into_keys().collect();
                 let (zh, en) = (keys.join("、"), keys.join(", "));
-                fault.note(text!("可用的键有：{zh}", "its keys are {en}"))
+                fault.note(text!("可以写：{zh}", "expected one of {en}"))
             });
             return None;
         }
@@ -252,14 +255,10 @@ impl Reader<'_> {
             }
             NodeKind::Sequence(_) | NodeKind::Null => {
                 let advice = text!(
-                    "请写 `present`、`absent`、一个值，或 `{{ one_of: [ … ] }}` 等",
-                    "write `present`, `absent`, a value, or `{{ one_of: [ … ] }}` and the like"
+                    "写 `present`、`absent`、一个值，或 `{{ one_of: [ … ] }}` 等",
+                    "write `present`, `absent`, a value, or a test such as `{{ one_of: [ … ] }}`"
                 );
-                self.fault(
-                    node.span(),
-                    text!("这里没有判断", "this asks nothing"),
-                    advice,
-                );
+                self.fault(node.span(), text!("缺少判断", "the test is empty"), advice);
                 None
             }
         }
@@ -269,12 +268,12 @@ impl Reader<'_> {
     fn value(&mut self, node: Node<'_>, at: &At<'_>) -> Option<Value> {
         let Some(scalar) = node.as_scalar() else {
             let advice = text!(
-                "请写文本、数或布尔值",
-                "write a text, a number or a truth value"
+                "写文本、数值或布尔值",
+                "write a text, a number or a boolean"
             );
             self.fault(
                 node.span(),
-                text!("这里应为单个值", "a single value is asked for"),
+                text!("应为单个值", "expected a single value"),
                 advice,
             );
             return None;
@@ -319,11 +318,7 @@ impl Reader<'_> {
                 "例如 `3`、`0.5` 或 `0x0A00`",
                 "such as `3`, `0.5` or `0x0A00`"
             );
-            self.fault(
-                node.span(),
-                text!("这里应为数", "a number is wanted here"),
-                advice,
-            );
+            self.fault(node.span(), text!("应为数值", "expected a number"), advice);
         }
         number
     }
@@ -331,7 +326,7 @@ impl Reader<'_> {
     fn length(&mut self, node: Node<'_>) -> Option<usize> {
         let length = scalar::int(node).and_then(|length| usize::try_from(length).ok());
         if length.is_none() {
-            let message = text!("这里应为长度", "a length is wanted here");
+            let message = text!("应为长度", "expected a length");
             self.fault(node.span(), message, text!("例如 `3`", "such as `3`"));
         }
         length

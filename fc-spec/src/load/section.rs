@@ -152,7 +152,7 @@ fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
         );
         faults.push(fault.note(text!(
             "在文件开头写 `group: {{ id: …, zh: …, en: … }}`",
-            "write `group: {{ id: …, zh: …, en: … }}` at its top"
+            "write `group: {{ id: …, zh: …, en: … }}` at the top of the file"
         )));
     }
 }

@@ -106,30 +106,30 @@ impl SettleError {
                 "there is no question {id}; `fcproto questions --state all --decisions` lists them"
             ),
             Self::Several { id, questions } => text!(
-                "{id} 是几个问题：{questions}",
-                "{id} is several questions: {questions}",
+                "{id} 有几个问题，应指定其中一个：{questions}",
+                "{id} has several questions: {questions}",
                 questions = Text::listed(questions)
             ),
             Self::Settled { id, by, date } => text!(
-                "{id} 已由 {by} 于 {date} 答复",
-                "{id} has been settled by {by} on {date}"
+                "{id} 已由 {by} 于 {date} 确认",
+                "{id} is already settled: by {by} on {date}"
             ),
             Self::NotAbout { id, path, about } if about.is_empty() => text!(
-                "{id} 不涉及任何内容，没有 `{path}` 可写：用 `--confirm` 确认，再手工修改规范",
-                "{id} governs no fact, so there is no `{path}` to write: confirm it with `--confirm` and change the spec by hand"
+                "{id} 没有 `about`，无法写入 `{path}`：用 `--confirm` 确认，再手工修改规范",
+                "{id} has no `about`, so `{path}` cannot be written: confirm it with `--confirm` and edit the spec by hand"
             ),
             Self::NotAbout { id, path, about } => text!(
-                "{id} 针对的不是 `{path}`，而是 {about}",
-                "{id} is not about `{path}`, but about {about}",
+                "{id} 应写 {about}，实际为 `{path}`",
+                "{id} is about {about}, not about `{path}`",
                 about = Text::listed(about)
             ),
             Self::Layout { id, path, line } => text!(
-                "{id} 针对的内容在 {path}:{line} 写在大括号或方括号中：改成每个键一行，再试一次",
-                "{id} is about what stands between braces or brackets at {path}:{line}: write it with a line for each key, and try again"
+                "{id} 涉及的内容在 {path}:{line} 写在大括号或方括号中：改成每个键一行，再试一次",
+                "{id} is about a value in braces or brackets at {path}:{line}: write one key per line and try again"
             ),
             Self::Missing { id, paths } => text!(
-                "{id} 需要写明 {paths}：用 `--set {first}=VALUE`",
-                "{id} asks for {paths}: say it with `--set {first}=VALUE`",
+                "{id} 缺少 {paths} 的值：用 `--set {first}=VALUE` 写明",
+                "{id} needs a value for {paths}: pass `--set {first}=VALUE`",
                 paths = Text::listed(paths),
                 first = paths.first().map_or("", String::as_str)
             ),

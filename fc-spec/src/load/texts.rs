@@ -33,14 +33,14 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
             .is_some_and(|text| text.starts_with(beginning))
     });
     if let Some((first, _)) = to_be_written.next() {
-        let message = text!("这段文本尚未写好", "this text is still to be written");
+        let message = text!("这段文本是占位文本", "this text is a placeholder");
         let fault = Diagnostic::warning(FaultCode::Placeholder, first.span(), message);
         let fault = to_be_written.fold(fault, |fault, (node, _)| {
-            fault.also(node.span(), text!("还有这段", "and this one"))
+            fault.also(node.span(), text!("这段也是", "this one as well"))
         });
         faults.push(fault.note(text!(
-            "文档会原样显示它",
-            "the documentation shows it as it is"
+            "写上真正的文本：文档会显示占位文本",
+            "replace it: the documentation shows placeholders"
         )));
         return;
     }

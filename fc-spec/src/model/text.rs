@@ -95,7 +95,16 @@ impl Text {
         Self::joined(words.map(|word| text!("{word}", "{word}")), "、", ", ")
     }
 
-    /// Whether nothing is said.
+    /// The text as it follows Chinese: a space separates a Chinese character from a letter or a backtick.
+    #[must_use]
+    pub fn spaced(mut self) -> Self {
+        if self.zh.starts_with(|first: char| first.is_ascii()) {
+            self.zh.insert(0, ' ');
+        }
+        self
+    }
+
+    /// Returns `true` if both texts are empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.zh.is_empty() && self.en.is_empty()
@@ -212,7 +221,7 @@ pub enum Subject {
     Type(String),
     /// A table, by id.
     Table(String),
-    /// A retained section number of the source.
+    /// A section that is missing from the source.
     Section(u16),
 }
 

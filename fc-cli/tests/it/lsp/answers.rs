@@ -23,7 +23,7 @@ fn keys_words_and_things_are_explained_in_both_languages() {
             "    eff|ect: motion",
             [
                 "`effect` (required)",
-                "What it does to the robot",
+                "Its effect on the robot",
                 "对机器人的影响",
             ]
             .as_slice(),

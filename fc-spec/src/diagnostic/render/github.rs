@@ -1,4 +1,4 @@
-//! Faults as GitHub workflow commands, which a job prints and the pull request shows.
+//! Errors as GitHub workflow commands. A job prints them, and the pull request shows them.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! Faults for machines: one JSON object per line.
+//! Errors for machines: one JSON object per line.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Faults for people, editors and machines.
+//! Output of errors for people, editors and machines.
 
 mod github;
 mod json;
@@ -12,7 +12,7 @@ use super::{Faults, Severity};
 use crate::model::Lang;
 use crate::syntax::Sources;
 
-/// A way to show faults.
+/// An output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// For people, with the places in the source and ANSI colours.
@@ -27,7 +27,8 @@ pub enum Format {
     Github,
 }
 
-/// All faults in one format and language, ending with a newline if there are any. SARIF also has a log of nothing.
+/// Renders all errors in one format and language, ending with a newline if there are any. SARIF has a log even without
+/// errors.
 ///
 /// # JSON
 ///
@@ -53,7 +54,7 @@ pub fn render(faults: &Faults, sources: &Sources, format: Format, lang: Lang) ->
 }
 
 impl Severity {
-    /// Its word in formats for machines.
+    /// Returns its word in formats for machines.
     const fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -61,7 +62,7 @@ impl Severity {
         }
     }
 
-    /// Its word for people.
+    /// Returns its word for people.
     fn word(self, lang: Lang) -> &'static str {
         match self {
             Self::Error => lang.pick("错误", "error"),

@@ -1,4 +1,4 @@
-//! Faults as a SARIF 2.1.0 log (OASIS, 2020), which code hosts and editors show beside the lines.
+//! Errors as a SARIF 2.1.0 log (OASIS, 2020), which code hosts and editors show next to the lines.
 
 use std::fmt::Write as _;
 

@@ -1,10 +1,9 @@
-//! The last line.
+//! The summary line at the end.
 
 use super::super::Faults;
 use crate::model::Lang;
 
-/// How many faults there are, in how many files, and how to read more about the first one. `None` if
-/// there are none.
+/// Counts the errors and files, and names the command that explains the first error. `None` without errors.
 #[must_use]
 pub fn summary(faults: &Faults, lang: Lang) -> Option<String> {
     let first = faults

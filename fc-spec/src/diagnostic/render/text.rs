@@ -1,4 +1,4 @@
-//! Faults for people.
+//! Errors for people.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::super::{Diagnostic, Faults, Fix, Label, Severity};
 use crate::model::Lang;
 use crate::syntax::{FileId, Sources, Span};
 
-/// Longest line that is shown; of longer ones only the place is named.
+/// Longest line to show. For longer lines, the output names only the place.
 const LINE_BYTES: usize = 2000;
 /// Places at most so many lines apart share a snippet.
 const NEAR: usize = 20;
@@ -50,7 +50,7 @@ fn report<'a>(fault: &'a Diagnostic, sources: &'a Sources, lang: Lang) -> Vec<Gr
         .collect()
 }
 
-/// Places of one file near one another.
+/// Nearby places of one file.
 struct Cluster<'a> {
     file: FileId,
     /// First and last line, counted from 1.
@@ -58,7 +58,7 @@ struct Cluster<'a> {
     labels: Vec<(AnnotationKind, &'a Label)>,
 }
 
-/// The places of a fault, those near one another together; the primary one comes first.
+/// Groups the nearby places of an error, with the primary place first.
 fn clusters<'a>(fault: &'a Diagnostic, sources: &Sources) -> Vec<Cluster<'a>> {
     let primary = std::iter::once((AnnotationKind::Primary, &fault.primary));
     let secondary = fault
@@ -105,7 +105,7 @@ impl<'a> Cluster<'a> {
         group.element(snippet)
     }
 
-    /// Only says where the places are.
+    /// Renders only the positions of the places.
     fn name(&self, mut group: Group<'a>, sources: &'a Sources, lang: Lang) -> Group<'a> {
         for (_, label) in &self.labels {
             let mut origin = Origin::path(sources.path(label.span));
@@ -125,7 +125,7 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// The level of what there is to know.
+/// The level of a note.
 fn note_level(lang: Lang) -> Level<'static> {
     match lang {
         Lang::Zh => Level::NOTE.with_name("说明"),
@@ -151,7 +151,7 @@ fn help<'a>(fix: &'a Fix, sources: &'a Sources, lang: Lang) -> Group<'a> {
     }
 }
 
-/// A text that may come from the spec, without what a terminal would take for commands.
+/// Removes terminal control characters from a text that may come from the spec.
 fn untrusted(text: &str) -> String {
     annotate_snippets::normalize_untrusted_str(text)
 }
@@ -179,8 +179,8 @@ impl<'a> Excerpt<'a> {
         })
     }
 
-    /// A span within the excerpt, cut off at the end of its first line: where a mapping goes wrong, its
-    /// first line says which one it is.
+    /// A span within the excerpt, cut off at the end of its first line: the first line
+    /// identifies a mapping.
     fn range(&self, span: Span) -> Range<usize> {
         let end = span.end.min(self.start + self.text.len());
         let range = self.exact(Span { end, ..span }).unwrap_or_default();

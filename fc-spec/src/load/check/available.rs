@@ -174,17 +174,23 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
         }
         for word in unused {
             let message = text!(
-                "没有任何内容限于{kind} `{name}`",
-                "nothing is limited to the {kind} `{name}`",
+                "没有 `available` 用到{kind} `{name}`",
+                "no `available` names the {kind} `{name}`",
                 name = word.item.name,
                 kind = kind
             );
             let span = word.place.name();
             let fault = Diagnostic::error(FaultCode::UnusedAvailability, span, message);
             faults.push(if is_audiences {
-                fault.note(text!("没有限制，就与其他受众没有区别；在只面向它的内容上写 `available: {{ for: … }}`，或将它删除", "nothing tells it from the other audiences without a limit; write `available: {{ for: … }}` on what only it has, or delete it"))
+                fault.note(text!(
+                    "在只面向它的内容上写 `available: {{ for: … }}`，或将它删除",
+                    "write `available: {{ for: … }}` on the things that only it has, or delete it"
+                ))
             } else {
-                fault.note(text!("在某个 `available` 中用到它，或将它删除", "name it in an `available`, or delete it"))
+                fault.note(text!(
+                    "在某个 `available` 中用到它，或将它删除",
+                    "name it in an `available`, or delete it"
+                ))
             });
         }
     }
@@ -201,24 +207,24 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
             .as_mapping()
             .is_some_and(|entries| entries.count() == 0)
         {
-            let message = text!("这里没有作任何限制", "this limits nothing");
+            let message = text!("`available` 为空", "`available` is empty");
             let fault = Diagnostic::error(FaultCode::LimitsNothing, node.span(), message);
             faults.push(fault.note(text!(
-                "删除它，或写明面向谁",
-                "delete it, or say for whom it is"
+                "删除它，或写 `for`、`hardware`、`from`、`until`",
+                "delete it, or write `for`, `hardware`, `from` or `until`"
             )));
         }
         let said: HashSet<&str> = available.audiences.iter().map(String::as_str).collect();
         if !said.is_empty() && !all.is_empty() && all.is_subset(&said) {
             let span = AVAILABLE.r#for.of(node).map_or(node.span(), Node::span);
             let message = text!(
-                "这里列出了所有受众，等于没有限制",
-                "this names every audience, which limits nothing"
+                "`for` 列出了所有受众，等于没有限制",
+                "`for` names every audience, which limits nothing"
             );
             let fault = Diagnostic::error(FaultCode::LimitsNothing, span, message);
             faults.push(fault.note(text!(
-                "删除它：不写就是面向所有受众",
-                "delete it: what says nothing is for all"
+                "删除它：不写 `available` 就是面向所有受众",
+                "delete it: without `available`, a thing is for all audiences"
             )));
         }
     }
@@ -231,8 +237,8 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         let message = text!(
-            "`{field}` 必填，却不是人人都有",
-            "`{field}` is required, but not everyone has it",
+            "`{field}` 写了 `available`，却是必填",
+            "`{field}` has `available`, but is required",
             field = field.wire
         );
         let span = part.place.key_at(COMMON.available);
@@ -282,8 +288,8 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
         let name = audience.item.name.as_str();
         let mut report = |span: Span, what: Text| {
             let message = text!(
-                "受众 `{name}` 得不到{what}",
-                "the audience `{name}` is left without {what}",
+                "受众 `{name}` 没有{what}",
+                "the audience `{name}` has no {what}",
                 what = what
             );
             faults.push(Diagnostic::error(FaultCode::NothingLeft, span, message));
@@ -300,7 +306,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
                 TypeShape::Enum(shape) if !shape.values.is_empty() => {
                     let mut values = shape.values.iter();
                     if !values.any(|value| has(value.available.as_ref(), name)) {
-                        report(span, text!("这个枚举的任何取值", "a value of this enum"));
+                        report(span, text!("这个枚举的取值", "value of this enum"));
                     }
                 }
                 TypeShape::OneOf(choice) => {
@@ -334,7 +340,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
                 report(
                     part.place.at(FIELD.only),
-                    text!("这个字段可取的任何值", "a value that this field takes"),
+                    text!("这个字段可取的值", "value that this field takes"),
                 );
             }
         }
@@ -348,8 +354,8 @@ pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
         for release in from.clone().chain(until.clone()).map(|entry| entry.value) {
             if release.as_str().is_some_and(|text| numbers(text).is_none()) {
                 let message = text!(
-                    "版本号由数字和点组成",
-                    "a release is written as numbers with dots between them"
+                    "版本号应由整数和点组成",
+                    "a release number consists of whole numbers joined by dots"
                 );
                 let span = release.span();
                 let fault = Diagnostic::error(FaultCode::BadRelease, span, message);
@@ -363,13 +369,11 @@ pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
                 && let (Some(earliest), Some(latest)) = (number(first.value), number(last.value))
                 && latest < earliest
             {
-                let message = text!(
-                    "最后一个有它的版本早于第一个",
-                    "the last release that has it comes before the first"
-                );
+                let message = text!("`until` 早于 `from`", "`until` is earlier than `from`");
                 let span = last.value.span();
                 let fault = Diagnostic::error(FaultCode::ReleasesOutOfOrder, span, message);
-                faults.push(fault.also(first.value.span(), text!("第一个", "the first")));
+                faults
+                    .push(fault.also(first.value.span(), text!("`from` 在这里", "`from` is here")));
             }
         }
     }

@@ -31,20 +31,17 @@ pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
             (Some(_), None) => continue,
             (Some(first), Some(second)) => {
                 let message = text!(
-                    "一个上报只能有一种上报时机，这里已经有一种",
-                    "a report is sent by one rule, and there is one already"
+                    "`cadence` 只能有一条规则，这是第二条",
+                    "`cadence` takes one rule, and this is the second"
                 );
                 Diagnostic::error(FaultCode::CadenceRules, second.key.span(), message)
-                    .also(first.key.span(), text!("在这里", "here"))
+                    .also(first.key.span(), text!("第一条", "the first one"))
             }
             (None, _) => {
-                let message = text!(
-                    "没有写明什么时候上报",
-                    "this does not say when the report is sent"
-                );
+                let message = text!("`cadence` 没有规则", "`cadence` has no rule");
                 Diagnostic::error(FaultCode::CadenceRules, node.span(), message).note(text!(
-                    "不清楚时不写 `cadence`",
-                    "leave `cadence` out where it is not known"
+                    "写 `on_change`、`step`、`every_ms` 或 `within_ms`；不清楚时不写 `cadence`",
+                    "write `on_change`, `step`, `every_ms` or `within_ms`, or leave `cadence` out if the rule is unknown"
                 ))
             }
         };
@@ -67,8 +64,8 @@ pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
         });
         if !set_off.contains(report.name.as_str()) {
             let message = text!(
-                "没有指令会引起 `{report}`，时限无从算起",
-                "no command sets `{report}` off, so the time runs from nothing",
+                "没有指令会引起 `{report}`，`within_ms` 没有起点",
+                "no command sets off `{report}`, so `within_ms` has no start",
                 report = report.name
             );
             faults.push(
@@ -112,8 +109,8 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
     let ty = field.ty.item();
     if !matches!(ty, Type::Int(_) | Type::Float(_)) {
         let message = text!(
-            "只有数值才有变化幅度，而 `{field}` 不是数值",
-            "a step is one of a number, which `{field}` is not",
+            "`step` 应为数值字段，而 `{field}` 不是数值",
+            "`step` needs a number, but `{field}` is not one",
             field = field.wire
         );
         let fault = Diagnostic::error(FaultCode::StepOnWrongType, path.span(), message);
@@ -130,8 +127,8 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
     };
     if !fits {
         let message = text!(
-            "`{field}` 的变化不可能是这个幅度",
-            "`{field}` does not move by such a step",
+            "步长不适用于 `{field}` 的类型",
+            "this step does not fit the type of `{field}`",
             field = field.wire
         );
         let fault = Diagnostic::error(FaultCode::StepOfNothing, node.span(), message);
@@ -160,8 +157,8 @@ fn find<'d, 'a>(
         }
         let Type::Named(named) = field.ty.item() else {
             let message = text!(
-                "`{key}` 不是对象，里面没有内容",
-                "`{key}` is no object, so nothing is in it"
+                "`{key}` 不是对象，里面没有字段",
+                "`{key}` is not an object and has no fields"
             );
             let fault = Diagnostic::error(FaultCode::UnknownField, path.span(), message);
             faults.push(fault.also(part.ty, text!("类型", "the type")));
@@ -216,11 +213,11 @@ fn unknown(draft: &Draft<'_>, holder: &TypeDraft<'_>, key: &str, path: Node<'_>)
     match nearest(key, keys.iter().copied()) {
         Some(near) => fault.note(text!("是否想写 `{near}`？", "did you mean `{near}`?")),
         None if keys.is_empty() => {
-            fault.note(text!("那里没有已知的字段", "no field is known there"))
+            fault.note(text!("那里没有已知的字段", "no fields are known there"))
         }
         None => fault.note(text!(
-            "那里的字段有：{keys}",
-            "the fields there are {keys}",
+            "可以写：{keys}",
+            "expected one of {keys}",
             keys = Text::listed(keys)
         )),
     }

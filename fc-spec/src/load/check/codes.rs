@@ -20,7 +20,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                     FaultCode::RangeInverted,
                     range.place.at(RANGE.to),
                     text!(
-                        "范围到 {last} 为止，早于起点",
+                        "号段的终点 {last} 早于起点",
                         "the range ends at {last}, before it starts",
                         last = item.last_spelling
                     ),
@@ -36,7 +36,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
             && item.first <= earlier.item.last
         {
             let message = text!(
-                "{first} 也在 {from} 到 {to} 的范围内",
+                "{first} 也在号段 {from} 到 {to} 之内",
                 "{first} is also in the range {from} to {to}",
                 first = item.first_spelling,
                 from = earlier.item.first_spelling,
@@ -50,7 +50,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                 )
                 .also(
                     earlier.place.at(RANGE.to),
-                    text!("另一个范围到这里为止", "the other range ends here"),
+                    text!("另一个号段到这里为止", "the other range ends here"),
                 ),
             );
         }
@@ -68,7 +68,7 @@ pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
         let span = retired.place.at(RETIRED.code);
         if let Some(earlier) = first.insert(retired.item.code, span) {
             let message = text!(
-                "{code} 停用了两次",
+                "{code} 退役了两次",
                 "{code} is retired twice",
                 code = retired.item.spelling
             );
@@ -108,8 +108,8 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             let kinds = [earlier.item.kind(), operation.item.kind()];
             let remedy = if kinds.contains(&Kind::Stream) && kinds.contains(&Kind::Command) {
                 text!(
-                    "只有数据流可以与指令共用功能码：即数据流的 `started_by:` 所写的那条指令",
-                    "only a stream may have the code of a command: that which `started_by:` of the stream names"
+                    "只有数据流可以共用功能码，即与 `started_by:` 所写的指令共用",
+                    "only a stream may share a code, with the command in its `started_by:`"
                 )
             } else {
                 text!(
@@ -129,10 +129,13 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             users.push(operation);
         }
         if let Some(retired) = retired.get(&code) {
-            let message = text!("{spelling} 不能再用", "{spelling} must not be used again");
+            let message = text!(
+                "{spelling} 已退役，不能再用",
+                "{spelling} is retired and must not be used again"
+            );
             faults.push(
                 Diagnostic::error(FaultCode::RetiredCode, span, message)
-                    .also(*retired, text!("在这里停用", "retired here")),
+                    .also(*retired, text!("在这里退役", "retired here")),
             );
         }
     }
@@ -169,13 +172,13 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                     FaultCode::CodeOutsideRanges,
                     span,
                     text!(
-                        "{spelling} 不在任何功能码范围内",
+                        "{spelling} 不在任何号段内",
                         "{spelling} is outside all code ranges"
                     ),
                 )
                 .note(text!(
-                    "每个功能码都属于一个有用途的范围；见 `codes.ranges`",
-                    "every code belongs to a range with a purpose; see `codes.ranges`"
+                    "使用 `codes.ranges` 中某个号段的功能码，或者声明新的号段",
+                    "use a code from a range in `codes.ranges`, or declare a range"
                 )),
             );
             continue;
@@ -189,14 +192,14 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 FaultCode::CodeInWrongRange,
                 span,
                 text!(
-                    "{spelling} 所在的范围{reason}",
+                    "{spelling} 所在的号段{reason}",
                     "{spelling} is in a range {reason}",
                     reason = reason
                 ),
             )
             .also(
                 range.place.at(RANGE.r#use),
-                text!("范围的用途", "the purpose of the range"),
+                text!("号段的用途", "the purpose of the range"),
             );
             let next = next_code(draft, operation.item.kind());
             // The code of an operation of the source is a fact; that of a new one is a choice.
@@ -246,8 +249,8 @@ fn objection(operation: &Operation, usage: RangeUse, is_new: bool) -> Option<Tex
             "for reports, and this is a command"
         )),
         (Kind::Report | Kind::Stream, RangeUse::PassThrough) => Some(text!(
-            "透传给上身，只能有指令",
-            "that is passed through to the upper body and only contains commands"
+            "透传给上装，只能有指令",
+            "that is passed through to the upper body and contains only commands"
         )),
         _ => None,
     }

@@ -20,7 +20,7 @@ pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
         if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
             let message = text!(
                 "`{field}` 同时有 `when` 和 `unless`",
-                "`{field}` has both a `when` and an `unless`",
+                "`{field}` has both `when` and `unless`",
                 field = field.wire
             );
             let span = unless.key.span();
@@ -38,8 +38,8 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
         let fault = |code, message: Text| Diagnostic::error(code, span, message);
         let Some((asked, part)) = question.asked else {
             let message = text!(
-                "`{own}` 旁边没有字段 `{key}`",
-                "there is no field `{key}` beside `{own}`",
+                "对象中没有字段 `{key}`，`{own}` 却以它为条件",
+                "`{own}` depends on `{key}`, which is not a field of the same object",
                 own = own.wire
             );
             let unknown = fault(FaultCode::UnknownSibling, message);
@@ -51,29 +51,29 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                     text!("是否想写 `{near}`？", "did you mean `{near}`?"),
                 ),
                 None => unknown.note(text!(
-                    "条件只看同一个对象中的字段；公共字段不算",
-                    "a condition asks fields of the same object; keys of the envelope are none"
+                    "写同一个对象中的字段；公共字段不能用",
+                    "name a field of the same object; keys of the envelope cannot be used"
                 )),
             });
             continue;
         };
         if asked.wire == own.wire {
             let message = text!(
-                "`{key}` 不能取决于自己的值",
-                "`{key}` cannot depend on its own value"
+                "`{key}` 不能以自己为条件",
+                "`{key}` cannot depend on itself"
             );
             faults.push(fault(FaultCode::OwnCondition, message));
         } else if asked.optional {
             let message = text!(
-                "`{key}` 是可选的，可能没有值可以判断",
-                "`{key}` is optional, so there may be no value to ask for"
+                "`{key}` 是可选的，不能作为条件",
+                "`{key}` is optional, so a condition cannot depend on it"
             );
             let fault = fault(FaultCode::ConditionOnOptional, message);
-            faults.push(fault.also(part.ty, text!("它可能不出现", "it may be absent")));
+            faults.push(fault.also(part.ty, text!("可选字段", "an optional field")));
         } else if !has_single_values(draft, &asked.ty) {
             let message = text!(
-                "`{key}` 不是枚举、整数、文本或布尔值",
-                "`{key}` is no enum, integer, text or bool"
+                "条件应为枚举、整数、文本或布尔值，而 `{key}` 不是",
+                "a condition needs an enum, integer, text or bool, but `{key}` is not one"
             );
             let fault = fault(FaultCode::ConditionOnWrongType, message);
             faults.push(fault.also(part.ty, text!("类型", "the type")));
@@ -102,16 +102,19 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                     part.ty,
                     text!(
                         "作为条件的字段的类型",
-                        "the type of the field that is asked"
+                        "the type of the field in the condition"
                     ),
                 )
             }));
             let wire = scalar::scalar(node);
             match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
                 Some(first) => {
-                    let message = text!("条件中已经有这个值", "this value is asked for already");
+                    let message = text!(
+                        "这个值在条件中出现两次",
+                        "this value occurs twice in the condition"
+                    );
                     let fault = Diagnostic::error(FaultCode::ConditionTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("在这里", "here")));
+                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
                 }
                 None => earlier.push(node),
             }

@@ -22,8 +22,8 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         let message = text!(
-            "`{refers}` 只用于整数、字符串或它们的列表，而 `{field}` 不是",
-            "`{refers}` is for an integer, a string or a list of them, which `{field}` is not",
+            "`{refers}` 应用于整数、字符串或它们的列表，而 `{field}` 不是",
+            "`{refers}` needs an integer, a string or a list of them, but `{field}` is not one",
             refers = FIELD.refers.name,
             field = field.wire
         );
@@ -45,8 +45,8 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         let (known, span) = *first.entry(entity).or_insert((ty, part.ty));
         if known != ty {
             let message = text!(
-                "`{entity}` 的 ID 在别处的类型是 `{known}`",
-                "ids of `{entity}` have the type `{known}` elsewhere"
+                "`{entity}` 的 ID 应为 `{known}`，与别处相同",
+                "expected `{known}`, the type of the other ids of `{entity}`"
             );
             let fault = Diagnostic::error(FaultCode::IdTypes, part.ty, message);
             faults.push(fault.also(span, text!("首次出现在这里", "first used here")));
@@ -105,8 +105,8 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             let span = entity.place.name();
             let fault = Diagnostic::error(FaultCode::UnusedEntity, span, message);
             faults.push(fault.note(text!(
-                "在装有它的 ID 的字段上写 `refers`，或将它删除",
-                "write `refers` on a field that holds its id, or delete it"
+                "在存放它的 ID 的字段上写 `refers`，或将它删除",
+                "write `refers` on a field that holds its IDs, or delete it"
             )));
         }
     }

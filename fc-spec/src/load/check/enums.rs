@@ -37,7 +37,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                             faults.push(
                                 Diagnostic::error(FaultCode::EnumValueType, span, message).also(
                                     ty.place.at(ENUM.r#enum),
-                                    text!("发送时的类型", "what travels"),
+                                    text!("发送时的类型", "the type that is sent"),
                                 ),
                             );
                         }
@@ -95,13 +95,13 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
                 .find(|(_, keys, _)| keys.is_subset(&required));
             if let Some((name, _, at)) = hiding {
                 let message = text!(
-                    "每个 `{variant}` 都会当成 `{name}`，因为后者的必填键它全都有",
-                    "every `{variant}` would be read as `{name}`, because it has all its required keys",
+                    "`{variant}` 有 `{name}` 的全部必填键，总会被当成 `{name}`",
+                    "`{variant}` has all required keys of `{name}`, so it is always read as `{name}`",
                     variant = variant.name
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::SameVariants, span, message)
-                        .also(*at, text!("先尝试这个", "tried first"))
+                        .also(*at, text!("先匹配这个", "matched first"))
                         .note(text!(
                             "把必填键更多的选项放在前面",
                             "put the variant with more required keys first"

@@ -56,8 +56,8 @@ pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
         && !request.any(|field| field.item.role == EnvelopeRole::Time)
     {
         let message = text!(
-            "请求不带时间，无从判断是否过期",
-            "requests carry no time, so that none could be found too old"
+            "请求不带时间，无法判断是否过期",
+            "requests carry no time, so their age is unknown"
         );
         let span = calls.place.at(CALLS.max_age_ms);
         faults.push(
@@ -87,9 +87,9 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                     EnvelopeRole::ResultText => text!("string", "string"),
                 };
                 let message = text!(
-                    "这种角色的公共字段的键，类型应为：{expected}",
-                    "an envelope key of this role is {expected}",
-                    expected = expected
+                    "这种角色的公共字段，类型应为{expected}",
+                    "an envelope key with this role must be {expected}",
+                    expected = expected.spaced()
                 );
                 faults.push(
                     Diagnostic::error(

@@ -19,16 +19,16 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
                     FaultCode::AbsentRequired,
                     part.place.at(FIELD.example),
                     text!(
-                        "`{field}` 必定出现，示例不能省略它",
-                        "`{field}` is never absent, so no example can leave it out",
+                        "`{field}` 是必填，示例不能省略它",
+                        "`{field}` is required, so an example cannot leave it out",
                         field = field.wire
                     ),
                 )
                 .also(
                     part.ty,
                     text!(
-                        "类型后面加 `?` 表示可选",
-                        "a `?` after the type makes it optional"
+                        "写上示例，或者在类型后面加 `?` 改为可选",
+                        "write an example, or add `?` to the type to make it optional"
                     ),
                 ),
             );
@@ -47,8 +47,8 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
                     ),
                 )
                 .note(text!(
-                    "数值和字符串必须有示例：文档、模拟机器人和测试向量都要用",
-                    "numbers and strings need one: documentation, mock and test vectors show it"
+                    "写上 `example`：文档、示例机器人和标准帧都要用",
+                    "write `example`: the documentation, the example robot and the golden frames use it"
                 )),
             );
         }

@@ -89,7 +89,7 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
     } else {
         text!(
             "`{name}` 通过 {others} 包含自身",
-            "`{name}` contains itself by way of {others}",
+            "`{name}` contains itself through {others}",
             others = Text::joined(others, "、", ", ")
         )
     };
@@ -99,8 +99,8 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
         fault
             .also(first.place.name(), text!("在这里声明", "declared here"))
             .note(text!(
-                "层数不定的值用 `json`",
-                "for values of arbitrary depth, use `json`"
+                "层数不定的值改用 `json`",
+                "use `json` for values of arbitrary depth"
             )),
     )
 }

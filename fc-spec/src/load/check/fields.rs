@@ -126,8 +126,8 @@ fn wrong_type(
     (span, ty): (Span, Span),
 ) -> Diagnostic {
     let message = text!(
-        "`{key}` 不适用于 `{field}`，只适用于：{expected}",
-        "`{key}` is for {expected}, which `{field}` is not",
+        "`{key}` 应用于{expected}，而 `{field}` 不是",
+        "`{key}` needs {expected}, but `{field}` is not one",
         field = field.wire,
         expected = expected
     );
@@ -228,9 +228,9 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             let wire = scalar::scalar(node);
             match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
                 Some(first) => {
-                    let message = text!("这个值已经列出", "this value is taken already");
+                    let message = text!("这个值出现两次", "this value occurs twice");
                     let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("在这里", "here")));
+                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
                 }
                 None => earlier.push(node),
             }
@@ -258,16 +258,16 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                     FaultCode::DefaultOnRequired,
                     span,
                     text!(
-                        "`{field}` 必定出现，不能有默认值",
-                        "`{field}` is never absent, so it cannot have a default",
+                        "`{field}` 是必填，不能有默认值",
+                        "`{field}` is required, so it cannot have a default",
                         field = field.wire
                     ),
                 )
                 .also(
                     part.ty,
                     text!(
-                        "类型后面加 `?` 表示可选",
-                        "a `?` after the type makes it optional"
+                        "去掉默认值，或者在类型后面加 `?` 改为可选",
+                        "remove the default, or add `?` to the type to make it optional"
                     ),
                 ),
             );
@@ -398,13 +398,13 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
                     FaultCode::OpenBodyFields,
                     part.place.name(),
                     text!(
-                        "缺失的消息体不能有字段：其内容一概不知",
-                        "an open body cannot have fields: nothing is known about it"
+                        "标为 `open` 的消息体不能有字段",
+                        "an `open` body cannot have fields"
                     ),
                 )
                 .note(text!(
-                    "如果这些字段在源文档中有依据，写 `inferred`",
-                    "use `inferred` if the source document gives evidence for these fields"
+                    "这些字段在源文档中有依据时，改写为 `inferred`",
+                    "write `inferred` if the source document gives evidence for these fields"
                 )),
             );
         }

@@ -55,7 +55,10 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
                 Diagnostic::error(
                     FaultCode::BadHeaderType,
                     span,
-                    text!("这不是包头字段的类型", "this is not a header field type"),
+                    text!(
+                        "包头字段的类型应为 u8、u16、u32、u64 或 `bytes(N)`",
+                        "expected a header field type: u8, u16, u32, u64 or `bytes(N)`"
+                    ),
                 )
                 .note(text!(
                     "类型有 u8、u16、u32、u64 和 `bytes(N)`",
@@ -96,9 +99,9 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
                 _ => text!("{spelling}", "{spelling}"),
             };
             let message = text!(
-                "这种角色的包头字段，类型应为：{wanted}",
+                "这种角色的包头字段，类型应为{wanted}",
                 "a header field with this role must be {wanted}",
-                wanted = wanted
+                wanted = wanted.spaced()
             );
             let fix = text!("改写为 `{spelling}`", "write `{spelling}`");
             faults.push(
@@ -149,8 +152,8 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
             FaultCode::HeadNotFirst,
             field.place.name(),
             text!(
-                "帧头不是第一个包头字段，无法靠它识别一帧",
-                "the head is not the first header field, so frames could not be recognised by it"
+                "帧头应为第一个包头字段",
+                "the head must be the first header field"
             ),
         ));
     }
@@ -224,8 +227,8 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         let bits = u32::try_from(item.ty.size().saturating_mul(8)).unwrap_or(u32::MAX);
         let message = if !item.is_sent_as_value() {
             text!(
-                "这个字段发送什么由它的角色决定",
-                "the role of this field decides what is sent"
+                "角色决定这个字段发送的值，不能写 `value`",
+                "the role of this field decides its value, so it takes no `value`"
             )
         } else if matches!(item.ty, HeaderType::Bytes(_)) {
             text!(
@@ -289,8 +292,8 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
             && head.len() != field.item.ty.size()
         {
             let message = text!(
-                "这个帧头有 {bytes} 字节，包头中的帧头字段却有 {size} 字节",
-                "this head has {bytes} bytes and the header's head field {size}",
+                "帧头应为 {size} 字节，实际为 {bytes} 字节",
+                "expected a head of {size} bytes, found {bytes}",
                 bytes = head.len(),
                 size = field.item.ty.size()
             );
@@ -359,8 +362,8 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         if kind.item.port != port {
             let word = port.name();
             let message = text!(
-                "{what}在端口 `{word}` 上发送",
-                "{what} are sent on the port `{word}`",
+                "{what}的端口应为 `{word}`",
+                "{what} need the port `{word}`",
                 what = what
             );
             let span = kind.place.at(FRAME_KIND.port);
@@ -400,8 +403,8 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     };
     if !has(HeaderRole::Encoding) && !used.is_empty() {
         let why = &text!(
-            "一帧无从说明用了其中哪一种",
-            "so that no frame could say which of these it has"
+            "无法区分一帧用了哪一种",
+            "so a frame cannot show which of these it has"
         );
         lacking(HeaderRole::Encoding, why);
     } else if !has(HeaderRole::PlainLength)
@@ -438,8 +441,8 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
                 FaultCode::LimitTooSmall,
                 limits.place.at(LIMITS.frame_bytes),
                 text!(
-                    "任何帧都放不下：包头本身就有 {header} 字节",
-                    "no frame can fit: the header alone has {header} bytes"
+                    "上限放不下任何帧：包头就有 {header} 字节",
+                    "the limit is too small for any frame: the header alone has {header} bytes"
                 ),
             )
             .also(

@@ -64,14 +64,14 @@ fn check_language(
 fn shared(node: Node<'_>, word: &str, earlier: &Seen<'_>, is_same_term: bool) -> Diagnostic {
     let message = if is_same_term {
         text!(
-            "`{term}` 已经有 `{word}` 这个词",
-            "`{term}` has the word `{word}` already",
+            "`{word}` 在术语 `{term}` 中出现两次",
+            "`{word}` occurs twice in the term `{term}`",
             term = earlier.term
         )
     } else {
         text!(
-            "`{word}` 已经用来表示 `{term}`",
-            "`{word}` already stands for `{term}`",
+            "`{word}` 已经属于术语 `{term}`",
+            "`{word}` already belongs to the term `{term}`",
             term = earlier.term
         )
     };

@@ -14,14 +14,14 @@ pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
         let node = answer.place.node;
         if ANSWER.ids.of(node).is_none() && ANSWER.about.of(node).is_none() {
             let message = text!(
-                "答复没有写明针对什么",
-                "the answer does not say what it answers"
+                "答复没有 `ids`，也没有 `about`",
+                "the answer has neither `ids` nor `about`"
             );
             faults.push(
                 Diagnostic::error(FaultCode::AnswerToNothing, answer.place.name(), message).note(
                     text!(
-                        "用 `ids:` 写明疑问，或用 `about:` 写明相关的内容",
-                        "name a conflict in `ids:`, or what it is about in `about:`"
+                        "在 `ids:` 中写明疑问，或在 `about:` 中写明涉及的内容",
+                        "name a conflict in `ids:`, or a fact in `about:`"
                     ),
                 ),
             );
@@ -38,21 +38,21 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
                     governed.path.span(),
                     text!("这里没有 `{key}`", "there is no `{key}` here"),
                     text!(
-                        "路径从答复所在的位置算起，由 YAML 中的键组成",
-                        "a path begins where the answer stands; its keys are those of the YAML"
+                        "从答复所在的位置开始，写出 YAML 中各级的键",
+                        "write the keys of the YAML, starting at the place of the answer"
                     ),
                 ),
                 Found::Several(node) => (
                     governed.path.span(),
                     text!(
-                        "`{path}` 不是单个的值，而是{found}",
-                        "`{path}` is {found}, not a single value",
+                        "`{path}` 应为单个的值，实际为{found}",
+                        "expected a single value at `{path}`, found {found}",
                         path = text(&governed),
                         found = node.describe()
                     ),
                     text!(
-                        "写明需要负责人确认的那个值",
-                        "name the value that the owner has to confirm"
+                        "写出需要负责人确认的那个值的路径",
+                        "name the value that the owner must confirm"
                     ),
                 ),
                 Found::Fact(..)
@@ -61,13 +61,13 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
                     (
                         governed.meanwhile.span(),
                         text!(
-                            "`{word}` 既不是 `inferred`，也不是 `open`",
-                            "`{word}` is neither `inferred` nor `open`",
+                            "应为 `inferred` 或 `open`，实际为 `{word}`",
+                            "expected `inferred` or `open`, found `{word}`",
                             word = governed.meanwhile()
                         ),
                         text!(
-                            "对功能码、影响和消息体，`about:` 写的是负责人答复之前的可靠程度",
-                            "of a code, an effect or a body `about:` says the confidence before the owner's answer"
+                            "写负责人答复之前的可靠程度",
+                            "write the confidence before the owner answered"
                         ),
                     )
                 }
@@ -90,14 +90,14 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
             match &answer.item.confirmed {
                 None if governed.is_as_before() == Some(false) => {
                     let message = text!(
-                        "`{path}` 是 {now}，但{name}写的是 {before}，而且尚未确认",
-                        "`{path}` is {now}, but {name} says {before} and is not confirmed",
+                        "`{path}` 应为 {before}，实际为 {now}；{name}尚未确认",
+                        "`{path}` is {now}, but {name} expects {before} and is not confirmed",
                         now = now(&governed),
                         name = name
                     );
                     faults.push(
                         Diagnostic::error(FaultCode::GovernedFact, governed.path.span(), message)
-                            .note(text!("`fcproto settle` 会写下负责人的答复和答复人；如果还没有人答复，就连同 `about:` 一起修改", "`fcproto settle` writes down the owner's answer and who gave it; if nobody has, change `about:` as well")),
+                            .note(text!("用 `fcproto settle` 写入负责人的答复；还没有答复时，把 `about:` 一起修改", "record the owner's answer with `fcproto settle`; without an answer, change `about:` as well")),
                     );
                 }
                 Some(_) if governed.is_untouched() => {
@@ -111,8 +111,8 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                     let at = at.map_or(governed.path.span(), |entry| entry.key.span());
                     faults.push(
                         Diagnostic::error(FaultCode::SettledButUntouched, at, message)
-                            .also(governed.path.span(), text!("针对的是这里", "it is about this"))
-                            .note(text!("写下负责人的答复；如果没有谈到它，就从 `about:` 中去掉", "write down what the owner said, or take it out of `about:` if they said nothing about it")),
+                            .also(governed.path.span(), text!("涉及的内容", "its fact"))
+                            .note(text!("写入负责人的答复；答复没有涉及它时，从 `about:` 中去掉", "write the owner's answer, or remove it from `about:` if the owner did not mention it")),
                     );
                 }
                 _ => {}

@@ -31,8 +31,8 @@ fn order(place: Place<'_>) -> Option<Diagnostic> {
             FaultCode::DatesOutOfOrder,
             withdrawn.span(),
             text!(
-                "停用的时间早于加入的时间",
-                "this is deprecated before it was added"
+                "弃用的时间早于加入的时间",
+                "the date of deprecation is earlier than the date of addition"
             ),
         )
         .also(since.span(), text!("在这里加入", "added here"))

@@ -42,8 +42,8 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(reserved(
                 span,
                 text!(
-                    "`{name}.json` 是一个不属于任何接口的测试向量文件",
-                    "`{name}.json` is a file of vectors without an operation"
+                    "接口不能名为 `{name}`：`{name}.json` 存放不属于任何接口的标准帧",
+                    "an operation cannot be named `{name}`: `{name}.json` holds golden frames without an operation"
                 ),
             ));
         }
@@ -119,7 +119,7 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         .also(earlier.place.name(), text!("第一个", "the first one"));
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
-            fault.note(text!("消息体和内嵌对象的类型，以接口和通向它们的键命名；内嵌对象可以写 `type_name`", "types of bodies and inline objects are named after the operation and the keys that lead to them; an inline object may have a `type_name`"))
+            fault.note(text!("消息体和内嵌对象的类型以接口和各级键名命名；给内嵌对象写 `type_name` 可以改名", "bodies and inline objects are named after the operation and their keys; write `type_name` to rename an inline object"))
         } else {
             fault
         });
@@ -208,8 +208,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
             match first.entry(key) {
                 Slot::Occupied(earlier) => {
                     let message = text!(
-                        "报文中的键名 `{key}` 在这里出现两次",
-                        "the wire key `{key}` occurs twice here"
+                        "报文中的键名 `{key}` 在对象中出现两次",
+                        "the wire key `{key}` occurs twice in the object"
                     );
                     faults.push(
                         Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
@@ -224,8 +224,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
             let declared = envelope.iter().find(|field| field.item.wire == key);
             if let Some(declared) = declared {
                 let message = text!(
-                    "`{key}` 是公共字段的键，每条消息都有",
-                    "`{key}` is a key of the envelope, which is part of every message"
+                    "`{key}` 是公共字段的键，不能写在消息体中",
+                    "`{key}` is a key of the envelope and cannot be in a body"
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)

@@ -22,8 +22,8 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             let named = field.ty.innermost();
             if named.is_none_or(|named| draft.type_named(named.name()).is_some()) {
                 let message = text!(
-                    "`{coordinates}` 只用于对象或对象的列表，而 `{field}` 不是",
-                    "`{coordinates}` is for an object or a list of them, which `{field}` is not",
+                    "`{coordinates}` 应用于对象或对象的列表，而 `{field}` 不是",
+                    "`{coordinates}` needs an object or a list of objects, but `{field}` is not one",
                     coordinates = FIELD.coordinates.name,
                     field = field.wire
                 );
@@ -40,14 +40,14 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
         {
             let span = part.place.at(FIELD.coordinates);
             let message = text!(
-                "`{ty}` 以 `{known}` 为准",
-                "`{ty}` is given in `{known}`",
+                "`{ty}` 已经写了坐标系 `{known}`",
+                "`{ty}` already has the coordinate system `{known}`",
                 ty = field.ty.item()
             );
             faults.push(
                 Diagnostic::error(FaultCode::CoordinatesTwice, span, message).note(text!(
-                    "坐标系不同时只写在字段上，不写在类型上",
-                    "say it on the fields alone where they differ, and not on the type"
+                    "类型用于几个坐标系时，`coordinates` 只写在字段上",
+                    "if a type is used in several systems, write `coordinates` on the fields only"
                 )),
             );
         }
@@ -59,7 +59,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     let mut push = |shape: &StructType, span, what: &str| {
         if !has_length(draft, shape, &mut HashSet::new()) {
             let message = text!(
-                "{what} 没有任何字段以长度为单位",
+                "{what} 没有带长度单位的字段",
                 "no field of {what} has a unit of length",
                 what = what
             );
@@ -156,8 +156,8 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
         }
         for (name, span) in set.declared.iter().filter(|(name, _)| !used.contains(name)) {
             let message = text!(
-                "没有内容用到{what} `{name}`",
-                "nothing names the {what} `{name}`",
+                "{what} `{name}` 没有用到",
+                "the {what} `{name}` is not used",
                 what = set.what
             );
             let note = text!(

@@ -27,12 +27,12 @@ pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
         let is_empty = ACCEPTED.r#in.of(node).is_none() && ACCEPTED.after.of(node).is_none();
         if is_empty && node.as_mapping().is_some() {
             let message = text!(
-                "既没有写状态，也没有写需要先执行的指令",
-                "this says neither a state nor a command that comes first"
+                "`accepted` 没有 `in`，也没有 `after`",
+                "`accepted` has neither `in` nor `after`"
             );
             faults.push(
                 Diagnostic::error(FaultCode::NoPrecondition, node.span(), message)
-                    .note(text!("不清楚时不写 `accepted`；任何状态都可以时写 `in: any`", "leave `accepted` out where nothing is known; `in: any` says that any state will do")),
+                    .note(text!("任何状态都可以时写 `in: any`；不清楚时不写 `accepted`", "write `in: any` if every state will do; leave `accepted` out if that is unknown")),
             );
         }
     }
@@ -52,8 +52,8 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
             let name = &ty.def.name;
             if !matches!(ty.def.shape, TypeShape::Enum(_)) {
                 let message = text!(
-                    "状态是枚举的取值，而 `{name}` 不是枚举",
-                    "states are values of an enum, which `{name}` is not"
+                    "`in` 应为枚举，而 `{name}` 不是枚举",
+                    "`in` needs an enum, but `{name}` is not one"
                 );
                 let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
                 faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
@@ -144,8 +144,8 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
             let fault = if let Some(other) = other {
                 let kind = called(other.item.kind());
                 let message = text!(
-                    "`{name}` 是{kind}；需要先执行的只能是指令",
-                    "`{name}` is a {kind}; what comes first is a command",
+                    "`after` 应为指令，而 `{name}` 是{kind}",
+                    "`after` needs a command, but `{name}` is a {kind}",
                     kind = kind
                 );
                 Diagnostic::error(FaultCode::NotACommand, node.span(), message)
@@ -209,8 +209,8 @@ fn circle<'n>(node: Node<'_>, commands: impl Iterator<Item = &'n (&'n str, usize
         several => {
             let names = several.iter().map(|name| format!("`{name}`"));
             text!(
-                "这些指令互为先后，形成循环：{names}",
-                "each of these commands comes before another of them: {names}",
+                "这些指令的 `after` 形成循环：{names}",
+                "these commands form a cycle of `after`: {names}",
                 names = Text::listed(names)
             )
         }

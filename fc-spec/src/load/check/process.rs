@@ -49,13 +49,13 @@ fn check_tie(
     };
     let Some((from_side, from)) = side(from) else {
         let message = text!(
-            "`{from}` 没有写明在指令的哪条消息中",
-            "`{from}` does not say which message of the command it is in"
+            "`{from}` 应以 `request.` 或 `response.` 开头",
+            "`{from}` must start with `request.` or `response.`"
         );
         let fault = Diagnostic::error(FaultCode::UnknownBodyKey, left.span(), message);
         faults.push(fault.note(text!(
-            "以 `request.` 或 `response.` 开头",
-            "begin with `request.` or `response.`"
+            "写明字段在指令的哪条消息中",
+            "name the message of the command that has the field"
         )));
         return;
     };
@@ -69,14 +69,14 @@ fn check_tie(
             return Some((found, span));
         }
         let message = text!(
-            "`{keys}` 的类型是 `{found}`，ID 不会是这种类型",
-            "`{keys}` has the type `{found}`, which no ID has",
+            "`{keys}` 应为整数或字符串，实际为 `{found}`",
+            "`{keys}` must be an integer or a string, found `{found}`",
             keys = keys.join(".")
         );
         let fault = Diagnostic::error(FaultCode::TieType, span, message);
         faults.push(fault.note(text!(
-            "上报与指令靠整数或字符串相对应",
-            "an integer or a string ties a report to a command"
+            "写一个在指令和上报中取值相同的 ID",
+            "name an ID that is the same in the command and the report"
         )));
         None
     });
@@ -84,11 +84,11 @@ fn check_tie(
         && from != to
     {
         let message = text!(
-            "`{from}` 和 `{to}` 不可能是同一个值",
-            "`{from}` and `{to}` are never the same value"
+            "类型应为 `{from}`，实际为 `{to}`",
+            "expected the type `{from}`, found `{to}`"
         );
         let fault = Diagnostic::error(FaultCode::TieType, there, message);
-        faults.push(fault.also(here, text!("这是 `{from}`", "this is `{from}`")));
+        faults.push(fault.also(here, text!("与这里的类型相同", "the type of this field")));
     }
 }
 
@@ -114,8 +114,8 @@ fn end<'d>(
     );
     let fault = Diagnostic::error(FaultCode::UnknownBodyKey, span, message);
     faults.push(fault.note(text!(
-        "路径只能经过对象，不能经过列表",
-        "the way goes through objects, not through lists"
+        "写一个只经过对象、不经过列表的路径",
+        "write a path through objects; it cannot go through lists"
     )));
     None
 }
@@ -153,14 +153,14 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
             });
             if !is_process {
                 let message = text!(
-                    "`{keys}` 没有过程的状态",
-                    "`{keys}` has no states of a process",
+                    "`{keys}` 不是过程的状态",
+                    "`{keys}` is not the state of a process",
                     keys = keys.join(".")
                 );
                 let fault = Diagnostic::error(FaultCode::NotAState, said.span(), message);
                 faults.push(fault.note(text!(
-                    "状态是一个枚举，带有 `order:`，或有取值写了 `final: true`",
-                    "a state is an enum with `order:`, or with a value that is `final: true`"
+                    "写一个枚举字段，枚举有 `order:`，或有取值写了 `final: true`",
+                    "name a field whose enum has `order:`, or a value with `final: true`"
                 )));
             }
         } else if said.is_none() && set_off.contains(report.item.name.as_str()) {
@@ -170,14 +170,14 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
             let names: Vec<String> = states.iter().map(|keys| keys.join(".")).collect();
             if let [first, second, ..] = names.as_slice() {
                 let message = text!(
-                    "`{first}` 和 `{second}` 都有状态：过程的状态是哪一个？",
-                    "`{first}` and `{second}` both have states: which is that of the process?"
+                    "`{first}` 和 `{second}` 都可能是过程的状态",
+                    "`{first}` and `{second}` could both be the state of the process"
                 );
                 let span = report.place.name();
                 let fault = Diagnostic::error(FaultCode::AmbiguousState, span, message);
                 faults.push(fault.note(text!(
-                    "例如写 `state_in: {first}`",
-                    "write `state_in: {first}`, say"
+                    "写明是哪一个，例如 `state_in: {first}`",
+                    "name one of them, such as `state_in: {first}`"
                 )));
             }
         }

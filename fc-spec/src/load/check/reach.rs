@@ -41,7 +41,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message).note(text!(
                     "在消息体中用到它，或将它删除",
-                    "use it in a body or delete it"
+                    "use it in a body, or delete it"
                 )),
             );
         }

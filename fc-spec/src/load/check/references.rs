@@ -184,8 +184,8 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
         }
         Some(ty) if !matches!(ty.def.shape, TypeShape::Struct(_)) => {
             let message = text!(
-                "{what}应当是结构，而 `{name}` 不是",
-                "{what} is a struct, which `{name}` is not",
+                "{what}应为结构，而 `{name}` 不是",
+                "{what} must be a struct, but `{name}` is not one",
                 what = what
             );
             faults.push(
@@ -255,8 +255,8 @@ pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
             let fault = if let Some(other) = other {
                 let kind = called(other.item.kind());
                 let message = text!(
-                    "`{name}` 是{kind}；指令引起的只能是上报",
-                    "`{name}` is a {kind}; what a command sets off is a report",
+                    "`sets_off` 应为上报，而 `{name}` 是{kind}",
+                    "`sets_off` needs a report, but `{name}` is a {kind}",
                     kind = kind
                 );
                 Diagnostic::error(FaultCode::NotAReport, span, message)
@@ -323,8 +323,8 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                         text!("没有结果码 {code}", "there is no result code {code}"),
                     )
                     .note(text!(
-                        "结果码有：{known}",
-                        "the result codes are {known}",
+                        "可以写：{known}",
+                        "expected one of {known}",
                         known = Text::listed(known)
                     )),
                 );

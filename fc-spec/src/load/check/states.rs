@@ -38,29 +38,29 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
                 FaultCode::OrderWithoutStates,
                 order.span(),
                 text!(
-                    "写明了顺序，却没有取值写明下一步",
-                    "an order is claimed, but no value says what follows it"
+                    "枚举有 `order`，但没有取值写 `then`",
+                    "the enum has `order`, but none of its values has `then`"
                 ),
             )
             .note(text!(
-                "用 `then:` 写明，例如 `then: [running]`",
-                "say it with `then:`, such as `then: [running]`"
+                "在取值上写 `then:`，例如 `then: [running]`",
+                "write `then:` on a value, such as `then: [running]`"
             )),
             (None, Some(entry)) => Diagnostic::error(
                 FaultCode::OrderWithoutStates,
                 entry.key.span(),
                 text!(
-                    "这是正常顺序，还是全部的切换？",
-                    "is this the normal order, or every change there is?"
+                    "取值写了 `then` 或 `start`，但枚举没有 `order`",
+                    "a value has `then` or `start`, but the enum has no `order`"
                 ),
             )
             .also(
                 ty.place.name(),
-                text!("这个枚举没有 `order`", "this enum has no `order`"),
+                text!("这个枚举", "this enum"),
             )
             .note(text!(
-                "在 `values:` 旁边写 `order: normal` 或 `order: complete`",
-                "write `order: normal` or `order: complete` beside `values:`"
+                "在枚举上写 `order: normal`（正常顺序）或 `order: complete`（全部切换）",
+                "write `order: normal` (the normal order) or `order: complete` (all changes) on the enum"
             )),
             _ => continue,
         };
@@ -91,10 +91,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
                         near,
                         text!("是否想写 `{near}`？", "did you mean `{near}`?"),
                     ),
-                    None => fault.note(text!(
-                        "写取值的 `name`",
-                        "name it as the `name` of the value says"
-                    )),
+                    None => fault.note(text!("写取值的 `name`", "write the `name` of a value")),
                 });
             }
         }
@@ -108,14 +105,14 @@ pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
             let then = ENUM_VALUE.then.entry(part.place.node);
             if let Some(then) = then.filter(|_| value.is_final) {
                 let message = text!(
-                    "`{value}` 是终态，后面不会再有状态",
-                    "`{value}` is final, so nothing follows it",
+                    "`{value}` 是终态，不能有 `then`",
+                    "`{value}` is final, so it cannot have `then`",
                     value = value.name
                 );
                 let fault = Diagnostic::error(FaultCode::FollowedFinal, then.key.span(), message);
                 faults.push(fault.also(
                     part.place.at(ENUM_VALUE.r#final),
-                    text!("写在这里", "said here"),
+                    text!("在这里写为终态", "marked as final here"),
                 ));
             }
         }
@@ -144,7 +141,7 @@ pub(super) fn check_reached(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::UnreachedState, part.place.name(), message)
-                        .note(text!("过程由它开始时写 `start: true`，否则在某个 `then:` 中写上它", "write `start: true` where the process begins with it, or name it in a `then:`")),
+                        .note(text!("过程由它开始时写 `start: true`，否则在某个取值的 `then:` 中写上它", "write `start: true` if the process begins with it, or name it in the `then:` of another value")),
                 );
             }
         }

@@ -20,17 +20,17 @@ pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
         };
         if let Some(body) = STREAM.body.entry(node) {
             let message = text!(
-                "有 `body` 就是 JSON，不能有别的媒体类型",
-                "what has a `body` is JSON and has no other media type"
+                "`content` 和 `body` 不能同时使用",
+                "`content` and `body` cannot be combined"
             );
             faults.push(
                 Diagnostic::error(FaultCode::StreamContent, span, message)
-                    .also(body.key.span(), text!("它的键在这里", "its keys are here")),
+                    .also(body.key.span(), text!("`body` 在这里", "`body` is here")),
             );
         } else if text.ends_with("/json") {
             let message = text!(
-                "内容是 JSON 时改用 `body` 列出它的键",
-                "what is JSON has a `body` with its keys instead"
+                "JSON 应写在 `body` 中，不写媒体类型",
+                "JSON needs `body` with its keys, not a media type"
             );
             faults.push(Diagnostic::error(FaultCode::StreamContent, span, message));
         }
@@ -59,8 +59,8 @@ fn no_command(draft: &Draft<'_>, by: Node<'_>) -> Option<Diagnostic> {
         Some(named) => {
             let kind = called(named.item.kind());
             let message = text!(
-                "`{name}` 是{kind}；数据流只能由指令开始或停止",
-                "`{name}` is a {kind}; what starts or stops a stream is a command",
+                "开始和停止数据流的应为指令，而 `{name}` 是{kind}",
+                "a stream needs a command to start or stop it, but `{name}` is a {kind}",
                 kind = kind
             );
             Diagnostic::error(FaultCode::NotACommand, span, message)

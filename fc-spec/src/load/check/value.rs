@@ -90,8 +90,8 @@ fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wrong = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
         let mut mismatch = wrong(text!(
-            "这个字段以字符串发送，值必须是字符串",
-            "the field is sent as a string, so its value must be one"
+            "应为字符串：这个字段以字符串发送",
+            "expected a string: the field is sent as one"
         ));
         mismatch.fix = node
             .as_plain()
@@ -135,8 +135,8 @@ fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
         return;
     }
     let message = text!(
-        "这个字段以数值发送，值必须是 1 或 0",
-        "the field is sent as a number, so its value must be 1 or 0"
+        "应为 1 或 0：这个字段以数值发送",
+        "expected 1 or 0: the field is sent as a number"
     );
     let mut mismatch = Mismatch::new(FaultCode::ExampleType, node, message);
     mismatch.fix = match held {
@@ -157,10 +157,10 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
     }
     let wrong = |expected: Text| {
         let message = text!(
-            "应为：{expected}；实际为：{found}",
+            "应为{expected}，实际为{found}",
             "expected {expected}, found {found}",
             found = describe(node),
-            expected = expected
+            expected = expected.spaced()
         );
         Mismatch::new(FaultCode::ExampleType, node, message)
     };
@@ -212,7 +212,7 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
             _ => text!("整数", "an integer"),
         };
         let mut mismatch = mismatch(text!(
-            "应为：{expected}；实际为：{found}",
+            "应为{expected}，实际为{found}",
             "expected {expected}, found {found}",
             found = describe(node),
             expected = expected
@@ -230,7 +230,7 @@ fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismat
             if *kind == FloatKind::F32 && scalar::float(number).abs() > f64::from(f32::MAX) {
                 found.push(mismatch(text!(
                     "超出 f32 的范围",
-                    "this does not fit into f32"
+                    "this value does not fit into f32"
                 )));
             }
             return;
@@ -350,8 +350,8 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
             FaultCode::ExampleType,
             node,
             text!(
-                "不具备任何一个选项的必填键",
-                "this does not have the required keys of any variant"
+                "没有任何一个选项的全部必填键",
+                "the object lacks the required keys of every variant"
             ),
         )),
     }
@@ -374,9 +374,10 @@ pub(super) fn check_constraints(
             let is_below = scalar::compare(number, min).is_lt();
             let message = || {
                 text!(
-                    "小于最小值 {min}",
-                    "this is below the minimum, {min}",
-                    min = show(min)
+                    "应不小于 {min}，实际为 {found}",
+                    "expected at least {min}, found {found}",
+                    min = show(min),
+                    found = show(number)
                 )
             };
             is_below.then(|| (FaultCode::ExampleRange, message()))
@@ -385,9 +386,10 @@ pub(super) fn check_constraints(
             let is_above = scalar::compare(number, max).is_gt();
             let message = || {
                 text!(
-                    "大于最大值 {max}",
-                    "this is above the maximum, {max}",
-                    max = show(max)
+                    "应不大于 {max}，实际为 {found}",
+                    "expected at most {max}, found {found}",
+                    max = show(max),
+                    found = show(number)
                 )
             };
             is_above.then(|| (FaultCode::ExampleRange, message()))
@@ -423,7 +425,7 @@ pub(super) fn check_constraints(
             let fits = regex.map_or(true, |regex| regex.is_match(text));
             let message = || {
                 text!(
-                    "整段文本必须符合正则表达式 `{pattern}`",
+                    "整段文本应与正则表达式 `{pattern}` 匹配",
                     "the whole text must match the pattern `{pattern}`"
                 )
             };
@@ -436,8 +438,8 @@ pub(super) fn check_constraints(
             let taken = taken.iter().map(|taken| Value::from(taken).to_string());
             let message = || {
                 text!(
-                    "这个字段只能取：{taken}",
-                    "the field takes only {taken}",
+                    "应为以下取值之一：{taken}",
+                    "expected one of {taken}",
                     taken = Text::listed(taken)
                 )
             };

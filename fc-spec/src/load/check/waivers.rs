@@ -12,13 +12,13 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     for Placed { item, place } in &draft.waivers {
         if !is_id(&item.id) {
             let message = text!(
-                "`{id}` 不是变更的编号",
-                "`{id}` does not name a finding",
+                "`{id}` 不是豁免编号",
+                "`{id}` is not the number of a finding",
                 id = item.id
             );
             faults.push(
                 Diagnostic::error(FaultCode::BadWaiver, place.name(), message).note(
-                    text!("写 `fcproto diff` 给出的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the number of the rule and the fingerprint as `fcproto diff` prints them, such as `FC0725-1a2b3c4d5e6f`"),
+                    text!("写 `fcproto diff` 或 `fcproto lint` 打印的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the rule and fingerprint that `fcproto diff` or `fcproto lint` prints, such as `FC0725-1a2b3c4d5e6f`"),
                 ),
             );
         }

@@ -1,4 +1,4 @@
-//! What is said where something of another kind stands.
+//! Messages about values of the wrong kind.
 
 use super::keys::article;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -8,7 +8,7 @@ use crate::syntax::{Node, Span};
 use crate::text;
 use crate::vocabulary::Meaning;
 
-/// Reports a node that is not what is expected in its place.
+/// Reports a node of an unexpected kind.
 pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut Faults) {
     if let Some(slip) = node.slip() {
         faults.push(slip);
@@ -27,27 +27,24 @@ pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut
         FaultCode::WrongKind,
         span,
         text!(
-            "应为：{expected}；实际为：{found}",
+            "应为{expected}，实际为{found}",
             "expected {expected}, found {found}",
             found = node.describe(),
-            expected = expected
+            expected = expected.clone().spaced()
         ),
     );
     faults.push(
         if node.is_null() && expected.en.starts_with("a mapping from") {
-            fault.note(text!(
-                "没有内容时写 `{{}}`",
-                "write `{{}}` if there are none"
-            ))
+            fault.note(text!("没有内容时写 `{{}}`", "write `{{}}` if it is empty"))
         } else if node.is_null() && expected.en == "a list" {
-            fault.note(text!("没有内容时写 `[]`", "write `[]` if there are none"))
+            fault.note(text!("没有内容时写 `[]`", "write `[]` if it is empty"))
         } else {
             fault
         },
     );
 }
 
-/// What a value has to be.
+/// Describes the values of a kind.
 pub(super) fn describe(kind: &Kind) -> Text {
     match kind {
         Kind::Text | Kind::WireKey => text!("文本", "a text"),
@@ -70,16 +67,23 @@ pub(super) fn describe(kind: &Kind) -> Text {
         Kind::Word(words) => list_words(words),
         Kind::List { .. } => text!("列表", "a list"),
         Kind::Map(table) => text!(
-            "映射，包含“{table}”的键",
+            "“{table}”映射",
             "a mapping with the keys of {table}",
             table = article(table)
         ),
         Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => text!("映射", "a mapping"),
-        Kind::Either(kinds) => Text::joined(kinds.iter().map(describe), "，或者：", " or "),
+        Kind::Either(kinds) => describe_either(kinds),
     }
 }
 
-/// What the keys of a mapping have to be.
+/// Describes the values of several kinds.
+pub(super) fn describe_either(kinds: &[Kind]) -> Text {
+    let kinds = kinds.iter().map(describe).enumerate();
+    let each = kinds.map(|(index, it)| if index > 0 { it.spaced() } else { it });
+    Text::joined(each, "，或", " or ")
+}
+
+/// Describes the keys of a mapping.
 pub(super) fn describe_key(key: &Kind) -> Text {
     match key {
         Kind::Name => text!("snake_case 名称", "snake_case names"),
@@ -91,7 +95,7 @@ pub(super) fn describe_key(key: &Kind) -> Text {
     }
 }
 
-/// Words as a sentence lists them.
+/// Lists words in a sentence.
 pub(super) fn list_words(words: &[Meaning]) -> Text {
     let quoted = words.iter().map(|(word, ..)| text!("`{word}`", "`{word}`"));
     Text::joined(quoted, "、", ", ")

@@ -11,10 +11,9 @@ pub(super) use keys::unknown_keys;
 use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::model::Text;
 use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
 use crate::text;
-use expected::{describe, describe_key, wrong_kind};
+use expected::{describe_either, describe_key, wrong_kind};
 use keys::{article, missing_keys};
 use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
@@ -39,7 +38,7 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
             &text!(
-                "映射，包含“{table}”的键",
+                "“{table}”映射",
                 "a mapping with the keys of {table}",
                 table = article(table)
             ),
@@ -103,9 +102,9 @@ fn check_entries(
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
             &text!(
-                "映射，键为：{keys}",
+                "映射（键为{keys}）",
                 "a mapping from {keys}",
-                keys = describe_key(key)
+                keys = describe_key(key).spaced()
             ),
             node,
             at,
@@ -157,7 +156,7 @@ fn check_entries(
             FaultCode::ListLength,
             node.span(),
             text!(
-                "至少应有 {min} 项，实际有 {count} 项",
+                "应至少 {min} 项，实际为 {count} 项",
                 "expected at least {min} {entries}, found {count}",
                 entries = if min == 1 { "entry" } else { "entries" }
             ),
@@ -210,13 +209,19 @@ fn check_list(
     while let Some(item) = rest.next() {
         count += 1;
         if let Some(second) = rest.next_if(|second| is_split(of, item, *second)) {
-            let message = text!("一项的键写成了两项", "the keys of one item are in two");
+            let message = text!(
+                "一项的键分成了两项",
+                "the keys of one item are in two items"
+            );
             let fault = Diagnostic::error(FaultCode::SplitItem, second.span(), message);
             faults.push(
                 fault
-                    .label(text!("应与上面的键同属一项", "these go with those above"))
-                    .also(item.span(), text!("缺少这些键", "which lack them"))
-                    .note(text!("删除第二个 `-`", "take out the second `-`")),
+                    .label(text!(
+                        "这些键属于上面一项",
+                        "these keys belong to the item above"
+                    ))
+                    .also(item.span(), text!("这一项缺少它们", "this item lacks them"))
+                    .note(text!("删除第二个 `-`", "delete the second `-`")),
             );
             faults.hide(item.span().to(second.span()));
             continue;
@@ -231,15 +236,15 @@ fn check_list(
     }
     if count < min || count > max {
         let expected = if min == max {
-            text!("应有 {min} 项", "{min} items")
+            text!("应为 {min} 项", "{min} items")
         } else {
-            text!("至少应有 {min} 项", "at least {min}")
+            text!("应至少 {min} 项", "at least {min}")
         };
         faults.push(Diagnostic::error(
             FaultCode::ListLength,
             node.span(),
             text!(
-                "{expected}，实际有 {count} 项",
+                "{expected}，实际为 {count} 项",
                 "expected {expected}, found {count}",
                 expected = expected
             ),
@@ -278,7 +283,7 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
     if let Some(kind) = chosen {
         check_kind(kind, node, at, faults);
     } else {
-        let expected = Text::joined(kinds.iter().map(describe), "，或者：", " or ");
+        let expected = describe_either(kinds);
         wrong_kind(&expected, node, at, faults);
     }
 }

@@ -165,8 +165,8 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     node.as_plain()?;
     let character = text.chars().find(|c| half_width(*c).is_some())?;
     let message = text!(
-        "只能是 ASCII 的值里有{character}",
-        "{character} in a value that must be ASCII",
+        "应为 ASCII 字符，实际为{character}",
+        "expected ASCII, found {character}",
         character = width::describe(character)
     );
     let fault = Diagnostic::error(FaultCode::FullWidth, node.span(), message);
@@ -212,8 +212,8 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
                 ),
             )
             .note(text!(
-                "编号由 C 和三位数字组成，例如 C040",
-                "ids are written C and three digits, such as C040"
+                "写 C 和至少三位数字，例如 C040",
+                "write C and at least three digits, such as C040"
             ))
         }),
         Kind::MediaType => (!scalar::is_media_type(text)).then(|| {
@@ -223,7 +223,7 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
             )
             .note(text!(
                 "写成小写的 `type/subtype`，例如 `image/png`",
-                "it is written `type/subtype` in lower case, such as `image/png`"
+                "write `type/subtype` in lower case, such as `image/png`"
             ))
         }),
         Kind::Unit => (!UNITS.iter().any(|(unit, ..)| *unit == text)).then(|| bad_unit(text, span)),

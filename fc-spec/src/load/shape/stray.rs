@@ -53,21 +53,21 @@ pub(super) fn section_of(table: &Table) -> &'static str {
 pub(super) fn misplaced_entry((entry, table, more): (Entry<'_>, &Table, usize)) -> Diagnostic {
     let name = entry.name();
     let message = text!(
-        "`{name}` 写得像“{kind}”，而这里不能写“{kind}”",
-        "`{name}` is written like {kind}, which has no place here",
+        "`{name}` 的键是“{kind}”的键，而这里不能写“{kind}”",
+        "`{name}` has the keys of {kind}, which is not allowed here",
         kind = article(table)
     );
     let section = section_of(table);
     let fault = Diagnostic::error(FaultCode::MisplacedEntry, entry.key.span(), message);
     let fault = fault.note(text!(
-        "它应写在 `{section}:` 之下；上面是否少了这一行？",
-        "it belongs under `{section}:`; is that line missing above it?"
+        "写在 `{section}:` 之下；检查上面是否缺少这一行",
+        "write it under `{section}:`; check whether that line is missing above it"
     ));
     match more {
         0 => fault,
         _ => fault.note(text!(
             "下面另有 {more} 处也是如此",
-            "so are {more} more below it"
+            "{more} more below it are the same"
         )),
     }
 }
