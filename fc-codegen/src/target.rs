@@ -390,6 +390,22 @@ impl Targets {
         settings.is_none_or(|settings| settings.languages.contains(&language))
     }
 
+    /// The folders of the docs that the project has, one for each language.
+    #[must_use]
+    pub fn docs(&self) -> Vec<(Language, String)> {
+        let Some(out) = self.place(Product::Markdown) else {
+            return Vec::new();
+        };
+        let spoken = Language::ALL.into_iter().filter(|it| self.speaks(*it));
+        let folder = |language| match language {
+            Language::Zh => out.to_owned(),
+            Language::En => format!("{out}/en"),
+        };
+        spoken
+            .map(|language| (language, folder(language)))
+            .collect()
+    }
+
     /// What the Rust package calls itself.
     #[must_use]
     pub fn krate(&self) -> &str {

@@ -299,35 +299,34 @@ pub trait Report: Message {
     const NAME: &'static str;
     /// How its acknowledgement is awaited; `None` for the protocol's default.
     const ACK: Option<AckPolicy>;
-    /// What says how far a process has come; [`Stateless`] where the protocol says nothing of that.
+    /// The state of the process in this report, or [`Stateless`] if it has none.
     type State: State;
 
-    /// How far the process has come; `None` if the report does not say.
+    /// Returns the state of the process, or `None` if the report does not contain it.
     fn state(&self) -> Option<Self::State> {
         None
     }
 
-    /// Whether it says that something failed.
+    /// Returns `true` if the report means a failure.
     fn is_failure(&self) -> bool {
         self.state().is_some_and(|state| state.says_failed())
     }
 }
 
-/// A value that says how far a process has come. `#[derive(OpenEnum)]` writes it where the protocol says
-/// something of the values as states.
+/// A state of a process. `#[derive(OpenEnum)]` implements it for enums whose values are states.
 pub trait State: Send + Sync + 'static {
-    /// Whether nothing follows it.
+    /// Returns `true` for a final state.
     fn is_end(&self) -> bool;
 
-    /// Whether it says that something failed.
+    /// Returns `true` for a failure.
     fn says_failed(&self) -> bool;
 
-    /// Whether it may come after `previous`: false only if the protocol says what does, and it is not that. The
-    /// same state again and a failure are in order.
+    /// Returns `true` if the spec allows this state after `previous`. Without a rule, every state is allowed. The same
+    /// state and a failure are always allowed.
     fn is_in_order(&self, previous: &Self) -> bool;
 }
 
-/// The state of a report that has none. There is no value of it.
+/// The state type of a report without a state. It has no values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stateless {}
 

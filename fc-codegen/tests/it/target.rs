@@ -51,7 +51,7 @@ fn docs_are_made_in_the_languages_asked_for() {
     );
 }
 
-/// A comment that leads to a page leads to where the pages are, or says nothing of them.
+/// Comments link to the pages in the languages of the docs, and to none without docs.
 #[test]
 fn comments_name_the_docs_where_they_are() {
     let comments = |yaml: &str| {
@@ -65,8 +65,18 @@ fn comments_name_the_docs_where_they_are() {
     let without = comments("targets: { rust: }");
     assert!(without.contains("Spec: `commands.get_thing`"));
     assert!(!without.contains("Docs: "));
-    let elsewhere = comments("targets: { rust: , markdown: { out: handbook } }");
-    assert!(elsewhere.contains("- Docs: `handbook/reference/commands/get_thing.md`"));
+    let zh = "- 文档：`handbook/reference/commands/get_thing.md`";
+    let en = "- Docs: `handbook/en/reference/commands/get_thing.md`";
+    for (languages, links) in [
+        ("", [true, true]),
+        (", languages: [zh]", [true, false]),
+        (", languages: [en]", [false, true]),
+    ] {
+        let docs = format!("markdown: {{ out: handbook{languages} }}");
+        let elsewhere = comments(&format!("targets: {{ rust: , {docs} }}"));
+        let found = [zh, en].map(|link| elsewhere.contains(link));
+        assert_eq!(found, links, "{docs}");
+    }
 }
 
 /// Those of each entity have a type of their own where it is asked for, and only there; pages that are made alone show
@@ -89,7 +99,7 @@ fn ids_have_types_where_they_are_asked_for() {
     assert!(rust.contains("fc-generated/src/ids.rs\n"));
     assert!(rust.contains("pub thing_id: ThingId,"));
     assert!(
-        rust.contains("- Docs: `docs-site/reference/"),
+        rust.contains("- Docs: `docs-site/en/reference/"),
         "a package that is made alone points to the docs as well"
     );
     let pages = all(with, &["markdown"]);

@@ -40,7 +40,7 @@ pub enum Order {
 pub struct State {
     /// Variants that follow it.
     pub then: Vec<Ident>,
-    /// Whether nothing follows it.
+    /// Set if it is a final state.
     pub is_final: bool,
     /// Whether something failed.
     pub is_error: bool,

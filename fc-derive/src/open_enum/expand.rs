@@ -35,7 +35,7 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
     };
     let is_final = marked(|state| state.is_final).map(|test| {
         quote! {
-            /// Whether nothing follows this value, as the protocol says.
+            /// Returns `true` if the spec marks this value as final.
             #[must_use]
             pub const fn is_final(&self) -> bool {
                 #test
@@ -44,7 +44,7 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
     });
     let is_error = marked(|state| state.is_error).map(|test| {
         quote! {
-            /// Whether this value says that something failed, as the protocol says.
+            /// Returns `true` if the spec marks this value as a failure.
             #[must_use]
             pub const fn is_error(&self) -> bool {
                 #test
@@ -90,7 +90,7 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
     }
 }
 
-/// Whether nothing that is said speaks against `self` after `previous`.
+/// The expression that checks whether the spec allows `self` after `previous`.
 fn in_order(choice: &OpenEnum<'_>, failed: &TokenStream) -> TokenStream {
     let of_order = match choice.order {
         None => {
@@ -101,7 +101,7 @@ fn in_order(choice: &OpenEnum<'_>, failed: &TokenStream) -> TokenStream {
         }
         Some(Order::Complete) => quote!(Self::may_follow(self, previous)),
         Some(Order::Normal) => {
-            // Of these, nothing is said that could be broken.
+            // The spec lists no successors of these values, so any successor is allowed.
             let states = choice.values.iter().zip(&choice.states);
             let silent = states.filter(|(_, state)| state.then.is_empty() && !state.is_final);
             let silent = silent.map(|((name, _), _)| quote!(Self::#name));
@@ -114,11 +114,11 @@ fn in_order(choice: &OpenEnum<'_>, failed: &TokenStream) -> TokenStream {
             quote!(#free #other Self::normally_follows(self, previous))
         }
     };
-    // By what travels, for the enum need not be comparable.
+    // Compares the values that are sent: the enum need not be comparable.
     quote!(self.wire() == previous.wire() || #failed || #of_order)
 }
 
-/// Whether one value follows another, in the sense in which it is said.
+/// The method that checks the order of two values.
 fn follows(choice: &OpenEnum<'_>, order: Order) -> TokenStream {
     let states = choice.values.iter().zip(&choice.states);
     let arms = states.filter(|(_, state)| !state.then.is_empty());
@@ -126,7 +126,7 @@ fn follows(choice: &OpenEnum<'_>, order: Order) -> TokenStream {
         .map(|((name, _), State { then, .. })| quote!((Self::#name, #(Self::#then)|*) => true,));
     match order {
         Order::Normal => quote! {
-            /// Whether this value follows `previous` in the protocol's normal order. Other changes occur as well.
+            /// Returns `true` if this value follows `previous` in the normal order. Other changes may occur as well.
             #[must_use]
             pub const fn normally_follows(&self, previous: &Self) -> bool {
                 match (previous, self) {
@@ -141,8 +141,8 @@ fn follows(choice: &OpenEnum<'_>, order: Order) -> TokenStream {
                 .first()
                 .map(|name| quote!((Self::#name(_), _) | (_, Self::#name(_)) => true,));
             quote! {
-                /// Whether this value may come directly after `previous`, by the list of all changes that the
-                /// protocol has. Nothing is known of a value that it does not have, which may follow and be followed.
+                /// Returns `true` if the spec lists the change from `previous` to this value. No other change occurs.
+                /// A value that is not in the spec may follow and precede any value.
                 #[must_use]
                 pub const fn may_follow(&self, previous: &Self) -> bool {
                     match (previous, self) {

@@ -12,20 +12,20 @@ use std::marker::PhantomData;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 
-/// What comes to who follows a process.
+/// An event of a process that is being followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Followed<R> {
     /// The process goes on.
     Going(R),
-    /// The process has ended: nothing follows this state. The last of its stream.
+    /// The process has ended with a final state. The last event of the stream.
     Ended(R),
-    /// The report says that something failed. The last of its stream.
+    /// The report means a failure. The last event of the stream.
     Failed(R),
-    /// So many reports did not fit into the queue here, while another receiver took them.
+    /// Number of reports that did not fit into this queue while another receiver took them.
     Missed(u64),
-    /// The connection was lost. The stream goes on when there is another one, with what the robot reports then.
+    /// The connection was lost. The stream continues with the reports after the next connection.
     Interrupted(Loss),
-    /// There is a connection again. What the robot has reported meanwhile may never come: query its state.
+    /// There is a connection again. Reports in between may be lost, so query the state of the robot.
     Resumed,
 }
 

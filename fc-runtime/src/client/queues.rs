@@ -43,7 +43,7 @@ struct Before {
     connected: bool,
 }
 
-/// What comes to who follows a process.
+/// An event of a process that is being followed.
 #[derive(Debug)]
 pub(super) enum Event {
     Missed(u64),

@@ -59,7 +59,7 @@ class Package(unittest.TestCase):
                 self.assertTrue((ROOT / operation.spec).is_file())
                 self.assertTrue((ROOT / "docs-site" / operation.docs).is_file())
         said = inspect.getdoc(fc.Client.start_recharge) or ""
-        self.assertIn("- Docs: `docs-site/reference/commands/start_recharge.md`", said)
+        self.assertIn("- Docs: `docs-site/en/reference/commands/start_recharge.md`", said)
         self.assertIn("Moves the robot.", said)
 
     def test_each_command_has_its_methods(self) -> None:
@@ -81,7 +81,8 @@ class Package(unittest.TestCase):
                     said = inspect.getdoc(getattr(fc.sync.Client, method)) or ""
                     title, *_ = (inspect.getdoc(getattr(fc.Client, name)) or "").splitlines()
                     self.assertTrue(said.startswith(title), said)
-                    self.assertIn(f"- Docs: `docs-site/{command.docs}`", said)
+                    self.assertIn(f"- Docs: `docs-site/en/{command.docs}`", said)
+                    self.assertIn(f"- 文档：`docs-site/{command.docs}`", said)
         said = inspect.getdoc(fc.sync.Client.start_recharge) or ""
         self.assertIn("Moves the robot.", said)
         self.assertNotIn(".follow()", said)

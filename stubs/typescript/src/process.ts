@@ -1,29 +1,32 @@
-// What the spec says of values as states of a process, and of fields that are there only under a condition.
+// States of a process, and conditions of fields.
 
 import { isKnown } from './enums.ts'
 import { isList, named, planOf } from './plan.ts'
 import type { AnyEnum, AnyStruct, ConditionSchema, EnumValueOf, Struct, TypeSchema } from './schema.ts'
 
-/** Whether nothing follows this state. */
+/** Returns `true` for a final state. */
 export function isFinal(schema: AnyEnum, state: EnumValueOf): boolean {
   return (schema.process?.final as readonly unknown[] | undefined)?.includes(state) ?? false
 }
 
-/** Whether this state says that something failed. */
+/** Returns `true` for a failure. */
 export function isError(schema: AnyEnum, state: EnumValueOf): boolean {
   return (schema.process?.error as readonly unknown[] | undefined)?.includes(state) ?? false
 }
 
 /**
- * Whether a state follows another: by the list of all changes that the spec has, where it says that it has all; else by what
- * normally follows. Nothing is known of a value that the spec does not have, which may follow and be followed in the first case.
+ * Returns `true` if a state may follow another. If the spec lists all changes, the change must be in the list, or one of the
+ * values unknown. Otherwise the change must be in the normal order.
  */
 export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
   const isOpen = schema.process?.order === 'complete' && !(isKnown(schema, previous) && isKnown(schema, state))
   return isOpen || following(schema, previous).includes(state)
 }
 
-/** Whether a state comes in order after the one before: the same again and a failure do, and all of which nothing is said. */
+/**
+ * Returns `true` if the spec allows a state after the previous one. Without a rule, every state is allowed. The same state and
+ * a failure are always allowed.
+ */
 export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
   const { process } = schema
   if (process?.order === undefined || previous === state || isError(schema, state)) return true

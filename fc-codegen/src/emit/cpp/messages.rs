@@ -157,7 +157,7 @@ fn structure(
             let name = &field.name;
             out.blank();
             out.line(format!(
-                "/// `{name}`，没有时为规范的默认值。`{name}`, or what its absence means."
+                "/// `{name}`，没有时为规范的默认值。`{name}`, or its default."
             ));
             // No name has two underscores in a row.
             let stem = name.trim_end_matches('_');
@@ -297,7 +297,7 @@ fn enumeration(
         }
     };
     out.blank();
-    out.line("/// 是否为规范中的值。Whether it is one of the values above.");
+    out.line("/// 是否为规范中的值。Returns `true` for a value of the spec.");
     out.line(format!(
         "[[nodiscard]] bool is_known({by_value} value) noexcept;"
     ));
@@ -324,9 +324,9 @@ fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
             "explicit {name}(std::string wire) : wire_(std::move(wire)) {{}}"
         ));
         out.blank();
-        out.line("/// 规范中的值；其他文字没有。The value of the spec; none of any other text.");
+        out.line("/// 规范中的值；其他文字没有。The value of the spec; empty for any other text.");
         out.line("[[nodiscard]] std::optional<Value> value() const;");
-        out.line("/// 报文中的文字。What travels.");
+        out.line("/// 报文中的文字。The text that is sent.");
         out.line("[[nodiscard]] const std::string& wire() const noexcept { return wire_; }");
         out.blank();
         for (operator, not) in [("==", ""), ("!=", "!")] {

@@ -29,8 +29,7 @@ const SOURCES: &str = "sources.cmake";
 /// All of its files.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let docs = targets.place(Product::Markdown);
-    let context = &Context::new(model, &CPP, &layout::CPP, docs);
+    let context = &Context::new(model, &CPP, &layout::CPP, Some(targets));
     let samples = &Samples::new(model);
     let space = &model.protocol.id;
     let groups = &groups::groups(context);

@@ -1,4 +1,4 @@
-//! What a command sets off, and how far a report says that it has come.
+//! Helpers for processes: the states of an enum, the reports of a command, and the state in a report.
 
 use super::fields::enumerators;
 use crate::emit::stub::context::Context;
@@ -10,18 +10,22 @@ use fc_spec::model::{
     StateOrder, StructRef, Type, TypeRef,
 };
 
-/// Whether the spec says something of the values of an enum as the states of a process.
+/// Returns `true` if the values of an enum are states of a process.
 pub fn is_state(shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> bool {
     shape.order.is_some() || values.iter().any(|value| value.is_final || value.is_error)
 }
 
-/// What the header says of an enum as states.
+/// Declares the functions over the states of an enum.
 pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
     for (zh, en, name) in [
-        ("是否为终态。", "Whether nothing follows it.", "is_final"),
+        (
+            "是否为终态。",
+            "Returns `true` for a final state.",
+            "is_final",
+        ),
         (
             "是否表示失败。",
-            "Whether it says that something failed.",
+            "Returns `true` for a failure.",
             "is_error",
         ),
     ] {
@@ -33,19 +37,19 @@ pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
     let parameters = [format!("{by_value} value"), format!("{by_value} previous")];
     if shape.order.is_some() {
         if is_complete(shape) {
-            out.line("/// 按规范列出的全部变化，是否可以直接跟在 `previous` 之后。");
+            out.line("/// 规范列出的全部切换中，是否可以直接跟在 `previous` 之后。");
             out.line(
-                "/// Whether it may come directly after `previous`, by the list of all changes.",
+                "/// Returns `true` if the spec lists the change from `previous`. No other change occurs.",
             );
         } else {
-            out.line("/// 正常顺序中是否跟在 `previous` 之后；也会有其他变化。");
-            out.line("/// Whether it follows `previous` in the normal order. Other changes occur as well.");
+            out.line("/// 正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。");
+            out.line("/// Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.");
         }
         let open = format!("[[nodiscard]] bool {}(", follows(shape));
         out.parameters(&open, &parameters, ") noexcept;");
     }
-    out.line("/// 跟在 `previous` 之后是否合乎规范所说的顺序。");
-    out.line("/// Whether nothing that is said of the order speaks against it after `previous`.");
+    out.line("/// 规范是否允许 `previous` 之后出现此状态。");
+    out.line("/// Returns `true` if the spec allows this state after `previous`.");
     out.parameters(
         "[[nodiscard]] bool is_in_order(",
         &parameters,
@@ -53,7 +57,7 @@ pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
     );
 }
 
-/// What the function is called that says what follows.
+/// Name of the function that checks the order.
 fn follows(shape: &EnumType) -> &'static str {
     if is_complete(shape) {
         "may_follow"
@@ -62,12 +66,12 @@ fn follows(shape: &EnumType) -> &'static str {
     }
 }
 
-/// Whether the list of changes has all that there are.
+/// Returns `true` if the list of changes is complete.
 fn is_complete(shape: &EnumType) -> bool {
     shape.order == Some(StateOrder::Complete)
 }
 
-/// The functions that the header declares.
+/// Defines the functions of [`declare`].
 pub fn define(
     out: &mut Source,
     item: &Item<'_>,
@@ -132,7 +136,7 @@ pub fn define(
         }
         out.line("if (value == previous || is_error(value)) return true;");
         if !is_complete {
-            // Of these, nothing is said that could be broken.
+            // The spec lists no successors of these values, so any successor is allowed.
             let silent = values
                 .iter()
                 .filter(|value| value.then.is_empty() && !value.is_final);
@@ -151,7 +155,7 @@ pub fn define(
     });
 }
 
-/// In which states a command is accepted, as the header declares it.
+/// Declares the functions that check the states in which a command is accepted.
 pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let space = &context.model().protocol.id;
     let sets = command
@@ -166,7 +170,7 @@ pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Opera
     }
 }
 
-/// The functions for that.
+/// Defines the functions of [`declare_accepted`].
 fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &context.model().protocol.id;
     let sets = call
@@ -205,7 +209,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     }
 }
 
-/// What ties a command to the reports that it sets off, as the header declares it.
+/// Declares the functions that tie a command to the reports that it sets off.
 pub fn declare_set_off(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &context.model().protocol.id;
     for (_, _, report) in set_off(context, call.operation) {
@@ -226,7 +230,7 @@ pub fn declare_set_off(out: &mut Source, context: &Context<'_>, call: &Call<'_>)
     }
 }
 
-/// The functions of a command and of a report that the header declares.
+/// Defines the functions of a command and of a report.
 pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &context.model().protocol.id;
     define_accepted(out, context, call);
@@ -271,7 +275,7 @@ pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     }
 }
 
-/// How far a report says that its process has come.
+/// Defines the functions over the state in a report.
 fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &context.model().protocol.id;
     let name = &call.request.ty.name;
@@ -343,7 +347,7 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     out.blank();
 }
 
-/// The way to a field inside a message, as a pointer that is null where something on it is absent.
+/// A pointer to a field inside a message. It is null if a field on the path is absent.
 fn at(context: &Context<'_>, message: &str, body: &StructRef, keys: &[String]) -> String {
     let space = &context.model().protocol.id;
     let mut holder: Option<&TypeRef> = Some(body);

@@ -52,7 +52,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
         }
     });
     out.blank();
-    out.line("/// 随结果码发送的文字。The text sent beside the code.");
+    out.line("/// 随结果码发送的文字。The text sent with the code.");
     out.line("[[nodiscard]] std::string_view text(ResultCode code) noexcept;");
     out.line("/// 以此结果码拒绝。A refusal with this code.");
     out.line("[[nodiscard]] fc_runtime::Refusal refusal(ResultCode code);");
@@ -64,10 +64,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
         return;
     }
     out.blank();
-    let what = [
-        "数据流的编码。",
-        "What the bytes of a frame on the data port are.",
-    ];
+    let what = ["数据流的功能码。", "Codes of streams."];
     out.docs(&Docs::said(&what));
     out.enclose("enum class StreamCode : std::uint16_t {", "};", |out| {
         for stream in &context.package.streams {

@@ -33,9 +33,9 @@ pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
         out.blank();
         out.line(
             "\
-/// 由一个机器人处理规范中的指令，交给 `fc_runtime::Server::bind`。
+/// 包装一个机器人，交给 `fc_runtime::Server::bind`。
 ///
-/// Has a robot handle the commands of the spec, for `fc_runtime::Server::bind`.
+/// Wraps a robot for `fc_runtime::Server::bind`.
 [[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);",
         );
         out.blank();
@@ -53,20 +53,20 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
     out.line(
         "\
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing
-/// here, and the compiler says so.
+/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
+/// reports a missing method.
 ///
-/// 只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。
+/// 只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。指令齐全之后，改为继承 `Robot`。
 ///
-/// A robot that has some of them so far derives from `PartialRobot`: what is left out is refused as not
-/// implemented. That one word is all that changes once nothing is missing.
+/// A robot with some of the commands derives from `PartialRobot`, which refuses the others as not
+/// implemented. Once the robot has all commands, change `PartialRobot` to `Robot`.
 ///
-/// 各个方法可能同时被多个线程调用。处理超时后，机器人替它应答超时，方法仍运行到结束；
-/// `Context::is_abandoned` 让它知道没有人等待了。
+/// 各个方法可能同时被多个线程调用。处理超时后，机器人替它返回超时，方法仍运行到结束；
+/// 方法用 `Context::is_abandoned` 得知调用方不再等待。
 ///
-/// Methods may be called by several threads at once. When one takes too long, the robot answers with a
-/// timeout in its place, and it still runs to its end: `Context::is_abandoned` tells it that nobody
-/// waits any more.",
+/// Several threads can call methods at the same time. After a timeout, the robot responds with a timeout,
+/// and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any
+/// more.",
     );
     let bases: Vec<String> = handling(groups)
         .map(|group| format!("public {}", group.named("Robot")))
@@ -83,14 +83,14 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
         for (name, range) in pass_through(context) {
             let mut docs = Docs::of(&range.text);
             docs.paragraph(format!(
-                "Codes {} to {} that have no method of their own.",
+                "Codes {} to {} without a separate method.",
                 range.first_spelling, range.last_spelling
             ));
             raw(out, docs, &name);
         }
         let other = [
             "功能码不在规范中的指令。",
-            "Commands whose code is not in the spec.",
+            "Commands with a code that is not in the spec.",
         ];
         raw(out, Docs::said(&other), UNKNOWN);
     });
@@ -125,7 +125,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     });
     out.blank();
     out.line(" protected:");
-    out.line("  // Nobody has a part of a robot alone.");
+    out.line("  // Only `Robot` derives from a part.");
     out.line(format!("  ~{name}() = default;"));
     out.line("};");
 }
@@ -133,8 +133,8 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 /// What `PartialRobot` and `ExampleRobot` do with the commands of a group.
 pub fn defaults(out: &mut Source, group: &Group<'_>) {
     out.docs(&Docs::said(&[
-        "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。",
-        "The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.",
+        "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
+        "The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.",
     ]));
     out.line("template <class Base>");
     out.line(format!("class {} : public Base {{", group.name("Defaults")));
@@ -163,7 +163,7 @@ pub fn defaults(out: &mut Source, group: &Group<'_>) {
 /// A method for commands without a type, which a robot need not have.
 fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
     docs.paragraph("不实现此方法时，按未知指令拒绝。");
-    docs.paragraph("Refused as an unknown command unless the robot has this method.");
+    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
     out.blank();
     out.docs(&docs);
     let parameters = [
@@ -196,7 +196,7 @@ fn of_parts(
     let answers = format!("fc_runtime::{answers}<Robot, protocol>");
     let parts = handling(groups).map(|group| group.named("Defaults"));
     let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
-    // The formatter would fill the lines, and wrap all of them anew for another group.
+    // The formatter would fill the lines, and another group would change all of them.
     out.line("// clang-format off");
     out.line(docs);
     out.line(format!("class {name} : public fc_runtime::Stacked<"));
@@ -213,7 +213,7 @@ fn partial(out: &mut Source, groups: &[Group<'_>]) {
         out,
         "\
 /// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。
-/// A robot that has some of the commands: the others are refused as not implemented. It is a `Robot`.",
+/// A robot with some of the commands. It refuses the others as not implemented. It is a `Robot`.",
         "PartialRobot",
         "Refusing",
         "PartialRobot()",
@@ -225,11 +225,11 @@ fn example(out: &mut Source, groups: &[Group<'_>]) {
     of_parts(
         out,
         "\
-/// 用规范中的示例回答指令，只用于演示和测试。会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，
-/// 除非要求它假装。它是一个 `Robot`。
-/// Answers with the spec's examples, for demos and tests alone. It does not carry out what sets something
-/// in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend.
-/// It is a `Robot`.",
+/// 用规范中的示例响应指令，只用于演示和测试。它不执行运动指令和影响不详的指令，以“未实现”拒绝；
+/// `pretend_motion` 为真时假装成功。它是一个 `Robot`。
+/// Responds with the examples of the spec, only for demos and tests. It does not execute commands that move
+/// the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion`, it
+/// pretends success. It is a `Robot`.",
         "ExampleRobot",
         "Exemplary",
         "explicit ExampleRobot(bool pretend_motion = false)",
@@ -240,10 +240,10 @@ fn example(out: &mut Source, groups: &[Group<'_>]) {
 fn reporter(out: &mut Source, groups: &[Group<'_>]) {
     out.line(
         "\
-/// 主动上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
+/// 发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
 ///
-/// Pushes reports: one method per report, which waits until it has ended at each app. Without a connection
-/// it goes to all apps connected at the moment. The server has to outlive it.",
+/// Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,
+/// the report goes to all connected apps. The server must outlive this object.",
     );
     let bases: Vec<String> = groups
         .iter()
@@ -255,7 +255,7 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
         " public:
   explicit Reporter(const fc_runtime::Server& server) : robot_server_(&server) {}
 
-  /// 上报由它发出。What sends the reports.
+  /// 发送上报的服务端。The server that sends the reports.
   [[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }
 
  private:
@@ -268,7 +268,7 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
 pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     out.docs(&Docs::said(&[
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
-        "The reports of a group as methods of `Reporter`, which is `Self`.",
+        "The reports of a group as methods of `Reporter` (`Self`).",
     ]));
     out.line("template <class Self>");
     out.line(format!("class {} {{", group.name("Reporter")));

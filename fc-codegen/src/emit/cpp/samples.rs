@@ -278,7 +278,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let [from_robot, from_app] = &streams;
     let space = &context.model().protocol.id;
     let mut out = Source::cpp();
-    out.line("// The samples of the documentation: every command is called, whatever is sent is received.");
+    out.line("// The samples of the documentation. They call every command and receive every report and stream.");
     let mut includes = Includes::default();
     for name in [
         "chrono", "cstdint", "iostream", "memory", "optional", "string", "variant",
@@ -292,7 +292,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     out.line("// Laid out as on the pages.\n// clang-format off");
     if commands.iter().any(|it| it.operation.deprecated.is_some()) {
         out.blank();
-        out.line("// A robot still answers what is withdrawn.");
+        out.line("// A robot still handles deprecated commands.");
         out.line("#pragma GCC diagnostic ignored \"-Wdeprecated-declarations\"");
     }
     out.blank();
@@ -424,7 +424,7 @@ if (!client) return failed(\"connect\");"
         if let Some(code) = streams.find_map(|stream| snippets.code(stream)) {
             out.line("const auto data = client->data();");
             check(out, "data.connected()".to_owned());
-            out.line("// The robot knows of a data connection once something has come over it.");
+            out.line("// The robot knows a data connection after its first frame.");
             out.line("static_cast<void>(server->next_stream(std::chrono::milliseconds(0)));");
             check(out, format!("data.send({code}, 0, \"\")"));
             check(out, format!("server->next_stream({PATIENCE})"));

@@ -19,32 +19,32 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
     out.docs(&Docs::said(&[
         "一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。",
-        "A robot as seen from the app: one method per command; `suspend` for coroutines, `Async` for Java.",
+        "A robot as seen from the app: one method per command, `suspend` for coroutines and `Async` for Java.",
     ]));
     wrapper(&mut out, "Client", PROPERTY, CONNECTION, &parts);
     let supers: Vec<String> = [vec!["AutoCloseable".to_owned()], parts].concat();
     out.block(heading(")", &supers), |out| {
         out.line(
             "\
-/** 此刻的连接状态。Whether there is a connection at this moment, and why not. */
+/** 此刻的连接状态。The present state of the connection. */
 public val state: ConnectionState get() = connection.state
 
 /** 连接状态的变化，先是此刻的状态。The states of the connection, the present one first. */
 public fun states(): Flow<ConnectionState> = connection.states()
 
-/** 等到连接永久关闭，返回原因。Waits until the connection has ended for good, and says why. */
+/** 等到连接永久关闭，返回原因。Waits until the connection is closed for good, and returns the reason. */
 @JvmSynthetic
 public suspend fun closed(): Loss = connection.closed()
 
 /**
- * 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
+ * 返回此后全部上报的接收端。没有接收端时，上报不会得到应答。
  *
- * All reports received from now on. While there is no receiver, no report is acknowledged. The `message` of each is one of the
- * types of [Operations], to be told apart by `when` and `is`.
+ * Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged. The `message` of a report has
+ * one of the types of [Operations]; distinguish them with `when` and `is`.
  */
 public fun reports(): Reports = connection.reports()
 
-/** 连接数据端口。A connection to the data port: made in the background, made again after a loss. */
+/** 连接数据端口。Connects to the data port in the background, and reconnects after a loss. */
 public fun data(): DataConnection = connection.data()
 
 /** 关闭连接。Closes the connection. */
@@ -58,7 +58,7 @@ override fun close(): Unit = connection.close()",
 /**
  * 连接机器人；`config` 中没有设置的项使用规范的默认值。
  *
- * Connects to a robot; what `config` does not set has the default of the spec.
+ * Connects to a robot. Settings missing from `config` have the defaults of the spec.
  *
  * @throws fc.runtime.ConnectError if the first attempt fails
  */
@@ -75,7 +75,7 @@ public fun connectAsync(config: ClientConfig = ClientConfig()): CompletableFutur
 /**
  * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
  *
- * Returns at once and connects in the background; calls made meanwhile wait within their timeout.
+ * Returns at once and connects in the background. Calls made before that wait within their timeout.
  */
 @JvmStatic
 @JvmOverloads
@@ -121,10 +121,10 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(operation);
     facts::operation_end(&STYLE, &mut docs, operation);
     if context.package.error_type(operation).is_some() {
-        docs.raw("[fc.runtime.CallError.declared] says which of its errors it was.");
+        docs.raw("[fc.runtime.CallError.declared] returns the error of a refused call.");
     }
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
-    docs.raw("@throws fc.runtime.CallError if there is no such response in time");
+    docs.raw("@throws fc.runtime.CallError if the call fails");
     out.blank();
     out.docs(&docs);
     deprecated(out, operation);
@@ -180,11 +180,11 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
         let reported_type = &reported.request.ty.name;
         let mut docs = Docs::default();
         docs.raw(format!(
-            "[{method}]，取得响应，再逐个取得它引起的 [{reported_type}]。\n\
-             [{method}], and then each [{reported_type}] that it sets off.",
+            "[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。\n\
+             [{method}]: returns the response, and then each [{reported_type}] that the command sets off.",
         ));
         ending(&mut docs, context, set_off, report, messages);
-        docs.raw("@throws fc.runtime.CallError if the command is not answered with success");
+        docs.raw("@throws fc.runtime.CallError if the response is not a success");
         let ties = set_off.tied.iter().map(|tie| {
             let side = tie.side.name();
             let here = operation.messages();

@@ -75,8 +75,8 @@ fn message(
                 let (property, ty) = (&field.name, type_of(context, &field.ty));
                 out.blank();
                 out.docs(&both(
-                    "同上；没有给出时为默认值。",
-                    "The same; the default where it is not given.",
+                    "同上；没有时为默认值。",
+                    "The same, or the default if it is absent.",
                 ));
                 out.line(format!(
                     "public val {property}OrDefault: {ty} get() = {property} ?: {default}"
@@ -90,7 +90,7 @@ fn message(
         out.blank();
         out.docs(&both(
             "以此消息的内容为起点的构造器。",
-            "A builder that begins with what this message holds.",
+            "A builder that starts with the content of this message.",
         ));
         out.line("public fun toBuilder(): Builder = Builder(this)");
         out.blank();
@@ -240,8 +240,8 @@ fn companion(
         out.line("public fun builder(): Builder = Builder(null)");
         out.blank();
         out.docs(&both(
-            "由 `build` 设置了字段的消息。",
-            "The message whose fields `build` sets.",
+            "用 `build` 设置字段，构造消息。",
+            "Builds a message with the fields that `build` sets.",
         ));
         out.line("@JvmSynthetic");
         out.line(format!(
@@ -350,8 +350,8 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
             }
             out.blank();
             out.docs(&both(
-                "以此值传输的取值；规范中没有的值原样保留。",
-                "The value that travels so; one that the spec does not have is kept as it is.",
+                "`wire` 对应的取值；规范中没有的值原样保留。",
+                "The value for `wire`. A value that is not in the spec is kept unchanged.",
             ));
             out.line("@JvmStatic");
             out.line(format!("override fun of(wire: {wire}): {name} = super.of(wire)"));

@@ -28,8 +28,7 @@ use text::STYLE;
 /// All of its files.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let docs = targets.place(Product::Markdown);
-    let context = &Context::new(model, &KOTLIN, &STYLE, docs);
+    let context = &Context::new(model, &KOTLIN, &STYLE, Some(targets));
     let samples = &Samples::new(model);
     let id = &model.protocol.id;
     // A keyword is no name of a package either.

@@ -17,7 +17,7 @@ use fc_spec::model::{
 pub fn file(groups: &[Group<'_>]) -> Source {
     let mut out = Source::new(&STYLE);
     out.docs(&Docs::said(&[
-        "每条指令和每个主动上报。",
+        "每条指令和每个上报。",
         "Every command and every report.",
     ]));
     let parts = parts(groups, "Operations", has_calls);

@@ -279,7 +279,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.blank();
             out.docs(&both(
                 "随结果码发送的文字。",
-                "The text sent beside the code.",
+                "The text sent with the code.",
             ));
             out.line("public val text: String get() = texts[wire] ?: \"\"");
             out.blank();
@@ -310,7 +310,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
                     out.blank();
                     out.lines("private val texts: Map<Long, String> = mapOf(", &texts, ")");
                     out.blank();
-                    out.docs(&both("以此值传输的结果码。", "The code that travels so."));
+                    out.docs(&both("`wire` 对应的结果码。", "The code for `wire`."));
                     out.line("@JvmStatic");
                     out.line("override fun of(wire: Long): ResultCode = super.of(wire)");
                     out.blank();

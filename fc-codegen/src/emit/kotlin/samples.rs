@@ -202,8 +202,8 @@ fn robot(out: &mut Source, context: &Context<'_>, snippets: &Snippets<'_, '_>) {
     let is_there = |name: &str| context.package.has_type(name);
     let name = free(&["SampleRobot", "RobotOfTheSamples"], is_there);
     out.docs(&Docs::said(&[
-        "用文档中的示例应答全部指令。",
-        "Responds to every command as the samples of the documentation do.",
+        "用文档中的示例响应全部指令。",
+        "Responds to every command with the samples of the documentation.",
     ]));
     let head = format!("internal class {name} : Robot");
     let commands = context.commands();
@@ -271,7 +271,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     out.blank();
     out.docs(&Docs::said(&[
         "运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。",
-        "Runs all samples, and closes `client` at the end; `server` is the robot that it is connected to.",
+        "Runs all samples, and closes `client` at the end. `server` is the robot of the connection.",
     ]));
     let parameters = "client: Client, server: Server";
     out.block(

@@ -18,8 +18,8 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_>]) {
     }
     out.blank();
     out.docs(&both(
-        "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
-        "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
+        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
+        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
     ));
     wrapper(out, "Streams", DATA, DATA_DOCS, &parts);
     out.line(heading(")", &parts));
@@ -34,7 +34,7 @@ pub fn for_robot(out: &mut Source, groups: &[Group<'_>]) {
     out.blank();
     out.docs(&both(
         "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
-        "Sends the robot's streams: one method each, which gives how many data connections took it.",
+        "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it.",
     ));
     wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
@@ -48,13 +48,13 @@ fn has_robot_streams(group: &Group<'_>) -> bool {
 const DATA: &str = "data: DataConnection";
 
 const DATA_DOCS: &str =
-    "/** 数据连接。The data connection: its state, and frames that nobody has subscribed to. */";
+    "/** 数据连接。The data connection: its state, and frames without a subscription. */";
 
 /// What the robot's reports and streams go through.
 pub const SERVER: &str = "server: Server";
 
 /// What is said of it.
-pub const SERVER_DOCS: &str = "/** 由它发送。What sends them. */";
+pub const SERVER_DOCS: &str = "/** 由它发送。The server that sends them. */";
 
 /// The streams of a group.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {

@@ -101,23 +101,23 @@ impl Page<'_> {
                 "Ports, every byte of the header, kinds, compression, digest, envelope, timeouts and limits",
             ),
             Self::Codes => lang.pick(
-                "已用、未分配和停用的功能码，各号段的用途",
+                "已用、未分配和退役的功能码，各号段的用途",
                 "Codes in use, not assigned and retired; the ranges and their purpose",
             ),
             Self::Types => lang.pick("多个接口共用的结构与枚举", "Structs and enums shared by several operations"),
             Self::Results => lang.pick("响应和应答中结果码的取值", "Result codes of responses and acknowledgements"),
             Self::Tables => lang.pick("格口布局等随协议发布的常量", "Constants published with the protocol, such as cell layouts"),
             Self::Entities => lang.pick(
-                "各种 ID 指的是什么，从哪些消息得到，用在哪些消息中",
-                "What the IDs stand for, which messages they come from and which ask for them",
+                "各种 ID 对应的实体，来自哪些消息，用在哪些消息中",
+                "The entities that IDs identify, and the messages that provide or ask for them",
             ),
             Self::Places => lang.pick(
-                "位置以哪个坐标系为准，各项内容保存在哪里",
-                "In which coordinate system positions are given, and where things are kept",
+                "各坐标系和存储位置，以及使用它们的消息",
+                "Coordinate systems of positions, and stores of settings and data",
             ),
             Self::Glossary => lang.pick(
                 "协议用语的含义、英文说法和出现的地方",
-                "The terms of the protocol: what they mean, their Chinese words, where they occur",
+                "Terms of the protocol, with their meaning, Chinese words and places",
             ),
             Self::Changelog => lang.pick("按日期排列的全部变更", "All changes by date"),
             Self::OpenQuestions => lang.pick(
@@ -126,11 +126,11 @@ impl Page<'_> {
             ),
             Self::Language => lang.pick(
                 "YAML 中可以写的每一个键：含义、取值、是否必填",
-                "Every key that the YAML may have: what it means, what it takes, whether it is required",
+                "Every key of the YAML, with its meaning and values",
             ),
             Self::Errors => lang.pick(
-                "检查 YAML 时可能报告的每一种错误，以及怎样改正",
-                "Every error that the checks of the YAML report, and how to fix it",
+                "检查 YAML 时可能报告的每一种错误，以及改法",
+                "Every error of the checks, and how to fix it",
             ),
         }
     }

@@ -35,7 +35,7 @@ words! { Effect:
     Read = "读取", "read";
     Config = "配置", "config";
     Motion = "运动", "motion";
-    Unknown = "作用不详", "unknown effect";
+    Unknown = "影响不详", "unknown effect";
 }
 
 words! { BodyState:
@@ -55,7 +55,7 @@ words! { AnswerKind:
 words! { Impact:
     NoCode = "没有功能码，不能调用", "No code: cannot be called";
     NoBody = "正文缺失，无法按字段使用", "Lost body: cannot be used by its keys";
-    NoEffect = "作用不详", "Unknown effect";
+    NoEffect = "影响不详", "Unknown effect";
     Doubtful = "数值可能被误读", "Values that may be misread";
     Inferred = "推断，有待确认", "Inferences to confirm";
     Behaviour = "行为没有说明", "Behaviour that is not described";

@@ -47,7 +47,7 @@ pub fn about(class: &str, zh: &str, en: &str, group: &Group<'_>) -> [String; 2] 
     let id = &group.of.id;
     [
         format!("`{class}` 的一部分：`{id}` 组的{zh}。"),
-        format!("The part of `{class}` with the {en} of the group `{id}`."),
+        format!("Part of `{class}`: the {en} of the group `{id}`."),
     ]
 }
 
@@ -89,7 +89,7 @@ fn followed<'c>(context: &'c Context<'_>, command: &'c Operation) -> (Vec<&'c Op
 
 /// What says which of its errors a command was refused with.
 fn declared(error: &str) -> String {
-    format!("`CallError.declared({error})` says which of its errors it was.")
+    format!("`CallError.declared({error})` returns the error of a refused call.")
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
@@ -159,8 +159,8 @@ fn follow_docs<'c>(
 ) -> Docs<'c> {
     let mut docs = Docs::of(&command.title);
     docs.raw(format!(
-        "先取得响应，再逐个取得它引起的 `{followed}`。\n\
-         Gives the response, and then each `{followed}` that it sets off.",
+        "先返回响应，再逐个返回它引起的 `{followed}`。\n\
+         Returns the response, and then each `{followed}` that the command sets off.",
     ));
     let mut all = process::set_off(context, command);
     if let Some((set_off, _, messages)) = all.find(|(_, it, _)| it.name == report.name) {

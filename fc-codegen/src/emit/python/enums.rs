@@ -86,7 +86,7 @@ fn states(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>])
     }
     out.line("@classmethod");
     out.suite("def process(cls) -> rt.Process", |out| {
-        out.line("\"\"\"规范对这些状态的说明。What the spec says of these states.\"\"\"");
+        out.line("\"\"\"规范对这些状态的说明。The description of these states in the spec.\"\"\"");
         Code::call("rt.Process", said).write(out, "return ", "");
     });
 }

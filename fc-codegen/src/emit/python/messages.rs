@@ -109,7 +109,7 @@ fn structure<'m>(
             let ty = ty.strip_suffix(" | rt.Unknown[int]").unwrap_or(ty);
             out.line(format!("{constant}: ClassVar[{ty}] = {value}"));
             out.line(format!(
-                "\"\"\"没有 `{name}` 时的取值。What the absence of `{name}` means.\"\"\""
+                "\"\"\"没有 `{name}` 时的取值。The default of `{name}`.\"\"\""
             ));
             out.blank();
         }
@@ -146,7 +146,7 @@ fn structure<'m>(
             out.line("@property");
             out.suite(&format!("def {accessor}(self) -> {ty}"), |out| {
                 out.line(format!(
-                    "\"\"\"`{name}`，没有时为默认值。`{name}`, or what its absence means.\"\"\""
+                    "\"\"\"`{name}`，没有时为默认值。`{name}`, or its default.\"\"\""
                 ));
                 out.line(format!(
                     "return self.{constant} if self.{name} is None else self.{name}"

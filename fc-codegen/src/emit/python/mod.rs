@@ -29,8 +29,7 @@ use homes::Homes;
 /// All of its files.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let docs = targets.place(Product::Markdown);
-    let context = &Context::new(model, targets.python(), &source::PYTHON, docs);
+    let context = &Context::new(model, targets.python(), &source::PYTHON, Some(targets));
     let samples = &Samples::new(model);
     let homes = &Homes::of(context);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);

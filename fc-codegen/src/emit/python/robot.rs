@@ -33,7 +33,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
             facts::operation_end(context.style, &mut docs, operation);
             if let Some(error) = context.package.error_type(operation) {
                 docs.raw(format!(
-                    "To refuse it, raise the `refusal()` of a `{error}`."
+                    "To refuse the command, raise the `refusal()` of a `{error}`."
                 ));
             }
             docs.paragraph(context.links(&operation.location, &page_of(operation)));
@@ -76,7 +76,7 @@ pub fn reporter(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
             let operation = report.operation;
             let mut docs = facts::operation_docs(operation);
             facts::operation_end(context.style, &mut docs, operation);
-            docs.paragraph("Returns what became of it at each connection.");
+            docs.paragraph("Returns the outcome at each connection.");
             docs.paragraph(context.links(&operation.location, &page_of(operation)));
             let message = format!("report: {}", report.request.ty.name);
             let parameters = ["self", &message, "to: int | None = None"].map(Code::from);
@@ -102,7 +102,7 @@ pub fn streamer(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     part_of(out, name, "rt.Streamer", about, |out| {
         for stream in group.streams.iter().filter(|it| it.sender == Side::Robot) {
             let mut docs = stream_docs(context, stream);
-            docs.paragraph("Returns how many data connections took it.");
+            docs.paragraph("Returns the number of data connections that took it.");
             let held = content(context, stream);
             let parameters = ["self", "message_id: int", &held, "to: int | None = None"];
             let parameters = parameters.map(Code::from).to_vec();

@@ -16,7 +16,8 @@ use fc_spec::model::Type;
 
 /// `__all__` where it is made of others, for those who run the package.
 fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
-    let comment = "# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.";
+    let comment =
+        "# Type checkers use the imports above: not all of them read a computed `__all__`.";
     out.line(comment);
     out.suite("if not TYPE_CHECKING", all);
 }
@@ -80,8 +81,8 @@ pub fn file(context: &Context<'_>) -> String {
 /// `groups/__init__.py`.
 pub fn groups(homes: &Homes<'_>, ids: bool) -> String {
     let mut out = head(&Docs::said(&[
-        "各指令组，一组一个模块：报文类型、操作，以及它在两端的类中的部分。",
-        "The groups, each with a module of its own: its message types, its operations, and its part of the classes of both sides.",
+        "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
+        "The groups, one module each: message types, operations, and the methods of both sides.",
     ]));
     let mut modules: Vec<&str> = homes.files().map(Part::module).collect();
     if ids {
@@ -103,8 +104,8 @@ pub fn groups(homes: &Homes<'_>, ids: bool) -> String {
 /// `messages.py`.
 pub fn messages() -> String {
     let mut out = head(&Docs::said(&[
-        "全部报文类型，不分组。",
-        "All message types, whatever their group.",
+        "所有分组的报文类型。",
+        "The message types of all groups.",
     ]));
     out.line("from . import groups, operations\nfrom .groups import *");
     out.blank();
@@ -120,8 +121,8 @@ pub fn messages() -> String {
 /// `operations.py`.
 pub fn operations() -> String {
     let mut out = head(&Docs::said(&[
-        "每个操作及规范对它的说明，不分组。",
-        "Every operation, with all that the spec says of it, whatever its group.",
+        "所有分组的接口，以及规范中的说明。",
+        "The operations of all groups, with their description in the spec.",
     ]));
     out.line("import fc_runtime as rt\n\nfrom . import groups\nfrom .groups import *");
     out.blank();
@@ -138,8 +139,8 @@ pub fn operations() -> String {
 pub fn ids(context: &Context<'_>) -> String {
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&[
-        "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用；发送的形式与不用这些类型时相同。",
-        "The IDs of entities, each kind with a type of its own, so that a type checker lets none be taken for another. They travel as what they hold.",
+        "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用。发送的形式与其中的值相同。",
+        "The IDs of entities, with one type per entity, so that a type checker keeps them apart. An ID is sent as the value in it.",
     ]));
     out.blank();
     out.line("from __future__ import annotations");

@@ -176,7 +176,7 @@ pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> Strin
         .extend(["Client", "Reporter", "Robot"].map(str::to_owned));
     let mut body = Source::new(&PYTHON);
     body.suite("class RobotOfTheSamples(Robot)", |out| {
-        out.line("\"\"\"Answers with the samples.\"\"\"");
+        out.line("\"\"\"Responds with the samples.\"\"\"");
         for command in &commands {
             out.blank();
             let _ = snippets.write_robot(out, &mut names, command.operation);
@@ -222,7 +222,7 @@ pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> Strin
     test(&mut body, &commands, &reports, &streams);
 
     let mut out = Source::new(&PYTHON);
-    out.line("\"\"\"The samples of the documentation: every command is called, every report pushed and taken.\"\"\"");
+    out.line("\"\"\"The samples of the documentation. They call every command, and push and receive every report.\"\"\"");
     out.blank();
     out.line("from __future__ import annotations\n\nimport asyncio\nimport contextlib\nimport io\nimport unittest");
     out.line("import warnings\n\nimport fc_runtime as rt");
@@ -245,7 +245,7 @@ fn test(
         "\
 class Samples(unittest.IsolatedAsyncioTestCase):
     async def test_every_sample_runs(self) -> None:
-        # A robot still answers what is withdrawn.
+        # A robot still handles deprecated commands.
         warnings.simplefilter(\"ignore\", DeprecationWarning)
         config = rt.ServerConfig(address=\"127.0.0.1\", command_port=0, data_port=0, handler_timeout=60.0)
         server = rt.Server(RobotOfTheSamples(), config)

@@ -56,7 +56,7 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let has_streams = !context.package.streams.is_empty();
     let mut out = head(
         [
-            "app 端：每条指令一个方法，全部主动上报汇成一个类型。",
+            "app 端：每条指令一个方法，全部上报汇成一个类型。",
             "The app's side: one method per command, one type for any report.",
         ],
         &[("typing", &["ClassVar", "TypeAlias"])],
@@ -69,8 +69,8 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let union = Code::Union(reports.into_iter().map(str::to_owned).collect());
     union.write_in_parentheses(&mut out, "AnyReport: TypeAlias = ");
     out.docstring(&Docs::said(&[
-        "任意一个主动上报；编码不在规范中的为 `RawReport`，原样保留。",
-        "Any report; a `RawReport`, kept unchanged, where the spec does not know the code.",
+        "任意一个上报；功能码不在规范中的为 `RawReport`，原样保留。",
+        "Any report. A report with a code that is not in the spec is a `RawReport`, kept unchanged.",
     ]));
     let about = [
         "一个机器人，从 app 一侧看：每条指令一个方法。",
@@ -89,8 +89,8 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
     );
     if has_streams {
         let about = [
-            "数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。",
-            "The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.",
+            "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
+            "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
         ];
         let streams = homes.pieces(Piece::Streams);
         class(
@@ -139,8 +139,8 @@ pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
 pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
     let mut out = head(
         [
-            "机器人端：每条指令一个方法，按示例应答的演示机器人，带类型的主动上报。",
-            "The robot's side: one method per command, a robot that responds with the examples in the spec, and typed reports.",
+            "机器人端：每条指令一个方法，按示例响应的示例机器人，以及上报的发送端。",
+            "The robot's side: one method per command, a robot that responds with the examples of the spec, and the sender of reports.",
         ],
         &[("abc", &["ABC"]), ("typing", &["ClassVar"])],
     );
@@ -156,8 +156,8 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.import_from(".protocol", &[&protocol::name(context)]);
     complete(&mut out, context, homes);
     let about = [
-        "有一部分指令的机器人：方法相同，都可以不写；没有写的指令以“未实现”拒绝。",
-        "A robot that has some of the commands so far: what is left out is refused as not implemented.",
+        "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
+        "A robot with some of the commands. It refuses the others as not implemented.",
     ];
     let handlers = homes.pieces(Piece::PartialHandlers);
     class(
@@ -169,10 +169,10 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
         |_| (),
     );
     let about = [
-        "用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
-        "Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `PartialRobot`.",
-        "会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装：`pretend_motion=True`。",
-        "It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend, with `pretend_motion=True`.",
+        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
+        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
+        "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion=True` 时假装成功。",
+        "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion=True`, it pretends success.",
     ];
     class(
         &mut out,
@@ -185,10 +185,10 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
         },
     );
     let about = [
-        "主动上报：每种上报一个方法。",
+        "发送上报：每种上报一个方法。",
         "Pushes reports: one method per report.",
         "`to` 是某个连接的编号；不给出时，向全部连接上报。",
-        "`to` is the number of a connection; without it a report goes to all of them.",
+        "`to` is the number of a connection. Without it, a report goes to all of them.",
     ];
     let reporters = homes.pieces(Piece::Reporter);
     class(
@@ -202,7 +202,7 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
     if !context.package.streams.is_empty() {
         let about = [
             "机器人发送的数据流：每个数据流一个方法。",
-            "Sends the robot's streams: one method per stream.",
+            "Sends the streams of the robot: one method per stream.",
         ];
         let streamers = homes.pieces(Piece::Streamer);
         class(
@@ -219,10 +219,10 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
 
 fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
     let about = [
-        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出，创建对象时 Python 也会指出。",
-        "A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing here: the type checker says so, and Python when the robot is made.",
-        "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后只改这一个词。",
-        "A robot that has some of them so far inherits from `PartialRobot`: the methods are the same, and none has to be there. This one word is all that changes once nothing is missing.",
+        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出，Python 也会拒绝创建对象。",
+        "A complete robot, which handles all commands of the spec. When the spec gains a command, the type checker reports a missing method, and Python refuses to create the robot.",
+        "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后，改为继承 `Robot`。",
+        "A robot with some of the commands inherits from `PartialRobot`. The methods are the same, and each is optional. Once the robot has all commands, inherit from `Robot`.",
     ];
     let handlers = homes.pieces(Piece::Handlers);
     class(
@@ -236,11 +236,11 @@ fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
             for (name, range) in pass_through(context) {
                 let mut docs = Docs::of(&range.text);
                 docs.paragraph(format!(
-                    "Codes {} to {} that have no method of their own.",
+                    "Codes {} to {} without a separate method.",
                     range.first_spelling, range.last_spelling
                 ));
                 docs.paragraph("不实现此方法时，按未知指令拒绝。");
-                docs.paragraph("Refused as an unknown command unless the robot has this method.");
+                docs.paragraph("Without this method, the robot refuses them as unknown commands.");
                 let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
                 let parameters = parameters.map(Code::from).to_vec();
                 let open = format!("async def {name}(");

@@ -64,7 +64,7 @@ fn stub(
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let docs = facts::call_docs(context, command.operation, |error| {
         format!(
-            "[`CallError::declared`](fc_runtime::CallError::declared) says which [`{error}`] it was."
+            "[`CallError::declared`](fc_runtime::CallError::declared) returns the [`{error}`] of a refused call."
         )
     });
     out.docs(&docs);
@@ -120,7 +120,7 @@ fn deprecation(out: &mut Source, command: &Call<'_>) {
 fn push(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
     let mut docs = facts::operation_docs(report.operation);
     facts::operation_end(context.style, &mut docs, report.operation);
-    docs.paragraph("Returns what became of it at each connection.");
+    docs.paragraph("Returns the outcome at each connection.");
     docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
     out.docs(&docs);
     let params = [

@@ -15,7 +15,9 @@ pub fn file(context: &Context<'_>) -> String {
 
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    docs.paragraph("app 端：连接，以及汇成一个枚举的全部主动上报。每条指令的方法与它的消息类型在同一个文件里。");
+    docs.paragraph(
+        "app 端：连接，以及汇成一个枚举的全部上报。每条指令的方法与它的消息类型在同一个文件里。",
+    );
     docs.paragraph(
         "The app's side: the connection, and one enum over all reports. The method of each command is in \
          the file of its messages.",
@@ -79,7 +81,7 @@ pub struct Client {{
             "\
 /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
 ///
-/// Connects to a robot; what `config` does not set has the default of the spec.
+/// Connects to a robot. Settings missing from `config` have the defaults of the spec.
 pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
     let connection = Connection::connect(config).await?;
     Ok(Self {{ connection }})
@@ -87,8 +89,8 @@ pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {{
 
 /// 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
 ///
-/// Returns at once and connects in the background; calls made meanwhile wait for the connection within
-/// their timeout.
+/// Returns at once and connects in the background. Calls made before that wait for the connection
+/// within their timeout.
 #[must_use]
 pub fn connect_lazy(config: ClientConfig) -> Self {{
     Connection::connect_lazy(config).into()
@@ -96,16 +98,16 @@ pub fn connect_lazy(config: ClientConfig) -> Self {{
 
 /// 此刻的连接状态；没有连接时说明原因。
 ///
-/// Whether there is a connection at this moment, and why not.
+/// Returns the present state of the connection, with the reason if there is none.
 #[must_use]
 pub fn state(&self) -> ConnectionState {{
     self.connection.state()
 }}
 
-/// 连接状态的变化：先是此刻的状态，之后是每一次变化。每次看到 `Connected` 就重新查询一次，机器人重启之后也不会用到过时的状态。
+/// 连接状态的变化：先是此刻的状态，之后是每一次变化。每次收到 `Connected` 都重新查询机器人的状态：机器人可能重启过。
 ///
-/// The states of the connection: the present one first, and then each that it comes to. An app that
-/// asks for the robot's state with each `Connected` knows it also after the robot has been restarted.
+/// The states of the connection: the present one first, then each change. Query the state of the robot
+/// at each `Connected`: the robot may have restarted.
 #[must_use]
 pub fn states(&self) -> ConnectionStates {{
     self.connection.states()
@@ -113,15 +115,15 @@ pub fn states(&self) -> ConnectionStates {{
 
 /// 等到连接永久关闭，返回原因。
 ///
-/// Waits until the connection has ended for good, and says why.
+/// Waits until the connection is closed for good, and returns the reason.
 pub async fn closed(&self) -> Loss {{
     self.connection.closed().await
 }}
 
 /// 连接数据端口：在后台建立，断线后重连，随指令连接一起结束。
 ///
-/// A connection to the data port: made in the background, made again after a loss, and as long as this
-/// one.
+/// Connects to the data port in the background and reconnects after a loss. It ends with this
+/// connection.
 #[must_use]
 pub fn data(&self) -> DataConnection<{protocol}> {{
     self.connection.data()
@@ -135,10 +137,10 @@ pub fn connection(&self) -> &Connection<{protocol}> {{
     &self.connection
 }}
 
-/// 此后收到的全部主动上报。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。
+/// 返回此后全部上报的接收端。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。
 ///
-/// All reports received from now on. Each receiver gets all of them and has a queue of its own; while
-/// there is none, no report is acknowledged.
+/// Returns a receiver of all reports from now on. Each receiver gets all of them and has its own
+/// queue. Without a receiver, reports are not acknowledged.
 #[must_use]
 pub fn reports(&self) -> Reports {{
     Reports(self.connection.reports())
@@ -159,27 +161,27 @@ impl From<Connection<{protocol}>> for Client {{
 fn stream(out: &mut Source, protocol: &str) {
     out.line(format!(
         "\
-/// 收到的主动上报，按到达的先后。
+/// 收到的上报，按到达的先后。
 ///
-/// Reports in the order in which they came. Each is acknowledged when at least one receiver has it in
-/// its queue; several receivers of one connection each get all of them. A report that does not read as
-/// its type says is refused, counted as `reports_invalid`, and never comes out here.
+/// Reports in the order of arrival. A report is acknowledged when at least one receiver has it in its
+/// queue. Every receiver of a connection gets all reports. A report with an invalid body is refused,
+/// counted as `reports_invalid`, and not delivered.
 #[derive(Debug)]
 pub struct Reports(RawReports<{protocol}>);
 
 impl Reports {{
     /// 下一个上报；连接结束后为 `None`。
     ///
-    /// The next report; `None` once the connection has ended. An error can come only from a connection
-    /// to a protocol of other types, for reports are read before they are acknowledged.
+    /// Returns the next report, or `None` after the connection has ended. Reports are read before they
+    /// are acknowledged, so an error means that the connection has a protocol with other types.
     pub async fn recv(&mut self) -> Option<Result<AnyReport, BodyError>> {{
         self.0.recv().await.map(AnyReport::from_raw)
     }}
 
-    /// 自上次询问以来，因自己的队列已满而错过的上报数（其他接收端收到了它们）。
+    /// 返回上次调用以来错过的上报数：自己的队列已满，其他接收端收到了它们。
     ///
-    /// How many reports this receiver has missed since this was last asked, because its queue was full
-    /// while another receiver took them.
+    /// Returns the number of reports that this receiver missed since the last call: its queue was full,
+    /// and another receiver took them.
     pub fn missed(&mut self) -> u64 {{
         self.0.missed()
     }}
@@ -200,7 +202,7 @@ impl Stream for Reports {{
 fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
     out.line(format!(
         "\
-/// 任意一个主动上报。
+/// 任意一个上报。
 ///
 /// Any report.
 #[derive(Clone, Debug, PartialEq, Dispatch)]
@@ -218,9 +220,9 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
         out.blank();
         out.line(format!(
             "\
-/// 编码不在规范中的上报，原样保留。
+/// 功能码不在规范中的上报，原样保留。
 ///
-/// A report whose code the spec does not know, kept as it came.
+/// A report with a code that is not in the spec, kept unchanged.
 #[fc(unknown)]
 {unknown}(RawReport),"
         ));

@@ -38,16 +38,18 @@ pub fn file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    docs.paragraph("每个操作的说明数据，供不依赖具体类型的工具使用。");
-    docs.paragraph("Every operation as data, for tools that work without its types.");
+    docs.paragraph("每个接口的描述数据，供不依赖具体类型的工具使用。");
+    docs.paragraph("Every operation as data, for tools that do not use its types.");
     docs.paragraph(
-        "文件末尾是对每个操作展开一次的宏：表驱动的测试、模拟器和工具用它们，新增指令时不必改动。",
+        "文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
     );
     docs.paragraph(
-        "The macros at the end expand once per operation: tests, mocks and tools that are driven by them \
-         cover a new command without a change.",
+        "The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
+         command without a change.",
     );
-    docs.paragraph("Tables are in the order of the spec: by group, then as in the group's file.");
+    docs.paragraph(
+        "Tables are in the order of the spec: by group, then by position in the file of the group.",
+    );
     out.inner_docs(&docs);
     out.blank();
 
@@ -72,7 +74,7 @@ pub fn file(context: &Context<'_>) -> String {
     }
     if !model.operations.is_empty() {
         out.blank();
-        out.line("/// Each operation, apart from the tables: one may be called like them.");
+        out.line("/// One constant per operation. The module keeps their names apart from those of the tables.");
         out.block("mod operation", |out| {
             if has_types(model) {
                 out.import("crate", &["messages"]);

@@ -34,23 +34,23 @@ fn all(context: &Context<'_>) -> [Each; 3] {
     [
         Each {
             name: "for_each_command",
-            zh: "对每个有编码的指令展开一次：方法名、请求类型、响应类型。",
-            en: "Expands once per command that has a code: its method, request and response.",
+            zh: "对每条有功能码的指令展开一次：方法名、请求类型、响应类型。",
+            en: "Expands once per command with a code: its method, request and response.",
             pattern: "$($method:ident $request:ident $response:ident;)*",
             rows: context.commands().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_report",
-            zh: "对每个有编码的主动上报展开一次：方法名、消息类型、确认类型。",
-            en: "Expands once per report that has a code: its method, message and acknowledgement.",
+            zh: "对每个有功能码的上报展开一次：方法名、消息类型、应答类型。",
+            en: "Expands once per report with a code: its method, message and acknowledgement.",
             pattern: "$($method:ident $report:ident $acknowledgement:ident;)*",
             rows: context.reports().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_message",
-            zh: "对每个消息结构体展开一次，包括没有编码的操作和嵌套的结构体。",
-            en: "Expands once per message struct, those of operations without a code and those \
-                 inside others included.",
+            zh: "对每个消息结构体展开一次，包括没有功能码的接口的结构体和内嵌的结构体。",
+            en: "Expands once per message struct, including those of operations without a code and \
+                 inner ones.",
             pattern: "$($message:ident;)*",
             rows: messages.map(|item| format!("{};", item.ty.name)).collect(),
         },
@@ -62,7 +62,7 @@ fn write(out: &mut Source, each: &Each) {
     docs.paragraph(each.zh);
     docs.paragraph(each.en);
     docs.paragraph(format!(
-        "The macro it is given has to accept `{}`.",
+        "The callback macro must accept `{}`.",
         each.pattern
     ));
     out.docs(&docs);

@@ -9,10 +9,10 @@ use fc_spec::model::Type;
 pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    docs.paragraph("各种实体的 ID，每种一个类型，不会互相混用；发送的形式与不用这些类型时相同。");
+    docs.paragraph("各种实体的 ID，每种一个类型，不会互相混用。发送的形式与其中的值相同。");
     docs.paragraph(
-        "The IDs of entities, each kind with a type of its own, so that none is taken for another. They travel as \
-         what they hold.",
+        "The IDs of entities, with one type per entity, so that the compiler keeps them apart. An ID is sent as \
+         the value in it.",
     );
     out.inner_docs(&docs);
     out.blank();

@@ -34,12 +34,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 /// All sources of the generated crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(
-        model,
-        targets.rust(),
-        &source::RUST,
-        targets.place(Product::Markdown),
-    );
+    let context = &Context::new(model, targets.rust(), &source::RUST, Some(targets));
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
@@ -79,12 +74,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// The types of these names as the crate declares them, one behind the other, without what they import.
 #[must_use]
 pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
-    let context = Context::new(
-        model,
-        targets.rust(),
-        &source::RUST,
-        targets.place(Product::Markdown),
-    );
+    let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
     let samples = Samples::new(model);
     let items = context.package.items();
     let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
@@ -97,12 +87,7 @@ pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
 /// A field as its struct declares it: `pub name: Option<String>`.
 #[must_use]
 pub fn field(model: &Model, targets: &Targets, owner: &str, wire: &str) -> Option<String> {
-    let context = Context::new(
-        model,
-        targets.rust(),
-        &source::RUST,
-        targets.place(Product::Markdown),
-    );
+    let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
     let mut items = context.package.items();
     let item = items.find(|item| item.ty.of.name == owner)?;
     let mut fields = item.fields().iter();

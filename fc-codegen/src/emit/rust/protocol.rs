@@ -198,7 +198,7 @@ fn header(out: &mut Source, context: &Context<'_>) {
         frame.header_len()
     ));
     docs.paragraph(format!(
-        "The {} bytes in front of the data area.",
+        "The header: {} bytes before the data area.",
         frame.header_len()
     ));
     docs.text(&frame.data);
@@ -327,7 +327,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     });
     out.blank();
     out.block("impl ResultCode", |out| {
-        out.line("/// 随结果码发送的文字。The text sent beside the code.");
+        out.line("/// 随结果码发送的文字。The text sent with the code.");
         out.line("#[must_use]");
         out.block("pub const fn text(self) -> &'static str", |out| {
             out.block("match self", |out| {
@@ -358,8 +358,8 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     }
     out.blank();
     let mut docs = Docs::default();
-    docs.paragraph("数据流的编码。");
-    docs.paragraph("What the bytes of a frame on the data port are.");
+    docs.paragraph("数据流的功能码。");
+    docs.paragraph("Codes of streams.");
     out.docs(&docs);
     let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);

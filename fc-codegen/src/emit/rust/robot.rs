@@ -19,11 +19,11 @@ pub fn file(context: &Context<'_>) -> String {
     let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(
-        "机器人端：每条指令一个方法的 trait，按示例应答的演示机器人，以及主动上报的发送端；每种上报的方法与它的消息类型在同一个文件里。",
+        "机器人端：每条指令一个方法的 trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。",
     );
     docs.paragraph(
-        "The robot's side: a trait with one method per command, a robot that responds with the \
-         examples in the spec, and what sends reports, whose methods are in the files of their messages.",
+        "The robot's side: a trait with one method per command, a robot that responds with the examples of \
+         the spec, and the sender of reports. The method of each report is in the file of its messages.",
     );
     out.inner_docs(&docs);
     out.blank();
@@ -86,25 +86,24 @@ fn robot(
     out.line(format!(
         "\
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing
-/// here, and the compiler says so.
+/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
+/// reports a missing method.
 ///
 /// 只实现了一部分指令的机器人，先写 `impl PartialRobot for …`：方法相同，都可以不写；没有写的指令以“未实现”
-/// 拒绝。两者都由 [`RobotService`] 提供服务，指令齐全之后只改这一个词。
+/// 拒绝。[`RobotService`] 可以使用任意一种；指令齐全之后，把 `PartialRobot` 改为 `Robot`。
 ///
-/// A robot that has some of them so far starts with `impl PartialRobot for …`: the methods are the
-/// same, and none has to be there; what is left out is refused as not implemented. [`RobotService`]
-/// serves either, so that this one word is all that changes once nothing is missing.
+/// A robot with some of the commands starts with `impl PartialRobot for …`. The methods are the same,
+/// and each is optional; a missing one is refused as not implemented. [`RobotService`] serves either.
+/// Once the robot has all commands, change `PartialRobot` to `Robot`.
 ///
-/// 处理超时后，机器人替处理程序应答超时；连接也可能先断。此后不再有人等待应答。会引起动作的指令，以及
-/// 作用不详的指令，处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。
-/// [`Context::is_abandoned`] 和 [`Context::abandoned`] 让处理程序知道这一点，需要时自己停下：
+/// 处理超时后，机器人替处理程序返回超时；连接也可能先断开。此后调用方不再等待响应。运动指令和影响不详的指令，
+/// 处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。处理程序用 [`Context::is_abandoned`]
+/// 和 [`Context::abandoned`] 得知这一点，可以提前停止：
 ///
-/// When a handler takes too long, the robot answers with a timeout in its place; the connection
-/// may also break first. From then on nobody waits for the answer. The handler of a command that
-/// sets something in motion, or whose effect is unknown, still runs to its end; that of any other
-/// command is dropped at its next `.await`. [`Context::is_abandoned`] and [`Context::abandoned`]
-/// tell a handler of it, so that it can stop by itself:
+/// After a handler timeout, the robot responds with a timeout; the connection can also break first. From
+/// then on the caller does not wait for the response. The handler of a command that moves the robot, or
+/// with an unknown effect, runs to its end. The handler of any other command is dropped at its next
+/// `.await`. A handler can check [`Context::is_abandoned`] or await [`Context::abandoned`], and stop early:
 ///
 /// ```ignore
 /// tokio::select! {{
@@ -121,7 +120,7 @@ fn robot(
             facts::operation_end(context.style, &mut docs, command.operation);
             if let Some(error) = context.package.error_type(command.operation) {
                 docs.raw(format!(
-                    "A [`Refusal`] is made from a [`messages::{error}`]."
+                    "Convert a [`messages::{error}`] to refuse the command with it."
                 ));
             }
             docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
@@ -140,7 +139,7 @@ fn robot(
         for (name, range) in ranges {
             let mut docs = Docs::of(&range.text);
             docs.paragraph(format!(
-                "Codes {} to {} that have no method of their own.",
+                "Codes {} to {} without a separate method.",
                 range.first_spelling, range.last_spelling
             ));
             for text in REFUSED {
@@ -156,7 +155,7 @@ fn robot(
         }
         let mut docs = Docs::default();
         docs.paragraph("功能码不在规范中的指令。");
-        docs.paragraph("Commands whose code is not in the spec.");
+        docs.paragraph("Commands with a code that is not in the spec.");
         for text in REFUSED {
             docs.paragraph(text);
         }
@@ -170,7 +169,7 @@ fn robot(
 /// What becomes of raw requests by default: a range that the spec gains breaks no robot.
 const REFUSED: [&str; 2] = [
     "不实现此方法时，按未知指令拒绝。",
-    "Refused as an unknown command unless the robot has this method.",
+    "Without this method, the robot refuses them as unknown commands.",
 ];
 
 /// A method for requests without a type, which refuses them.
@@ -194,18 +193,18 @@ fn may_move(command: &Call<'_>) -> bool {
 fn example(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
     out.line(
         "\
-/// 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
-/// Answers with the spec's examples, for demos and tests alone; a robot of your own starts with
+/// 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
+/// Responds with the examples of the spec, only for demos and tests. Your own robot starts with
 /// `impl PartialRobot for …`.
 ///
-/// 会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装。
+/// 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion` 为真时假装成功。
 ///
-/// It does not carry out what sets something in motion, or may do so: such commands are refused as not
-/// implemented, unless it is told to pretend.
+/// It does not execute commands that move the robot or have an unknown effect, and refuses them as not
+/// implemented. With `pretend_motion`, it pretends success.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExampleRobot {
-    /// 对这些指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
-    /// Answers these with success as well, though nothing moves; only where there is no real robot.
+    /// 对这些指令也返回成功，但什么都不会动；只在没有真机时使用。
+    /// Responds to these with success as well, although no robot moves. Use it only without a real robot.
     pub pretend_motion: bool,
 }",
     );
@@ -238,7 +237,7 @@ pub struct ExampleRobot {
 fn reporter(out: &mut Source, protocol: &str) {
     out.line(format!(
         "\
-/// 主动上报：每种上报一个方法。
+/// 发送上报：每种上报一个方法。
 ///
 /// Pushes reports: one method per report. Cheap to clone.
 #[derive(Clone, Debug)]

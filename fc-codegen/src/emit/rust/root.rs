@@ -9,7 +9,7 @@ use crate::emit::stub::docs::Docs;
 const ALLOWED: &[(&str, &str)] = &[
     (
         "clippy::doc_markdown",
-        "prose comes from the spec, which names wire keys as it likes",
+        "the spec contains the prose and its wire keys",
     ),
     (
         "clippy::large_enum_variant",
@@ -17,11 +17,11 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "clippy::missing_errors_doc",
-        "every call fails in the ways its error type lists",
+        "the error type lists the errors of a call",
     ),
     (
         "clippy::struct_excessive_bools",
-        "the wire has as many flags as it has",
+        "the protocol has that many flags",
     ),
     (
         "clippy::struct_field_names",
@@ -48,7 +48,7 @@ pub fn file(context: &Context<'_>) -> String {
         model.protocol.version, model.protocol.version
     ));
     docs.paragraph(
-        "An app starts at `Client`, a robot at `PartialRobot` or `Robot`; `examples/app.rs` and `examples/robot.rs` of \
+        "An app starts with `Client`, a robot with `PartialRobot` or `Robot`. `examples/app.rs` and `examples/robot.rs` of \
          this crate show both.",
     );
     out.inner_docs(&docs);
@@ -89,13 +89,13 @@ pub mod tables;
     out.filled("pub use client::{", &app, "};");
     out.line(
         "\
-/// 运行库：连接的配置、错误、限制、帧。只依赖本 crate 就够了。
+/// 运行库：连接的配置、错误、限制、帧。依赖本 crate 即可，不必另外依赖运行库。
 ///
-/// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
+/// The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.
 pub use fc_runtime as runtime;",
     );
     every_id(&mut out, "", context);
-    // Types alone: a group may be called like a crate, and whoever imports all of this needs that one.
+    // Only types: a group can have the name of a crate, which a glob import must not hide.
     every_type(&mut out, "", context);
     let package = &context.package;
     let mut names = vec![
@@ -195,14 +195,14 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = Source::rust();
     let mut docs = Docs::default();
     docs.paragraph(format!(
-        "app 和机器人要用到的名称，一次引入：`use {krate}::prelude::*;`"
+        "app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`"
     ));
     docs.paragraph(format!(
-        "What an app and a robot need, with one line: `use {krate}::prelude::*;`"
+        "The names for an app and a robot, in one line: `use {krate}::prelude::*;`"
     ));
     docs.paragraph(
-        "It holds every message type, the stubs, and what goes with them of the runtime. A name of your \
-         own, and one that you import by itself, comes before those from here.",
+        "It contains all message types, the stubs, and the related types of the runtime. A name that you \
+         declare or import explicitly takes precedence over these.",
     );
     out.inner_docs(&docs);
     out.blank();
@@ -241,9 +241,9 @@ pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
     let mut out = Source::rust();
     let mut docs = Docs::default();
-    docs.paragraph("消息类型，按指令组分模块；所有类型都可以直接从 crate 根部引用。");
+    docs.paragraph("消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。");
     docs.paragraph(
-        "Message types, a module per command group. All types are re-exported at the crate root.",
+        "Message types, with one module per group. All types are re-exported at the crate root.",
     );
     out.inner_docs(&docs);
     out.blank();

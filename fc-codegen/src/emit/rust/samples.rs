@@ -170,7 +170,7 @@ pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String
 //! The samples that the documentation shows, compiled and run: every command is called, every
 //! report pushed and taken.
 
-#![allow(deprecated, reason = \"a robot still answers what is withdrawn\")]
+#![allow(deprecated, reason = \"a robot still handles deprecated commands\")]
 #![allow(
     clippy::approx_constant,
     clippy::print_stdout,
@@ -180,7 +180,7 @@ pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String
     clippy::wildcard_imports,
     missing_docs,
     unused_imports,
-    reason = \"samples are as the spec's examples are\"
+    reason = \"samples contain the examples of the spec\"
 )]",
     );
     out.blank();
@@ -338,7 +338,7 @@ let client = Client::connect(config).await?;"
                 out.line(pushes.concat());
                 out.line("Ok::<(), Box<dyn std::error::Error>>(())");
             });
-            out.line("// An app takes reports for ever; a push is done when every app has acknowledged it.");
+            out.line("// An app takes reports without end; a push ends when every app has acknowledged it.");
             out.enclose("tokio::select! {", "}", |out| {
                 out.line("taken = takers => drop(taken?),");
                 out.line("pushed = pushes => pushed?,");

@@ -47,9 +47,9 @@ pub fn imports_of_robot(context: &Context<'_>) -> Vec<&'static str> {
 pub fn app(out: &mut Source, context: &Context<'_>, protocol: &str) {
     out.line(format!(
         "\
-/// 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
+/// 数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。
 ///
-/// The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+/// The streams of the data port. Subscribe to those of the robot, and send those of the app.
 #[derive(Debug)]
 pub struct Streams {{
     data: DataConnection<{protocol}>,
@@ -61,7 +61,7 @@ pub struct Streams {{
             "\
 /// 数据连接上的数据流，见 [`Client::data`]。
 ///
-/// Those of a data connection; see [`Client::data`].
+/// The streams of a data connection; see [`Client::data`].
 #[must_use]
 pub fn new(data: DataConnection<{protocol}>) -> Self {{
     Self {{ data }}
@@ -69,7 +69,7 @@ pub fn new(data: DataConnection<{protocol}>) -> Self {{
 
 /// 数据连接：连接状态和没有订阅的帧。
 ///
-/// The data connection: its state, and frames that nobody has subscribed to.
+/// The data connection: its state, and frames without a subscription.
 #[must_use]
 pub fn data(&self) -> &DataConnection<{protocol}> {{
     &self.data
@@ -125,7 +125,7 @@ pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
 
 /// 服务端：还可以接收 app 发来的数据流。
 ///
-/// The server, which also receives the streams of apps.
+/// The server. It also receives the streams of apps.
 #[must_use]
 pub fn handle(&self) -> &ServerHandle<{protocol}> {{
     &self.handle
@@ -134,7 +134,7 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
         for stream in streams(context).filter(|stream| stream.sender == Side::Robot) {
             let code = &stream.code.spelling;
             let mut docs = docs(context, stream);
-            docs.paragraph("Returns how many data connections took it.");
+            docs.paragraph("Returns the number of data connections that took it.");
             let (method, parameter) = sent(context, stream, "send_stream", "send_stream_json");
             let params = [
                 "&self".to_owned(),

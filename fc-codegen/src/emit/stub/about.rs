@@ -1,4 +1,4 @@
-//! What a package says of its own parts, which no spec says: in Chinese and in English.
+//! Descriptions of the parts of a package, in Chinese and in English.
 
 use super::context::{Context, page_of};
 use super::docs::Docs;
@@ -12,21 +12,18 @@ pub const WIRE: [&str; 2] = [
 
 /// The envelope of requests.
 pub const REQUEST_ENVELOPE: [&str; 2] = [
-    "每个请求和主动上报都带的公共字段。",
-    "The keys that every request and every report carries beside its own.",
+    "每个请求和上报都带的公共字段。",
+    "The keys of every request and report, in addition to those of its body.",
 ];
 
 /// The envelope of responses.
 pub const RESPONSE_ENVELOPE: [&str; 2] = [
-    "每个响应和确认都带的公共字段。",
-    "The keys that every response and every acknowledgement carries beside its own.",
+    "每个响应和应答都带的公共字段。",
+    "The keys of every response and acknowledgement, in addition to those of its body.",
 ];
 
 /// The tables of constants.
-pub const TABLES: [&str; 2] = [
-    "规范公布的常量表。",
-    "Tables of constants that the spec publishes.",
-];
+pub const TABLES: [&str; 2] = ["规范中的常量表。", "Tables of constants in the spec."];
 
 /// Adds what the types of a module are: those of a group, or those that several share.
 pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
@@ -34,7 +31,7 @@ pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
         docs.text(&group.title);
         docs.texts(group.about.as_ref());
     } else {
-        docs.paragraph("各指令组共用的类型。");
+        docs.paragraph("各分组共用的类型。");
         docs.paragraph("Types that several groups share.");
     }
 }
@@ -42,8 +39,8 @@ pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
 /// The result codes.
 pub fn results(context: &Context<'_>) -> Docs<'static> {
     let mut docs = Docs::said(&[
-        "结果码。只依据它判断成败，不依据旁边的文字。",
-        "Result codes. Go by them and never by the text beside them.",
+        "结果码。用结果码判断成败，不要用随附的文字。",
+        "Result codes. Use the code to detect success, not the text that comes with it.",
     ]);
     if let Some(page) = context.page("reference/results.md") {
         docs.paragraph(page);

@@ -1,29 +1,31 @@
-//! The package with what every file of it asks: how it is written, and where the spec and the pages tell of a thing.
+//! The package, its style, and links from comments to the spec and to the pages.
 
 use super::style::Style;
 use crate::surface::language::Language;
 use crate::surface::package::{Call, Package};
+use crate::target::{self as docs, Targets};
 use fc_spec::model::{Field, Kind, Location, Model, Operation, TypeRef};
 
 /// The package, and where its documentation is.
 pub struct Context<'m> {
     pub package: Package<'m>,
     pub style: &'static Style,
-    /// Where the docs are, from the project's root, if it has them.
-    docs: Option<&'m str>,
+    /// The folder of the pages in each language, if the project has them.
+    docs: Vec<(docs::Language, String)>,
 }
 
 impl<'m> Context<'m> {
+    /// A package whose comments link to the pages of these targets.
     pub fn new(
         model: &'m Model,
         language: &Language,
         style: &'static Style,
-        docs: Option<&'m str>,
+        targets: Option<&Targets>,
     ) -> Self {
         Self {
             package: Package::of(model, language),
             style,
-            docs,
+            docs: targets.map_or_else(Vec::new, Targets::docs),
         }
     }
 
@@ -32,18 +34,23 @@ impl<'m> Context<'m> {
         self.package.model
     }
 
-    /// The end of a comment: where the spec and the documentation tell of it.
+    /// The end of a comment: links to the spec and to the page in each language.
     pub fn links(&self, location: &Location, page: &str) -> String {
         let spec = format!("Spec: `{}` in `{}`", location.name, location.file);
-        match self.docs {
-            Some(docs) => format!("- {spec}\n- Docs: `{docs}/{page}`"),
+        match self.page(page) {
+            Some(pages) => format!("- {spec}\n{pages}"),
             None => format!("{spec}."),
         }
     }
 
-    /// Where the documentation tells of it, if there is one.
+    /// Links to a page in each language, if the project has the pages.
     pub fn page(&self, page: &str) -> Option<String> {
-        self.docs.map(|docs| format!("Docs: `{docs}/{page}`."))
+        let link = |(language, folder): &(docs::Language, String)| match language {
+            docs::Language::Zh => format!("- 文档：`{folder}/{page}`"),
+            docs::Language::En => format!("- Docs: `{folder}/{page}`"),
+        };
+        let links: Vec<String> = self.docs.iter().map(link).collect();
+        (!links.is_empty()).then(|| links.join("\n"))
     }
 
     /// Commands that have a code.

@@ -281,7 +281,7 @@ fn accepted_facts(accepted: &Accepted) -> Vec<String> {
             .iter()
             .map(|name| format!("`{name}`"))
             .collect();
-        facts.push(format!("To be sent first: {}.", names.join(", ")));
+        facts.push(format!("Send first: {}.", names.join(", ")));
     }
     facts
 }
@@ -314,12 +314,12 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
         }
         (None, BodyState::Stated | BodyState::Confirmed) => {}
         (None, BodyState::Inferred) => {
-            docs.paragraph("推断：由源文档其他部分推得。");
+            docs.paragraph("推断：依据源文档的其他部分。");
             docs.paragraph("Inferred: from other parts of the source document.");
         }
         (None, BodyState::Open) => {
             docs.paragraph("待定：源文档缺失，所有键原样保留。");
-            docs.paragraph("Open: lost in the source document; every key is kept as it is.");
+            docs.paragraph("Open: missing from the source document; every key is kept unchanged.");
         }
     }
 }
@@ -330,7 +330,7 @@ pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
         (Kind::Command, Direction::Request) => ("：请求", ": request"),
         (Kind::Command, Direction::Response) => ("：响应", ": response"),
         (_, Direction::Request) => ("", ""),
-        (_, Direction::Response) => ("：确认", ": acknowledgement"),
+        (_, Direction::Response) => ("：应答", ": acknowledgement"),
     };
     let title = &operation.title;
     let (zh, en) = (format!("{}{zh}", title.zh), format!("{}{en}", title.en));

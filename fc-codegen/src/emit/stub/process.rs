@@ -1,4 +1,4 @@
-//! What a command sets off and how far it has come, and what its comment says of that.
+//! The reports that a command sets off, the state of its process, and the comment about them.
 
 use super::context::Context;
 use super::docs::Docs;
@@ -38,20 +38,20 @@ pub fn state<'m>(
     Some((keys, ty))
 }
 
-/// What the comment on a command's method says of following it.
+/// Adds the paragraphs about following a command.
 pub fn docs(docs: &mut Docs<'_>, context: &Context<'_>, command: &Operation) {
     for (set_off, report, messages) in set_off(context, command) {
         let item = context.package.item(&messages.request.ty);
         let ty = (context.style.link)(&(context.style.elsewhere)(item));
         docs.raw(format!(
-            "`.follow()`：先取得响应，再逐个取得它引起的 {ty}。\n\
-             `.follow()` gives the response, and then each {ty} that it sets off.",
+            "`.follow()`：先返回响应，再逐个返回它引起的 {ty}。\n\
+             `.follow()` returns the response, and then each {ty} that the command sets off.",
         ));
         ending(docs, context, set_off, report, messages);
     }
 }
 
-/// Where following a report ends, and which reports come.
+/// Adds the paragraphs about the end of following, and about the reports that arrive.
 pub fn ending(
     docs: &mut Docs<'_>,
     context: &Context<'_>,
@@ -80,7 +80,7 @@ pub fn ending(
     let (zh, en) = match (state.filter(|_| ends), failing.is_empty()) {
         (Some((keys, _)), true) => (
             format!("`{keys}` 到达终态时结束。"),
-            format!("It ends with a final state in `{keys}`."),
+            format!("It ends at a final state in `{keys}`."),
         ),
         (Some((keys, _)), false) => (
             format!(
@@ -88,33 +88,31 @@ pub fn ending(
                 failing.join("、")
             ),
             format!(
-                "It ends with a final state in `{keys}`, or when {} says that something failed.",
+                "It ends at a final state in `{keys}`, or when {} reports a failure.",
                 failing.join(" or ")
             ),
         ),
         (None, false) => (
             format!(
-                "没有写明哪个状态是终态：只在 {} 表示失败时结束，否则要由 app 停止。",
+                "规范没有写明终态：{} 表示失败时结束，否则由 app 停止。",
                 failing.join("、")
             ),
             format!(
-                "No state is said to be final: it ends only when {} says that something failed, or when the app stops it.",
+                "The spec marks no state as final. It ends when {} reports a failure, or when the app stops it.",
                 failing.join(" or ")
             ),
         ),
         (None, true) => (
-            "没有写明哪个状态是终态：要由 app 停止。".to_owned(),
-            "No state is said to be final: the app has to stop it.".to_owned(),
+            "规范没有写明终态：由 app 停止。".to_owned(),
+            "The spec marks no state as final. The app stops it.".to_owned(),
         ),
     };
     docs.paragraph(zh);
     docs.paragraph(en);
     if set_off.tied.is_empty() {
+        docs.paragraph("报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。");
         docs.paragraph(
-            "报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。",
-        );
-        docs.paragraph(
-            "Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.",
+            "No key ties a report to a call: reports of this kind from other calls arrive as well.",
         );
     } else {
         let ties = set_off.tied.iter().map(|tie| {
@@ -123,8 +121,6 @@ pub fn ending(
         });
         let ties = ties.collect::<Vec<_>>().join(", ");
         docs.paragraph(format!("只收到属于这次调用的上报：{ties}。"));
-        docs.paragraph(format!(
-            "Only reports that belong to the call come: {ties}."
-        ));
+        docs.paragraph(format!("Only reports of this call arrive: {ties}."));
     }
 }

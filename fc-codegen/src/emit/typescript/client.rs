@@ -37,7 +37,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     names.extend(has_streams.then(|| "streams".to_owned()));
     import(&mut out, &names, "./operations.ts");
     out.blank();
-    out.line("/** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */");
+    out.line("/** 任意一个上报，`case` 是它的名称。Any report. `case` is its name. */");
     let mut reports = parts(context, groups, "report", What::Reports);
     reports.push("UnknownReport".to_owned());
     union(&mut out, "AnyReport", &reports);
@@ -65,7 +65,7 @@ fn client_class(out: &mut Source, protocol: &str, has_commands: bool) {
             "\
 /**
  * 连接机器人；`config` 中没有设置的项使用规范的默认值。
- * Connects to a robot; what `config` does not set has the default of the spec.
+ * Connects to a robot. Settings missing from `config` have the defaults of the spec.
  */
 static async connect(platform: Platform, config: ClientConfig = {{}}): Promise<Client> {{
   return new Client(await dial({protocol}, platform, config))
@@ -73,7 +73,7 @@ static async connect(platform: Platform, config: ClientConfig = {{}}): Promise<C
 
 /**
  * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
- * Returns at once and connects in the background; calls made meanwhile wait for the connection within their timeout.
+ * Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.
  */
 static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
   return new Client(dialLater({protocol}, platform, config))
@@ -88,15 +88,15 @@ fn app_streams(out: &mut Source, parts: &[String]) {
     out.line(
         "\
 /**
- * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
- * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+ * 数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。
+ * The streams of the data port. Subscribe to those of the robot, and send those of the app.
  */",
     );
     out.block("export class Streams", |out| {
         out.line("static {\n  addAppStreams(Streams, streams)\n}");
         out.blank();
         let about = "/** 数据连接。The data connection. */";
-        let made = "/** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */";
+        let made = "/** 数据连接上的数据流，见 `client.data()`。The streams of a data connection; see `client.data()`. */";
         constructor(out, ["data", "DataConnection"], about, made);
     });
 }
@@ -129,7 +129,9 @@ pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'stat
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.has(What::Commands) {
         out.blank();
-        out.line("/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */");
+        out.line(
+            "/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */",
+        );
         let name = group.part(context, "calls");
         out.block(format!("export interface {name}"), |out| {
             for command in &group.commands {
@@ -140,7 +142,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     }
     if group.has(What::Reports) {
         out.blank();
-        out.line("/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */");
+        out.line("/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */");
         let reported = own(context, "Reported");
         let reports = group.reports.iter().map(|report| {
             let name = &report.request.ty.name;
@@ -152,7 +154,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     }
     if group.has(What::Streams) {
         out.blank();
-        out.line("/** 本组的数据流，从 app 一侧看：`Streams` 的方法。The streams of the group on the app's side: methods of `Streams`. */");
+        out.line("/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */");
         let name = group.part(context, "streams");
         out.block(format!("export interface {name}"), |out| {
             for stream in &group.streams {
@@ -174,7 +176,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
     let mut docs = facts::call_docs(context, operation, |error| {
-        format!("`CallError.declared` says which {{@link {error}}} it was.")
+        format!("`CallError.declared` returns the {{@link {error}}} of a refused call.")
     });
     deprecated(&mut docs, operation.deprecated.as_ref());
     out.docs(&docs);

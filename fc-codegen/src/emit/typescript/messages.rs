@@ -210,7 +210,7 @@ fn choice(
     variants: &[Spelled<'_, Variant>],
 ) {
     let mut docs = facts::type_docs(context, item);
-    docs.raw("`case` 说明是哪一种，`value` 是它的内容。\n`case` says which one it is, `value` is what it holds.");
+    docs.raw("`case` 是形式的名称，`value` 是它的内容。\n`case` is the name of the form, and `value` its content.");
     out.docs(&docs);
     let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {

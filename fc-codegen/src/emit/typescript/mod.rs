@@ -81,8 +81,7 @@ static KINDS: [Kind; 6] = [
 /// All files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let docs = targets.place(Product::Markdown);
-    let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, docs);
+    let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, Some(targets));
     let samples = &Samples::new(model);
     let groups = &Group::all(context);
     let mut files: Vec<(String, &str, String)> = Vec::new();

@@ -21,10 +21,7 @@ use fc_spec::model::{
 type Members = Vec<(&'static str, Layout)>;
 
 /// What `commands.ts` says of itself.
-pub const COMMANDS: [&str; 2] = [
-    "每条指令的说明数据。",
-    "What there is to know of each command.",
-];
+pub const COMMANDS: [&str; 2] = ["每条指令的描述数据。", "Every command as data."];
 
 /// `commands.ts` of a group.
 pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
@@ -285,10 +282,7 @@ fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
 }
 
 /// What `reports.ts` says of itself.
-pub const REPORTS: [&str; 2] = [
-    "每种主动上报的说明数据。",
-    "What there is to know of each report.",
-];
+pub const REPORTS: [&str; 2] = ["每种上报的描述数据。", "Every report as data."];
 
 /// `reports.ts` of a group.
 pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
@@ -386,10 +380,7 @@ fn cadence(cadence: &Cadence) -> Layout {
 }
 
 /// What `streams.ts` says of itself.
-pub const STREAMS: [&str; 2] = [
-    "每个数据流的说明数据。",
-    "What there is to know of each stream.",
-];
+pub const STREAMS: [&str; 2] = ["每个数据流的描述数据。", "Every stream as data."];
 
 /// `streams.ts` of a group.
 pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
@@ -438,7 +429,7 @@ pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) ->
             members,
         );
     }
-    let about = "/** 本组的数据流，按方法名中的名称。The streams of the group, by what methods call them. */";
+    let about = "/** 本组的数据流，按方法名中的名称。The streams of the group, by the names in their methods. */";
     let named = streams
         .iter()
         .map(|it| format!("{}: {}", it.name, stream_name(it)));

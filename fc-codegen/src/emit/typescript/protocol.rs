@@ -12,7 +12,7 @@ use fc_spec::model::CodeRange;
 /// The file.
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut out = head([
-        "协议：数值和全部操作。",
+        "协议：数值和全部接口。",
         "The protocol: its numbers and all of its operations.",
     ]);
     let names = [
@@ -40,7 +40,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let about = [
         "/** 全部指令，按方法名。All commands, by the names of their methods. */",
         "/** 全部上报，按方法名。All reports, by the names of their methods. */",
-        "/** 全部数据流，按方法名中的名称。All streams, by what methods call them. */",
+        "/** 全部数据流，按方法名中的名称。All streams, by the names in their methods. */",
     ];
     for ((word, ty, what), about) in all.iter().zip(about) {
         out.blank();
@@ -70,7 +70,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         .write(&mut out, &head, "");
 
     out.blank();
-    out.line("/** 机器人的每个方法处理哪条指令。Which command each method of a robot handles. */");
+    out.line("/** 机器人的每个方法对应的指令。The command of each method of a robot. */");
     let ranges = self::ranges(context).into_iter().map(|(method, range)| {
         Layout::object([
             ("first", Layout::Number(range.first_spelling.to_lowercase())),

@@ -20,8 +20,8 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_reports = groups.iter().any(|it| it.has(What::Reports));
     let has_streams = groups.iter().any(|it| it.has(What::RobotStreams));
     let mut out = head([
-        "机器人端：每条指令一个方法，以及带类型的主动上报。",
-        "The robot's side: one method per command, and typed reports.",
+        "机器人端：每条指令一个方法，以及上报的发送端。",
+        "The robot's side: one method per command, and the sender of reports.",
     ]);
     let mut names = vec!["serveRobot"];
     names.extend(has_commands.then_some("addExamples"));
@@ -55,14 +55,14 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     out.line(format!(
         "\
 /**
- * 只有一部分指令的机器人：没有写的指令以“未实现”拒绝。
- * A robot that has some of the commands so far: what is left out is refused as not implemented.
+ * 只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。
+ * A robot with some of the commands. It refuses the others as not implemented.
  */
 export type PartialRobot = Partial<Robot>
 
 /**
  * 为 app 提供服务；`config` 中没有设置的项使用规范的默认值。
- * Serves apps; what `config` does not set has the default of the spec.
+ * Serves apps. Settings missing from `config` have the defaults of the spec.
  */
 export function serve(platform: ServerPlatform, robot: PartialRobot, config: ServerConfig = {{}}): Promise<Server> {{
   return serveRobot({protocol}, service, platform, robot, config)
@@ -75,7 +75,7 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
         );
     }
     if has_reports {
-        let about = "/** 主动上报：每种上报一个方法。Pushes reports: one method per report. */";
+        let about = "/** 发送上报：每种上报一个方法。Pushes reports: one method per report. */";
         let parts = parts(context, groups, "reporter", What::Reports);
         let constructor = "/** 向一个服务端的各个 app 上报。Reports to the apps of a server. */";
         pushing(
@@ -88,7 +88,7 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
         );
     }
     if has_streams {
-        let about = "/** 机器人发送的数据流：每个数据流一个方法。Sends the robot's streams: one method per stream. */";
+        let about = "/** 机器人发送的数据流：每个数据流一个方法。Sends the streams of the robot: one method per stream. */";
         let parts = parts(context, groups, "streamer", What::RobotStreams);
         let constructor =
             "/** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */";
@@ -109,13 +109,13 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
         "\
 /**
  * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
- * A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing here, and the
- * compiler says so.
+ * A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing
+ * method.
  *
- * 做不到的事，抛出 `Refusal` 拒绝。处理超时或连接断开后，`context.signal` 会中止：不再有人等待应答。
+ * 抛出 `Refusal` 可以拒绝指令。处理超时或连接断开后，`context.signal` 会中止：调用方不再等待响应。
  *
- * What it cannot do, it refuses by throwing a `Refusal`. `context.signal` is aborted when nobody waits for the answer any
- * more: the handler took too long, or the connection broke.
+ * Throw a `Refusal` to refuse a command. `context.signal` is aborted after a handler timeout or a loss of the connection:
+ * the caller does not wait for the response any more.
  */",
     );
     let open = extending(out, "Robot", parts);
@@ -124,13 +124,13 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
             let mut docs = Docs::of(&range.text);
             let (first, last) = (&range.first_spelling, &range.last_spelling);
             docs.paragraph(format!(
-                "Codes {first} to {last} that have no method of their own."
+                "Codes {first} to {last} without a separate method."
             ));
             raw(out, docs, &name);
         }
         let mut docs = Docs::default();
         docs.paragraph("功能码不在规范中的指令。");
-        docs.paragraph("Commands whose code is not in the spec.");
+        docs.paragraph("Commands with a code that is not in the spec.");
         raw(out, docs, UNKNOWN);
     });
 }
@@ -139,7 +139,7 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
 fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
     docs.paragraph("报文是 JSON 文本。不实现此方法时，按未知指令拒绝。");
     docs.paragraph(
-        "Messages are JSON texts. Refused as an unknown command unless the robot has this method.",
+        "Messages are JSON texts. Without this method, the robot refuses them as unknown commands.",
     );
     out.blank();
     out.docs(&docs);
@@ -154,13 +154,13 @@ fn example(out: &mut Source, parts: &[String]) {
     out.line(
         "\
 /**
- * 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
- * Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `implements PartialRobot`.
+ * 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
+ * Responds with the examples of the spec, only for demos and tests. Your own robot starts with `implements PartialRobot`.
  *
- * 会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装。
+ * 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。
  *
- * It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented, unless
- * it is told to pretend.
+ * It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With
+ * `pretendMotion`, it pretends success.
  */",
     );
     out.block("export class ExampleRobot implements Robot", |out| {
@@ -171,13 +171,13 @@ static {
 }
 
 /**
- * 对会引起动作的指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
- * Whether to answer what sets something in motion with success as well, though nothing moves; only where there is no
- * real robot.
+ * 对运动指令也返回成功，但什么都不会动；只在没有真机时使用。
+ * Responds to commands that may move the robot with success as well, although no robot moves. Use it only without a real
+ * robot.
  */
 readonly pretendMotion: boolean
 
-/** 默认不假装。It does not pretend unless told to. */
+/** 默认不假装成功。By default it does not pretend success. */
 constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
   this.pretendMotion = pretendMotion
 }",
@@ -222,7 +222,9 @@ pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.has(What::Commands) {
         out.blank();
-        out.line("/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */");
+        out.line(
+            "/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */",
+        );
         let robot = group.part(context, Side::Robot.name());
         out.block(format!("export interface {robot}"), |out| {
             for command in &group.commands {
@@ -247,14 +249,14 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let audience = format!("audience?: {}", own(context, "Audience"));
     if group.has(What::Reports) {
         out.blank();
-        out.line("/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */");
+        out.line("/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */");
         let name = group.part(context, "reporter");
         out.block(format!("export interface {name}"), |out| {
             for report in &group.reports {
                 let operation = report.operation;
                 let mut docs = facts::operation_docs(operation);
                 facts::operation_end(context.style, &mut docs, operation);
-                docs.paragraph("Resolves to what became of it at each app.");
+                docs.paragraph("Resolves to the outcome at each app.");
                 docs.paragraph(context.links(&operation.location, &page_of(operation)));
                 deprecated(&mut docs, operation.deprecated.as_ref());
                 out.blank();
@@ -270,7 +272,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     }
     if group.has(What::RobotStreams) {
         out.blank();
-        out.line("/** 本组由机器人发送的数据流：`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */");
+        out.line("/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */");
         let name = group.part(context, "streamer");
         out.block(format!("export interface {name}"), |out| {
             let mut streams = group.streams.iter();

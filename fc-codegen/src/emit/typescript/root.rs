@@ -37,7 +37,7 @@ pub fn file(context: &Context<'_>) -> String {
         "规范版本 {}。Version {} of the spec.",
         protocol.version, protocol.version
     ));
-    docs.raw("An app starts at {@link Client}, a robot at {@link PartialRobot} or {@link Robot}, and at {@link serve}.");
+    docs.raw("An app starts with {@link Client}, a robot with {@link PartialRobot} or {@link Robot} and {@link serve}.");
     docs.raw("@module");
     out.docs(&docs);
     out.blank();

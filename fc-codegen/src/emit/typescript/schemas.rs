@@ -16,7 +16,7 @@ use fc_spec::model::{
 /// What the files of schemas say of themselves.
 pub const ABOUT: [&str; 2] = [
     "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
-    "What reader and writer know of the message types; the compiler holds each to its type.",
+    "Schemas of the message types for the reader and the writer. The compiler checks each against its type.",
 ];
 
 /// The schemas of a group.

@@ -16,7 +16,7 @@ use fc_spec::model::Value;
 /// What `defaults.ts` says of itself.
 pub const DEFAULTS: [&str; 2] = [
     "字段不出现时的含义，用 `withDefaults` 填入。",
-    "What the absence of fields means; `withDefaults` fills it in.",
+    "Defaults of absent fields; `withDefaults` fills them in.",
 ];
 
 /// `tables.ts`.

@@ -38,7 +38,7 @@ pub fn file(context: &Context<'_>) -> String {
     );
     results(&mut out, context);
     out.blank();
-    out.line("/** 协议在消息之下的全部数值。All numbers of the protocol beneath its messages. */");
+    out.line("/** 消息之下各层的全部数值。All numbers of the layers below the messages. */");
     wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }

@@ -13,28 +13,28 @@
 
 namespace fc_runtime {
 
-/// What comes to who follows a process.
+/// An event of a process that is being followed.
 template <class Message>
 struct Followed {
-  /// What it is.
+  /// The kind of the event.
   enum class Kind {
     Going,        ///< The process goes on.
-    Ended,        ///< The process has ended: nothing follows this state. The last.
-    Failed,       ///< The report says that something failed. The last.
-    Missed,       ///< Reports did not fit into the queue here, while another receiver took them.
-    Interrupted,  ///< The connection was lost. It goes on when there is another one.
+    Ended,        ///< The process has ended with a final state. The last event.
+    Failed,       ///< The report means a failure. The last event.
+    Missed,       ///< Reports did not fit into this queue while another receiver took them.
+    Interrupted,  ///< The connection was lost. The events continue after the next connection.
     Resumed,      ///< There is a connection again. Query the robot's state: reports may be missing.
-    Closed,       ///< The connection is closed for good; the process may go on. The last.
+    Closed,       ///< The connection is closed for good; the process may go on. The last event.
   };
   Kind kind = Kind::Closed;
   /// The report, for the first three.
   std::optional<Message> report;
-  /// How many, for `Missed`.
+  /// Number of reports, for `Missed`.
   std::uint64_t missed = 0;
-  /// Why, for `Interrupted` and `Closed`.
+  /// The reason, for `Interrupted` and `Closed`.
   Loss why;
 
-  /// Whether nothing comes after it.
+  /// Returns `true` for the last event.
   [[nodiscard]] bool is_over() const {
     return kind == Kind::Ended || kind == Kind::Failed || kind == Kind::Closed;
   }

@@ -25,13 +25,13 @@ struct Fields;
 /// A value of an enum.
 template <class Wire>
 struct EnumValue {
-  /// What travels.
+  /// The value that is sent.
   Wire wire;
   /// Its name in code.
   std::string_view name;
-  /// Whether a process that has come here goes on no more.
+  /// `true` for a final state.
   bool is_final = false;
-  /// Whether it says that something failed.
+  /// `true` for a failure.
   bool is_error = false;
 };
 

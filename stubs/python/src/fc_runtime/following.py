@@ -35,7 +35,7 @@ class Going(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class Ended(Generic[P]):
-    """The process has ended: nothing follows this state. Nothing comes after it."""
+    """The process has ended with a final state. The last event."""
 
     report: P
     """What has been reported."""
@@ -43,14 +43,14 @@ class Ended(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class Failed(Generic[P]):
-    """The report says that something failed. Nothing comes after it."""
+    """The report means a failure. The last event."""
 
     report: P
     """What has been reported."""
 
 
 Followed: TypeAlias = "Going[P] | Ended[P] | Failed[P] | Missed | Interrupted | Resumed"
-"""What comes to who follows a process."""
+"""An event of a process that is being followed."""
 
 
 class FollowError(Exception):

@@ -175,32 +175,32 @@ class Process:
 
 
 class State(Enum):
-    """An enum that says how far a process has come."""
+    """An enum whose values are states of a process."""
 
     @classmethod
     def process(cls) -> Process:
-        """What the protocol says of the values as states."""
+        """Returns the description of the states in the spec."""
         return Process()
 
     @property
     def is_final(self) -> bool:
-        """Whether nothing follows this value, as the protocol says."""
+        """`True` if the spec marks this value as final."""
         return self in self.process().final
 
     @property
     def is_error(self) -> bool:
-        """Whether this value says that something failed, as the protocol says."""
+        """`True` if the spec marks this value as a failure."""
         return self in self.process().error
 
     def normally_follows(self, previous: State | Unknown[Any]) -> bool:
-        """Whether this value follows `previous` in the protocol's normal order. Other changes occur as well."""
+        """Returns `True` if this value follows `previous` in the normal order. Other changes may occur as well."""
         normal = self.process().normal or {}
         return isinstance(previous, State) and self in normal.get(previous, ())
 
     def may_follow(self, previous: State | Unknown[Any]) -> bool:
-        """Whether this value may come directly after `previous`, by the list of all changes that the protocol has.
+        """Returns `True` if the spec lists the change from `previous` to this value.
 
-        True of what the list does not know, and where there is no list.
+        Also `True` if the spec has no complete list, or if `previous` is unknown.
         """
         complete = self.process().complete
         if complete is None or isinstance(previous, Unknown):
@@ -209,9 +209,9 @@ class State(Enum):
 
 
 def is_in_order(state: State | Unknown[Any], previous: State | Unknown[Any]) -> bool:
-    """Whether a state may come after another: false only if the protocol says what does, and it is not that.
+    """Returns `True` if the spec allows a state after another. Without a rule, every state is allowed.
 
-    The same state again and a failure are in order, and so is everything around a value that is not known.
+    The same state, a failure, and any state next to an unknown value are always allowed.
     """
     if state == previous or isinstance(state, Unknown) or isinstance(previous, Unknown) or state.is_error:
         return True

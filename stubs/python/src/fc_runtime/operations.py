@@ -138,18 +138,18 @@ class Report(Facts, Generic[Q]):
     ack: AckPolicy | None = None
     """How its acknowledgement is awaited; `None` for the protocol's default."""
     cadence: Cadence | None = None
-    """When it is sent; `None` where the spec says nothing of that."""
+    """When it is sent; `None` if the spec does not define it."""
     state: str | None = None
-    """Where it says how far a process has come, as names of fields joined by dots."""
+    """The field with the state of the process, as names joined by dots."""
     failures: tuple[str, ...] = ()
-    """Where else it says that something failed."""
+    """Other fields that mean a failure."""
 
     def state_of(self, report: Message) -> Any:
-        """How far the process has come; `None` if the report does not say."""
+        """Returns the state of the process, or `None` if the report does not contain it."""
         return None if self.state is None else field_at(report, self.state)
 
     def is_failure(self, report: Message) -> bool:
-        """Whether a report says that something failed."""
+        """Returns `True` if a report means a failure."""
         paths = self.failures if self.state is None else (self.state, *self.failures)
         return any(_says_failed(field_at(report, path)) for path in paths)
 
@@ -161,10 +161,10 @@ class SetsOff:
     report: Report[Message]
     """The report."""
     ties: tuple[Tie, ...] = ()
-    """What ties a report to a call; none where nothing in the messages does."""
+    """The keys that tie a report to a call; empty if there are none."""
 
     def has_set_off(self, request: Message, answer: Message, report: Message) -> bool:
-        """Whether the report belongs to this call: what ties them differs in neither."""
+        """Returns `True` if the report belongs to this call: all tied keys are equal."""
         return all(
             field_at(answer if tie.of_response else request, tie.command) == field_at(report, tie.report)
             for tie in self.ties

@@ -8,15 +8,15 @@ import type { Core } from './core.ts'
 import { FollowError } from './error.ts'
 import type { Arrived, Queue } from './queues.ts'
 
-/** What comes to who follows a process. */
+/** An event of a process that is being followed. */
 export type Followed<Body> =
-  /** The process goes on; it has ended, for nothing follows this state; or the report says that something failed. */
+  /** The process goes on (`going`), has ended with a final state (`ended`), or the report means a failure (`failed`). */
   | { readonly is: 'going' | 'ended' | 'failed'; readonly report: Body }
-  /** So many reports did not fit into the queue here, while another receiver took them. */
+  /** Number of reports that did not fit into this queue while another receiver took them. */
   | { readonly is: 'missed'; readonly count: number }
-  /** The connection was lost. It goes on when there is another one, with what the robot reports then. */
+  /** The connection was lost. The events continue with the reports after the next connection. */
   | { readonly is: 'interrupted'; readonly loss: Loss }
-  /** There is a connection again. What the robot has reported meanwhile may never come: query its state. */
+  /** There is a connection again. Reports in between may be lost, so query the state of the robot. */
   | { readonly is: 'resumed' }
 
 /**

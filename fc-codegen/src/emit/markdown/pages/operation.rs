@@ -266,8 +266,8 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
     };
     let effect = (operation.effect() == Some(Effect::Unknown)).then(|| {
         lang.pick(
-            "源文档没有说明它对机器人有什么作用",
-            "The source does not say what it does to the robot",
+            "源文档没有写明它对机器人的影响",
+            "The source does not state its effect on the robot",
         )
         .to_owned()
     });
@@ -285,7 +285,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
             kind_note(desk, operation),
         ),
         row(Fact::Code, lang.pick("功能码", "code"), None),
-        row(Fact::Effect, lang.pick("作用", "effect"), effect).map(|row| FactRow { badged, ..row }),
+        row(Fact::Effect, lang.pick("影响", "effect"), effect).map(|row| FactRow { badged, ..row }),
         row(
             Fact::Request,
             side(Direction::Request),
@@ -468,7 +468,7 @@ fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
         Fact::Title => desk.lang.pick("标题", "title"),
         Fact::Type => desk.lang.pick("类型", "type"),
         Fact::Code => desk.lang.pick("功能码", "code"),
-        Fact::Effect => desk.lang.pick("作用", "effect"),
+        Fact::Effect => desk.lang.pick("影响", "effect"),
         Fact::Request => words::side(operation.kind(), Direction::Request, desk.lang),
         Fact::Response => words::side(operation.kind(), Direction::Response, desk.lang),
     };

@@ -154,58 +154,58 @@ public abstract class TextEnumType<E : TextValue> protected constructor(
     override fun wire(value: E): Any = value.wire
 }
 
-/** A value that says how far a process has come. */
+/** A state of a process. */
 public interface State {
-    /** Whether nothing follows it. */
+    /** `true` for a final state. */
     public val isFinal: Boolean
 
-    /** Whether it says that something failed. */
+    /** `true` for a failure. */
     public val isError: Boolean
 
     /**
-     * Whether it may come after [previous]: false only if the spec says what does, and it is not that. The same state again
-     * and a failure are in order.
+     * Returns `true` if the spec allows this state after [previous]. Without a rule, every state is allowed. The same state
+     * and a failure are always allowed.
      */
     public fun mayFollow(previous: State): Boolean
 }
 
-/** What the order of an enum's values claims. */
+/** The meaning of the order of an enum's values. */
 public enum class StateOrder {
-    /** Nothing is said of it. */
+    /** The spec has no order. */
     UNSAID,
 
-    /** The order in which they normally follow each other; any other change may occur as well. */
+    /** The normal order. Other changes may occur as well. */
     NORMAL,
 
-    /** Every change there is: no other value follows. */
+    /** All changes: no other change occurs. */
     COMPLETE,
 }
 
-/** What the spec says of the values of an enum as states of a process, by what travels. */
+/** The values of an enum as states of a process, by the value that is sent. */
 public class Steps(private val type: EnumType<*>, private val order: StateOrder) {
     private val next = HashMap<Any, List<Any>>()
     private var finals: List<Any> = emptyList()
     private var errors: List<Any> = emptyList()
 
-    /** After [wire] come these. */
+    /** Adds the successors of [wire]. */
     public fun then(wire: Any, vararg next: Any): Steps = apply { this.next[wire] = next.toList() }
 
-    /** Nothing follows these. */
+    /** Marks final states. */
     public fun finals(vararg wires: Any): Steps = apply { finals = wires.toList() }
 
-    /** These say that something failed. */
+    /** Marks failures. */
     public fun errors(vararg wires: Any): Steps = apply { errors = wires.toList() }
 
-    /** Whether nothing follows it. */
+    /** Returns `true` for a final state. */
     public fun isFinal(wire: Any): Boolean = wire in finals
 
-    /** Whether it says that something failed. */
+    /** Returns `true` for a failure. */
     public fun isError(wire: Any): Boolean = wire in errors
 
-    /** Whether it may come after [previous]. */
+    /** Returns `true` if the spec allows [wire] after [previous]. */
     public fun mayFollow(previous: Any, wire: Any): Boolean {
         if (wire == previous || isError(wire) || order == StateOrder.UNSAID) return true
-        // Nothing is known of a value that the spec does not have.
+        // A value that is not in the spec may follow and precede any value.
         if (type.known(previous) == null || type.known(wire) == null) return true
         val named = next[previous]
         if (named == null && order == StateOrder.NORMAL && !isFinal(previous)) return true

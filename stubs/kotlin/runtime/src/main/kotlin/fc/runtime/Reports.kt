@@ -27,7 +27,7 @@ public class Reports internal constructor(private val receiver: Queues.Receiver)
     override fun close(): Unit = receiver.leave()
 }
 
-/** What comes to who follows a process. */
+/** An event of a process that is being followed. */
 public sealed class Followed<out R> {
     /** The report, if it is one. */
     public open val report: R? get() = null
@@ -35,19 +35,19 @@ public sealed class Followed<out R> {
     /** The process goes on. */
     public class Going<R> internal constructor(override val report: R) : Followed<R>()
 
-    /** The process has ended: nothing follows this state. */
+    /** The process has ended with a final state. */
     public class Ended<R> internal constructor(override val report: R) : Followed<R>()
 
-    /** The report says that something failed. Nothing follows it. */
+    /** The report means a failure. The last event. */
     public class Failed<R> internal constructor(override val report: R) : Followed<R>()
 
-    /** So many reports did not fit into the queue here, while another receiver took them. */
+    /** Reports did not fit into this queue while another receiver took them. */
     public class Missed internal constructor(
-        /** How many. */
+        /** Number of reports. */
         public val reports: Long,
     ) : Followed<Nothing>()
 
-    /** The connection was lost. It goes on when there is another one, with what the robot reports then. */
+    /** The connection was lost. The events continue with the reports after the next connection. */
     public class Interrupted internal constructor(
         /** Why. */
         public val loss: Loss,
