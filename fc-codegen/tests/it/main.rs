@@ -12,6 +12,7 @@
 
 mod churn;
 mod conditions;
+mod constructions;
 mod docs_support;
 mod emit_kotlin;
 mod emit_markdown;
