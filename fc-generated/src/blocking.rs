@@ -2,13 +2,13 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 不用 `async` 的 app 端，供工具和测试使用：每条指令一个方法，在调用它的线程上等待响应。
-//! The app's side without `async`, for tools and tests: one method per command, which waits on the
-//! thread that calls it.
+//! The app's side without `async`, for tools and tests: one method per command, which blocks the
+//! calling thread until the response.
 //!
-//! 连接有自己的线程：没有调用的时候，上报照样得到应答，断线照样重连。
+//! 连接有自己的线程：没有调用时，上报同样得到应答，断线同样重连。
 //!
-//! A connection has a thread of its own: reports are acknowledged, and a lost connection is made
-//! again, also while nobody calls anything.
+//! A connection has its own thread. It acknowledges reports and reconnects after a loss, also
+//! between calls.
 
 use super::AnyReport;
 use super::protocol::Fc;
@@ -29,51 +29,51 @@ pub struct Client {
 impl Client {
     /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
     ///
-    /// Connects to a robot; what `config` does not set has the default of the spec.
+    /// Connects to a robot. Settings missing from `config` have the defaults of the spec.
     pub fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let connection = blocking::Connection::connect(config)?;
         Ok(Self { connection })
     }
 
-    /// 底层连接：用它的 `wait` 可以等待连接状态、数据端口、原始指令等异步方法。
+    /// 底层连接：用它的 `wait` 等待异步方法，例如数据端口和原始指令的方法。
     ///
-    /// The underlying connection: its `wait` waits for what has `async` methods alone, such as the
-    /// data port and raw commands.
+    /// The underlying connection. Its `wait` waits for `async` methods, such as those of the data
+    /// port and of raw commands.
     #[must_use]
     pub fn connection(&self) -> &blocking::Connection<Fc> {
         &self.connection
     }
 
-    /// 此后收到的全部主动上报。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。
+    /// 返回此后全部上报的接收端。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。
     ///
-    /// All reports received from now on. Each receiver gets all of them and has a queue of its own;
-    /// while there is none, no report is acknowledged.
+    /// Returns a receiver of all reports from now on. Each receiver gets all of them and has its own
+    /// queue. Without a receiver, reports are not acknowledged.
     #[must_use]
     pub fn reports(&self) -> Reports {
         Reports(self.connection.reports())
     }
 }
 
-/// 收到的主动上报，按到达的先后。作为迭代器，它一直等到下一个上报，连接永久关闭后结束。
+/// 收到的上报，按到达的先后。作为迭代器，它一直等到下一个上报，连接永久关闭后结束。
 ///
-/// Reports in the order in which they came. As an iterator it waits for each as long as it takes, and
+/// Reports in the order of arrival. As an iterator it waits for the next report without a limit, and
 /// ends when the connection is closed for good. See [`Reports`](crate::Reports).
 #[derive(Debug)]
 pub struct Reports(blocking::Reports<Fc>);
 
 impl Reports {
-    /// 在 `timeout` 之内等待下一个上报；之后才到的不会丢失。
+    /// 在 `timeout` 之内等待下一个上报；之后到达的不会丢失。
     ///
-    /// The next report, if there is one within `timeout`. What comes later is not lost.
+    /// Waits for the next report for `timeout`. A report that comes later is not lost.
     pub fn recv_timeout(&mut self, timeout: Duration) -> Result<AnyReport, ReportError> {
         let report = self.0.recv_timeout(timeout)?;
         Ok(AnyReport::from_raw(report)?)
     }
 
-    /// 自上次询问以来，因自己的队列已满而错过的上报数（其他接收端收到了它们）。
+    /// 返回上次调用以来错过的上报数：自己的队列已满，其他接收端收到了它们。
     ///
-    /// How many reports this receiver has missed since this was last asked, because its queue was full
-    /// while another receiver took them.
+    /// Returns the number of reports that this receiver missed since the last call: its queue was full,
+    /// and another receiver took them.
     pub fn missed(&mut self) -> u64 {
         self.0.missed()
     }

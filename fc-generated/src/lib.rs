@@ -13,12 +13,12 @@
 //!
 //! 规范版本 2024.09。Version 2024.09 of the spec.
 //!
-//! An app starts at `Client`, a robot at `PartialRobot` or `Robot`; `examples/app.rs` and
+//! An app starts with `Client`, a robot with `PartialRobot` or `Robot`. `examples/app.rs` and
 //! `examples/robot.rs` of this crate show both.
 
 #![allow(
     clippy::doc_markdown,
-    reason = "prose comes from the spec, which names wire keys as it likes"
+    reason = "the spec contains the prose and its wire keys"
 )]
 #![allow(
     clippy::large_enum_variant,
@@ -26,11 +26,11 @@
 )]
 #![allow(
     clippy::missing_errors_doc,
-    reason = "every call fails in the ways its error type lists"
+    reason = "the error type lists the errors of a call"
 )]
 #![allow(
     clippy::struct_excessive_bools,
-    reason = "the wire has as many flags as it has"
+    reason = "the protocol has that many flags"
 )]
 #![allow(
     clippy::struct_field_names,
@@ -60,9 +60,9 @@ pub mod tables;
 
 #[cfg(feature = "client")]
 pub use client::{AnyReport, Client, Reports};
-/// 运行库：连接的配置、错误、限制、帧。只依赖本 crate 就够了。
+/// 运行库：连接的配置、错误、限制、帧。依赖本 crate 即可，不必另外依赖运行库。
 ///
-/// The runtime: configuration, errors, limits, frames. Whoever depends on this crate needs no other.
+/// The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.
 pub use fc_runtime as runtime;
 pub use messages::{
     building::*, cell::*, dispatch::*, identity::*, laser::*, map::*, recharge::*, settings::*,

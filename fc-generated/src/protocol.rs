@@ -94,14 +94,15 @@ impl Protocol for Fc {
 }
 
 /// 包头，共 35 字节，其后是数据区。
-/// The 35 bytes in front of the data area.
+/// The header: 35 bytes before the data area.
 ///
 /// 数据区：指令和上报为 JSON（UTF-8，不带 BOM），数据流为原始字节，可以为空
 ///
 /// Data area: JSON for commands and reports (UTF-8 without BOM), raw bytes for streams; it may be
 /// empty
 ///
-/// Docs: `docs-site/reference/wire.md`.
+/// - 文档：`docs-site/reference/wire.md`
+/// - Docs: `docs-site/en/reference/wire.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Header)]
 #[fc(byte_order = "big")]
 pub struct FrameHeader {
@@ -169,8 +170,8 @@ pub struct FrameHeader {
     pub md5: [u8; 16],
 }
 
-/// 每个请求和主动上报都带的公共字段。
-/// The keys that every request and every report carries beside its own.
+/// 每个请求和上报都带的公共字段。
+/// The keys of every request and report, in addition to those of its body.
 #[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]
 #[fc(envelope = "request")]
 pub struct RequestEnvelope {
@@ -180,8 +181,8 @@ pub struct RequestEnvelope {
     pub cmd_time: Option<i64>,
 }
 
-/// 每个响应和确认都带的公共字段。
-/// The keys that every response and every acknowledgement carries beside its own.
+/// 每个响应和应答都带的公共字段。
+/// The keys of every response and acknowledgement, in addition to those of its body.
 #[derive(Clone, Debug, PartialEq, Message, Envelope)]
 #[fc(envelope = "response")]
 pub struct ResponseEnvelope {
@@ -201,10 +202,11 @@ pub struct ResponseEnvelope {
     pub result_msg: Option<String>,
 }
 
-/// 结果码。只依据它判断成败，不依据旁边的文字。
-/// Result codes. Go by them and never by the text beside them.
+/// 结果码。用结果码判断成败，不要用随附的文字。
+/// Result codes. Use the code to detect success, not the text that comes with it.
 ///
-/// Docs: `docs-site/reference/results.md`.
+/// - 文档：`docs-site/reference/results.md`
+/// - Docs: `docs-site/en/reference/results.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i64)]
 pub enum ResultCode {
@@ -267,7 +269,7 @@ pub enum ResultCode {
 }
 
 impl ResultCode {
-    /// 随结果码发送的文字。The text sent beside the code.
+    /// 随结果码发送的文字。The text sent with the code.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

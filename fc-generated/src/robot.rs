@@ -2,10 +2,11 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 
 //! 机器人端：每条指令一个方法的
-//! trait，按示例应答的演示机器人，以及主动上报的发送端；每种上报的方法与它的消息类型在同一个文件里。
+//! trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。
 //!
 //! The robot's side: a trait with one method per command, a robot that responds with the examples
-//! in the spec, and what sends reports, whose methods are in the files of their messages.
+//! of the spec, and the sender of reports. The method of each report is in the file of its
+//! messages.
 
 use super::messages;
 use super::protocol::Fc;
@@ -13,25 +14,24 @@ use fc_derive::dispatch;
 use fc_runtime::{Context, Message, RawAnswer, RawRequest, Refusal, ServerHandle};
 
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing
-/// here, and the compiler says so.
+/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
+/// reports a missing method.
 ///
 /// 只实现了一部分指令的机器人，先写 `impl PartialRobot for …`：方法相同，都可以不写；没有写的指令以“未实现”
-/// 拒绝。两者都由 [`RobotService`] 提供服务，指令齐全之后只改这一个词。
+/// 拒绝。[`RobotService`] 可以使用任意一种；指令齐全之后，把 `PartialRobot` 改为 `Robot`。
 ///
-/// A robot that has some of them so far starts with `impl PartialRobot for …`: the methods are the
-/// same, and none has to be there; what is left out is refused as not implemented. [`RobotService`]
-/// serves either, so that this one word is all that changes once nothing is missing.
+/// A robot with some of the commands starts with `impl PartialRobot for …`. The methods are the same,
+/// and each is optional; a missing one is refused as not implemented. [`RobotService`] serves either.
+/// Once the robot has all commands, change `PartialRobot` to `Robot`.
 ///
-/// 处理超时后，机器人替处理程序应答超时；连接也可能先断。此后不再有人等待应答。会引起动作的指令，以及
-/// 作用不详的指令，处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。
-/// [`Context::is_abandoned`] 和 [`Context::abandoned`] 让处理程序知道这一点，需要时自己停下：
+/// 处理超时后，机器人替处理程序返回超时；连接也可能先断开。此后调用方不再等待响应。运动指令和影响不详的指令，
+/// 处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。处理程序用 [`Context::is_abandoned`]
+/// 和 [`Context::abandoned`] 得知这一点，可以提前停止：
 ///
-/// When a handler takes too long, the robot answers with a timeout in its place; the connection
-/// may also break first. From then on nobody waits for the answer. The handler of a command that
-/// sets something in motion, or whose effect is unknown, still runs to its end; that of any other
-/// command is dropped at its next `.await`. [`Context::is_abandoned`] and [`Context::abandoned`]
-/// tell a handler of it, so that it can stop by itself:
+/// After a handler timeout, the robot responds with a timeout; the connection can also break first. From
+/// then on the caller does not wait for the response. The handler of a command that moves the robot, or
+/// with an unknown effect, runs to its end. The handler of any other command is dropped at its next
+/// `.await`. A handler can check [`Context::is_abandoned`] or await [`Context::abandoned`], and stop early:
 ///
 /// ```ignore
 /// tokio::select! {
@@ -52,7 +52,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    /// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+    /// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
     async fn list_iot_devices(
         &self,
         context: Context<Fc>,
@@ -70,7 +71,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/get_floors.md`
+    /// - 文档：`docs-site/reference/commands/get_floors.md`
+    /// - Docs: `docs-site/en/reference/commands/get_floors.md`
     async fn get_floors(
         &self,
         context: Context<Fc>,
@@ -89,7 +91,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A02. Only reads.
     ///
     /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+    /// - 文档：`docs-site/reference/commands/get_cell_config.md`
+    /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
     async fn get_cell_config(
         &self,
         context: Context<Fc>,
@@ -117,7 +120,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A0B. Changes the configuration.
     ///
     /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+    /// - 文档：`docs-site/reference/commands/set_cell_config.md`
+    /// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     async fn set_cell_config(
         &self,
         context: Context<Fc>,
@@ -135,7 +139,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
     ///
     /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    /// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+    /// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
     async fn check_condition_0333(
         &self,
         context: Context<Fc>,
@@ -153,7 +158,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A01. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    /// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+    /// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
     async fn get_robot_sn(
         &self,
         context: Context<Fc>,
@@ -174,7 +180,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    /// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+    /// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
     async fn get_firmware_versions(
         &self,
         context: Context<Fc>,
@@ -191,7 +198,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0001. Only reads. Since 2023-08-10.
     ///
     /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-    /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+    /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+    /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
     async fn get_laser_scan(
         &self,
         context: Context<Fc>,
@@ -209,7 +217,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
     ///
     /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_image.md`
+    /// - 文档：`docs-site/reference/commands/get_map_image.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_image.md`
     async fn get_map_image(
         &self,
         context: Context<Fc>,
@@ -226,7 +235,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0103. Only reads.
     ///
     /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/list_maps.md`
+    /// - 文档：`docs-site/reference/commands/list_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/list_maps.md`
     async fn list_maps(
         &self,
         context: Context<Fc>,
@@ -239,7 +249,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x010C. Only reads.
     ///
     /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_info.md`
+    /// - 文档：`docs-site/reference/commands/get_map_info.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_info.md`
     async fn get_map_info(
         &self,
         context: Context<Fc>,
@@ -256,7 +267,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0109. Changes the configuration.
     ///
     /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/save_map.md`
+    /// - 文档：`docs-site/reference/commands/save_map.md`
+    /// - Docs: `docs-site/en/reference/commands/save_map.md`
     async fn save_map(
         &self,
         context: Context<Fc>,
@@ -278,7 +290,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0320. Changes the configuration, inferred.
     ///
     /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/download_maps.md`
+    /// - 文档：`docs-site/reference/commands/download_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/download_maps.md`
     async fn download_maps(
         &self,
         context: Context<Fc>,
@@ -297,7 +310,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
     ///
     /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_maps.md`
+    /// - 文档：`docs-site/reference/commands/upload_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/upload_maps.md`
     async fn upload_maps(
         &self,
         context: Context<Fc>,
@@ -315,7 +329,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0322. Only reads.
     ///
     /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    /// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
     async fn get_map_sync_progress(
         &self,
         context: Context<Fc>,
@@ -337,7 +352,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/start_recharge.md`
+    /// - 文档：`docs-site/reference/commands/start_recharge.md`
+    /// - Docs: `docs-site/en/reference/commands/start_recharge.md`
     async fn start_recharge(
         &self,
         context: Context<Fc>,
@@ -355,7 +371,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
     ///
     /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    /// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+    /// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
     async fn cancel_recharge(
         &self,
         context: Context<Fc>,
@@ -373,7 +390,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A06. Only reads, inferred. Since 2023-05.
     ///
     /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    /// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
     async fn get_recharge_status(
         &self,
         context: Context<Fc>,
@@ -393,7 +411,8 @@ pub trait Robot: Send + Sync + 'static {
     /// in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+    /// - 文档：`docs-site/reference/commands/switch_0a08.md`
+    /// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     async fn switch_0a08(
         &self,
         context: Context<Fc>,
@@ -415,7 +434,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    /// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    /// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     async fn set_voice_reminder(
         &self,
         context: Context<Fc>,
@@ -432,7 +452,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_environment.md`
+    /// - 文档：`docs-site/reference/commands/switch_environment.md`
+    /// - Docs: `docs-site/en/reference/commands/switch_environment.md`
     async fn switch_environment(
         &self,
         context: Context<Fc>,
@@ -450,7 +471,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0311. Changes the configuration. Since 2024-01-02.
     ///
     /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/set_standby_position.md`
+    /// - 文档：`docs-site/reference/commands/set_standby_position.md`
+    /// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
     async fn set_standby_position(
         &self,
         context: Context<Fc>,
@@ -463,7 +485,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0312. Only reads. Since 2024-01-02.
     ///
     /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/get_standby_position.md`
+    /// - 文档：`docs-site/reference/commands/get_standby_position.md`
+    /// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
     async fn get_standby_position(
         &self,
         context: Context<Fc>,
@@ -476,7 +499,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
     ///
     /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+    /// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+    /// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
     async fn set_positions_0313(
         &self,
         context: Context<Fc>,
@@ -494,7 +518,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
     ///
     /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+    /// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+    /// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
     async fn get_positions_0314(
         &self,
         context: Context<Fc>,
@@ -507,7 +532,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A03. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/get_station.md`
+    /// - 文档：`docs-site/reference/commands/get_station.md`
+    /// - Docs: `docs-site/en/reference/commands/get_station.md`
     async fn get_station(
         &self,
         context: Context<Fc>,
@@ -526,7 +552,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    /// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+    /// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
     async fn upload_map_stations(
         &self,
         context: Context<Fc>,
@@ -543,7 +570,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
     /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/add_station.md`
+    /// - 文档：`docs-site/reference/commands/add_station.md`
+    /// - Docs: `docs-site/en/reference/commands/add_station.md`
     async fn add_station(
         &self,
         context: Context<Fc>,
@@ -556,7 +584,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
     /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/delete_station.md`
+    /// - 文档：`docs-site/reference/commands/delete_station.md`
+    /// - Docs: `docs-site/en/reference/commands/delete_station.md`
     async fn delete_station(
         &self,
         context: Context<Fc>,
@@ -569,7 +598,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/rename_station.md`
+    /// - 文档：`docs-site/reference/commands/rename_station.md`
+    /// - Docs: `docs-site/en/reference/commands/rename_station.md`
     async fn rename_station(
         &self,
         context: Context<Fc>,
@@ -586,7 +616,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A0C. Only reads, inferred.
     ///
     /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/commands/list_faults.md`
+    /// - 文档：`docs-site/reference/commands/list_faults.md`
+    /// - Docs: `docs-site/en/reference/commands/list_faults.md`
     async fn list_faults(
         &self,
         context: Context<Fc>,
@@ -604,7 +635,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0A0D. Only reads, inferred.
     ///
     /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/commands/get_self_check.md`
+    /// - 文档：`docs-site/reference/commands/get_self_check.md`
+    /// - Docs: `docs-site/en/reference/commands/get_self_check.md`
     async fn get_self_check(
         &self,
         context: Context<Fc>,
@@ -624,7 +656,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
     ///
     /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/create_task.md`
+    /// - 文档：`docs-site/reference/commands/create_task.md`
+    /// - Docs: `docs-site/en/reference/commands/create_task.md`
     async fn create_task(
         &self,
         context: Context<Fc>,
@@ -637,7 +670,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/get_task_status.md`
+    /// - 文档：`docs-site/reference/commands/get_task_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_task_status.md`
     async fn get_task_status(
         &self,
         context: Context<Fc>,
@@ -657,7 +691,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    /// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+    /// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
     async fn unnamed_0309(
         &self,
         context: Context<Fc>,
@@ -675,7 +710,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    /// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+    /// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
     async fn unnamed_0460(
         &self,
         context: Context<Fc>,
@@ -694,7 +730,8 @@ pub trait Robot: Send + Sync + 'static {
     /// Code 0x0204. Only reads.
     ///
     /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
     async fn get_upper_body_status(
         &self,
         context: Context<Fc>,
@@ -704,11 +741,11 @@ pub trait Robot: Send + Sync + 'static {
     /// 直接透传给上装
     /// Passed straight through to the upper body
     ///
-    /// Codes 0x0200 to 0x0300 that have no method of their own.
+    /// Codes 0x0200 to 0x0300 without a separate method.
     ///
     /// 不实现此方法时，按未知指令拒绝。
     ///
-    /// Refused as an unknown command unless the robot has this method.
+    /// Without this method, the robot refuses them as unknown commands.
     #[fc(range = 0x0200..=0x0300)]
     async fn pass_through(
         &self,
@@ -720,11 +757,11 @@ pub trait Robot: Send + Sync + 'static {
     }
 
     /// 功能码不在规范中的指令。
-    /// Commands whose code is not in the spec.
+    /// Commands with a code that is not in the spec.
     ///
     /// 不实现此方法时，按未知指令拒绝。
     ///
-    /// Refused as an unknown command unless the robot has this method.
+    /// Without this method, the robot refuses them as unknown commands.
     #[fc(unknown)]
     async fn unknown(
         &self,
@@ -736,18 +773,18 @@ pub trait Robot: Send + Sync + 'static {
     }
 }
 
-/// 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
-/// Answers with the spec's examples, for demos and tests alone; a robot of your own starts with
+/// 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
+/// Responds with the examples of the spec, only for demos and tests. Your own robot starts with
 /// `impl PartialRobot for …`.
 ///
-/// 会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非要求它假装。
+/// 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion` 为真时假装成功。
 ///
-/// It does not carry out what sets something in motion, or may do so: such commands are refused as not
-/// implemented, unless it is told to pretend.
+/// It does not execute commands that move the robot or have an unknown effect, and refuses them as not
+/// implemented. With `pretend_motion`, it pretends success.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExampleRobot {
-    /// 对这些指令也回答成功，尽管什么都不会动；只用于没有真机的地方。
-    /// Answers these with success as well, though nothing moves; only where there is no real robot.
+    /// 对这些指令也返回成功，但什么都不会动；只在没有真机时使用。
+    /// Responds to these with success as well, although no robot moves. Use it only without a real robot.
     pub pretend_motion: bool,
 }
 
@@ -1082,7 +1119,7 @@ impl Robot for ExampleRobot {
     }
 }
 
-/// 主动上报：每种上报一个方法。
+/// 发送上报：每种上报一个方法。
 ///
 /// Pushes reports: one method per report. Cheap to clone.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 //! The samples that the documentation shows, compiled and run: every command is called, every
 //! report pushed and taken.
 
-#![allow(deprecated, reason = "a robot still answers what is withdrawn")]
+#![allow(deprecated, reason = "a robot still handles deprecated commands")]
 #![allow(
     clippy::approx_constant,
     clippy::print_stdout,
@@ -14,7 +14,7 @@
     clippy::wildcard_imports,
     missing_docs,
     unused_imports,
-    reason = "samples are as the spec's examples are"
+    reason = "samples contain the examples of the spec"
 )]
 
 use fc_generated::*;
@@ -1057,7 +1057,7 @@ async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>> {
         push_task_progress(&reporter).await?;
         Ok::<(), Box<dyn std::error::Error>>(())
     };
-    // An app takes reports for ever; a push is done when every app has acknowledged it.
+    // An app takes reports without end; a push ends when every app has acknowledged it.
     tokio::select! {
         taken = takers => drop(taken?),
         pushed = pushes => pushed?,

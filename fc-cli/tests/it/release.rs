@@ -370,7 +370,10 @@ First release, with 8 operations.
         "version: \"7.3\"",
     );
     let run = project.fc(&["release", "7.2"]).expect(1);
-    assert!(run.stderr.contains("the version of the spec is 7.3"), "{run:#?}");
+    assert!(
+        run.stderr.contains("the version of the spec is 7.3"),
+        "{run:#?}"
+    );
     project.fc(&["release", "7.3"]).expect(0);
 }
 
@@ -449,8 +452,7 @@ fn a_release_counts_before_a_directory_of_its_name() {
     assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
     let run = project.fc(&["diff", "./7"]).expect(2);
     assert!(
-        run.stderr
-            .contains("`./7` is not a directory with a spec"),
+        run.stderr.contains("`./7` is not a directory with a spec"),
         "{run:#?}"
     );
 }

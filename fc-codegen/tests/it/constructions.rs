@@ -11,6 +11,7 @@ use fc_codegen::target::Targets;
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashMap};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -411,39 +412,40 @@ fn literals(text: &str) -> Vec<String> {
     let mut rest = text;
     while let Some(at) = rest.find(['"', '/', '\'']) {
         let (before, from) = rest.split_at(at);
-        rest = if from.starts_with("//") {
-            from.find('\n').map_or("", |end| &from[end..])
-        } else if from.starts_with("'\"'") || from.starts_with("'\\\"'") {
-            &from[from[1..].find('\'').map_or(1, |end| end + 2)..]
-        } else if from.starts_with('"') {
-            let hashes = before.len() - before.trim_end_matches('#').len();
-            let is_raw = before.trim_end_matches('#').ends_with('r');
-            let (inside, behind) = if is_raw {
-                let close = format!("\"{}", "#".repeat(hashes));
-                let end = from[1..].find(&close).map_or(from.len() - 1, |end| end);
-                (
-                    &from[1..=end],
-                    &from[(1 + end + close.len()).min(from.len())..],
-                )
-            } else {
-                let mut is_escaped = false;
-                let end = from[1..].find(|c: char| {
-                    let ends = c == '"' && !is_escaped;
-                    is_escaped = c == '\\' && !is_escaped;
-                    ends
-                });
-                let end = end.map_or(from.len(), |end| end + 1);
-                (&from[1..end], from.get(end + 1..).unwrap_or_default())
-            };
-            let text = inside.replace("\\\n", " ").replace("\\n", "\n");
-            let blocks_of_text = text.split("\n\n").filter(|it| is_text(it));
-            blocks.extend(blocks_of_text.map(|it| plain(&without_holes(it))));
-            behind
-        } else {
-            &from[1..]
-        };
+        rest = &from[1..];
+        if from.starts_with("//") {
+            rest = from.find('\n').map_or("", |end| &from[end..]);
+        } else if let Some(behind) = QUOTES.iter().find_map(|it| from.strip_prefix(it)) {
+            rest = behind;
+        } else if let Some(inside) = from.strip_prefix('"') {
+            let (literal, behind) = literal(before, inside);
+            let text = literal.replace("\\\n", " ").replace("\\n", "\n");
+            let paragraphs = text.split("\n\n").filter(|it| is_text(it));
+            blocks.extend(paragraphs.map(|it| plain(&without_holes(it))));
+            rest = behind;
+        }
     }
     blocks
+}
+
+/// Quotes as characters.
+const QUOTES: [&str; 2] = ["'\"'", "'\\\"'"];
+
+/// What a literal holds, and the text behind it. `before` is the text before its quote.
+fn literal<'t>(before: &str, inside: &'t str) -> (&'t str, &'t str) {
+    let mark = before.trim_end_matches('#');
+    if mark.ends_with('r') {
+        let close = format!("\"{}", "#".repeat(before.len() - mark.len()));
+        return inside.split_once(&close).unwrap_or((inside, ""));
+    }
+    let mut is_escaped = false;
+    let end = inside.find(|c: char| {
+        let ends = c == '"' && !is_escaped;
+        is_escaped = c == '\\' && !is_escaped;
+        ends
+    });
+    let (literal, behind) = inside.split_at(end.unwrap_or(inside.len()));
+    (literal, behind.strip_prefix('"').unwrap_or_default())
 }
 
 /// A format without the names of its arguments, each of which counts as one word.
@@ -501,7 +503,9 @@ fn files(path: &Path, out: &mut Vec<PathBuf>) {
         let inside = fs::read_dir(path).unwrap();
         let mut inside: Vec<_> = inside.map(|entry| entry.unwrap().path()).collect();
         inside.sort();
-        inside.iter().for_each(|path| files(path, out));
+        for path in &inside {
+            files(path, out);
+        }
     } else {
         out.push(path.to_owned());
     }
@@ -588,7 +592,8 @@ fn constructions_only_become_fewer() {
     for (area, found) in &areas {
         let most = most.get(*area).copied();
         let count = found.len();
-        lower += &format!("{area}: {}\n", most.map_or(count, |most| most.min(count)));
+        let least = most.map_or(count, |most| most.min(count));
+        let _ = writeln!(lower, "{area}: {least}");
         match most {
             Some(most) if count > most => wrong.push(format!(
                 "{area}: {count} sentences have a construction of words/constructions.yaml, \

@@ -22,7 +22,8 @@ use fc_runtime::Extra;
 /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A07,
@@ -48,7 +49,8 @@ pub struct ListIotDevicesRequest {
 /// `data` of [`ListIotDevicesRequest`].
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"iotDeviceType":"elevator"}"#)]
 #[non_exhaustive]
@@ -71,7 +73,8 @@ pub struct ListIotDevicesRequestData {
 /// List the IoT devices of a type: response
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":[{"address":"xxx","id":"001","comAddress":20},{"address":"xxx","id":"002","comAddress":20}]}"#
@@ -98,7 +101,8 @@ pub struct ListIotDevicesResponse {
 /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/get_floors.md`
+/// - 文档：`docs-site/reference/commands/get_floors.md`
+/// - Docs: `docs-site/en/reference/commands/get_floors.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x03A1,
@@ -117,7 +121,8 @@ pub struct GetFloorsRequest {
 /// Get the floors: response
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/get_floors.md`
+/// - 文档：`docs-site/reference/commands/get_floors.md`
+/// - Docs: `docs-site/en/reference/commands/get_floors.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"numFloors":26,"actFloors":["-3","-2","-1","A1","1","2","3","4","5","6","7","8","9","10","11","12","13","14","15","16","17","18","19","20","21","22"],"flgFloors":[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26]}"#
@@ -159,7 +164,8 @@ pub struct GetFloorsResponse {
 /// The list changes as device types are added; an unknown type is kept as the string it is.
 ///
 /// - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum IotDeviceType {
@@ -197,7 +203,8 @@ pub enum IotDeviceType {
 /// An IoT device
 ///
 /// - Spec: `types.IotDevice` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"address":"xxx","id":"001","comAddress":20}"#)]
 #[non_exhaustive]
@@ -239,7 +246,8 @@ impl crate::Client {
     /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    /// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+    /// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
     pub async fn list_iot_devices(
         &self,
         request: &ListIotDevicesRequest,
@@ -258,7 +266,8 @@ impl crate::Client {
     /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    /// - Docs: `docs-site/reference/commands/get_floors.md`
+    /// - 文档：`docs-site/reference/commands/get_floors.md`
+    /// - Docs: `docs-site/en/reference/commands/get_floors.md`
     pub async fn get_floors(
         &self,
         request: &GetFloorsRequest,

@@ -23,7 +23,8 @@ use fc_runtime::Extra;
 /// Code 0x0A02. Only reads.
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A02,
@@ -42,7 +43,8 @@ pub struct GetCellConfigRequest {
 /// Get the compartment configuration: response
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}}"#
@@ -64,7 +66,8 @@ pub struct GetCellConfigResponse {
 /// `data` of [`GetCellConfigResponse`].
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellNums":4,"cellDoorList":[{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellDoorId":[1]},{"cellLocation":"rightTop","cellId":2,"cellType":1,"cellDoorId":[2]},{"cellLocation":"leftBottom","cellId":3,"cellType":1,"cellDoorId":[3]},{"cellLocation":"rightBottom","cellId":4,"cellType":1,"cellDoorId":[4]}]}"#
@@ -109,7 +112,8 @@ pub struct GetCellConfigResponseData {
 /// Code 0x0A0B. Changes the configuration.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0B,
@@ -135,7 +139,8 @@ pub struct SetCellConfigRequest {
 /// `data` of [`SetCellConfigRequest`].
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, OneOf)]
 pub enum SetCellConfigRequestData {
     /// 新版：选用一种已存储的配置
@@ -157,7 +162,8 @@ pub enum SetCellConfigRequestData {
 /// `data` of [`SetCellConfigRequest`].
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"activeCellConfigTypeIndex":1}"#)]
 #[non_exhaustive]
@@ -180,7 +186,8 @@ pub struct SetCellConfigRequestDataActiveIndex {
 /// `data` of [`SetCellConfigRequest`].
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellNums":1,"cellDoorList":[{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}"#
@@ -210,7 +217,8 @@ pub struct SetCellConfigRequestDataOldLayout {
 /// Set the compartment configuration: response
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SetCellConfigResponse {
@@ -223,7 +231,8 @@ pub struct SetCellConfigResponse {
 /// A compartment of the current configuration
 ///
 /// - Spec: `types.Cell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellLockId":1,"cellDoorId":[1]}"#
@@ -274,7 +283,8 @@ pub struct Cell {
 /// A compartment of the old form
 ///
 /// - Spec: `types.OldCell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
 #[non_exhaustive]
@@ -309,7 +319,8 @@ pub struct OldCell {
 /// A layout of compartments
 ///
 /// - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"cellConfigTypeIndex":4,"cellNums":1,"cellDoorList":[{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}"#
@@ -344,7 +355,8 @@ pub struct CellLayout {
 /// A compartment of a layout
 ///
 /// - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}"#)]
 #[non_exhaustive]
@@ -393,7 +405,8 @@ pub struct LayoutCell {
 /// the size.
 ///
 /// - Spec: `types.CellType` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum CellType {
@@ -421,7 +434,8 @@ pub enum CellType {
 /// Physical location of a compartment
 ///
 /// - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum CellLocation {
@@ -489,7 +503,8 @@ impl crate::Client {
     /// Code 0x0A02. Only reads.
     ///
     /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+    /// - 文档：`docs-site/reference/commands/get_cell_config.md`
+    /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
     pub async fn get_cell_config(
         &self,
         request: &GetCellConfigRequest,
@@ -518,7 +533,8 @@ impl crate::Client {
     /// Code 0x0A0B. Changes the configuration.
     ///
     /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+    /// - 文档：`docs-site/reference/commands/set_cell_config.md`
+    /// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     pub async fn set_cell_config(
         &self,
         request: &SetCellConfigRequest,

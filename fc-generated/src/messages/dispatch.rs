@@ -27,7 +27,8 @@ use fc_runtime::Extra;
 /// 2024-01-29.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+/// - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+/// - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct UploadContendedResourcesRequest {
@@ -44,7 +45,8 @@ pub struct UploadContendedResourcesRequest {
 /// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+/// - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+/// - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct UploadContendedResourcesResponse {
@@ -64,7 +66,8 @@ pub struct UploadContendedResourcesResponse {
 /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0333,
@@ -83,7 +86,8 @@ pub struct CheckCondition0333Request {
 /// Check a condition (0x0333, purpose unknown): response
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"condision":"true"}}"#)]
 #[non_exhaustive]
@@ -103,7 +107,8 @@ pub struct CheckCondition0333Response {
 /// `data` of [`CheckCondition0333Response`].
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"condision":"true"}"#)]
 #[non_exhaustive]
@@ -134,7 +139,8 @@ impl crate::Client {
     /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
     ///
     /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    /// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+    /// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
     pub async fn check_condition_0333(
         &self,
         request: &CheckCondition0333Request,

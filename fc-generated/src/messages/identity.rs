@@ -22,7 +22,8 @@ use fc_runtime::Extra;
 /// Code 0x0A01. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A01,
@@ -41,7 +42,8 @@ pub struct GetRobotSnRequest {
 /// Get the serial number: response
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"robotSn":"100132001234567","robotModel":"Indoor"}}"#)]
 #[non_exhaustive]
@@ -61,7 +63,8 @@ pub struct GetRobotSnResponse {
 /// `data` of [`GetRobotSnResponse`].
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"robotSn":"100132001234567","robotModel":"Indoor"}"#)]
 #[non_exhaustive]
@@ -103,7 +106,8 @@ pub struct GetRobotSnResponseData {
 /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+/// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+/// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0A,
@@ -127,7 +131,8 @@ pub struct GetFirmwareVersionsRequest {
 /// kept.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+/// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+/// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetFirmwareVersionsResponse {
@@ -149,7 +154,8 @@ impl crate::Client {
     /// Code 0x0A01. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    /// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+    /// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
     pub async fn get_robot_sn(
         &self,
         request: &GetRobotSnRequest,
@@ -171,7 +177,8 @@ impl crate::Client {
     /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    /// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+    /// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
     pub async fn get_firmware_versions(
         &self,
         request: &GetFirmwareVersionsRequest,

@@ -21,7 +21,8 @@ use fc_runtime::Extra;
 /// Code 0x0001. Only reads. Since 2023-08-10.
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-/// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+/// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+/// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0001,
@@ -53,7 +54,8 @@ pub struct GetLaserScanRequest {
 /// kept.
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-/// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+/// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+/// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetLaserScanResponse {
@@ -74,7 +76,8 @@ impl crate::Client {
     /// Code 0x0001. Only reads. Since 2023-08-10.
     ///
     /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-    /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+    /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+    /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
     pub async fn get_laser_scan(
         &self,
         request: &GetLaserScanRequest,

@@ -27,7 +27,8 @@ use fc_runtime::{Bytes64, Extra};
 /// `2002`: The target map could not be set
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SetTargetMapRequest {
@@ -40,7 +41,8 @@ pub struct SetTargetMapRequest {
 /// Set the target map: its declared errors
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]
 pub enum SetTargetMapError {
     /// 设置目标地图失败
@@ -53,7 +55,8 @@ pub enum SetTargetMapError {
 /// Set the target map: response
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SetTargetMapResponse {
@@ -73,7 +76,8 @@ pub struct SetTargetMapResponse {
 /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0111,
@@ -100,7 +104,8 @@ pub struct GetMapImageRequest {
 /// Get the picture of a map: response
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"image":"","resolution":10.0,"origin":{"x":1.0,"y":1.0,"yaw":1.0},"occupiedThresh":10.0,"freeThresh":10.0,"pngMapBtyes":"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mM4CwAAzwDODXZT3QAAAABJRU5ErkJggg=="}"#
@@ -174,7 +179,8 @@ pub struct GetMapImageResponse {
 /// `origin` of [`GetMapImageResponse`].
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"x":1.0,"y":1.0,"yaw":1.0}"#)]
 #[non_exhaustive]
@@ -212,7 +218,8 @@ pub struct GetMapImageResponseOrigin {
 /// Code 0x0103. Only reads.
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/list_maps.md`
+/// - 文档：`docs-site/reference/commands/list_maps.md`
+/// - Docs: `docs-site/en/reference/commands/list_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0103,
@@ -239,7 +246,8 @@ pub struct ListMapsRequest {
 /// List the maps: response
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/list_maps.md`
+/// - 文档：`docs-site/reference/commands/list_maps.md`
+/// - Docs: `docs-site/en/reference/commands/list_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"msgId":90842323,"mapInfoList":[{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}]}"#
@@ -273,7 +281,8 @@ pub struct ListMapsResponse {
 /// Code 0x010C. Only reads.
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_info.md`
+/// - 文档：`docs-site/reference/commands/get_map_info.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_info.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x010C,
@@ -296,7 +305,8 @@ pub struct GetMapInfoRequest {
 /// Open: No response is printed; every key received is kept.
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_info.md`
+/// - 文档：`docs-site/reference/commands/get_map_info.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_info.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetMapInfoResponse {
@@ -315,7 +325,8 @@ pub struct GetMapInfoResponse {
 /// Code 0x0109. Changes the configuration.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/save_map.md`
+/// - 文档：`docs-site/reference/commands/save_map.md`
+/// - Docs: `docs-site/en/reference/commands/save_map.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Defaults, Command)]
 #[fc(
     code = 0x0109,
@@ -389,7 +400,8 @@ pub struct SaveMapRequest {
 /// kept.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/save_map.md`
+/// - 文档：`docs-site/reference/commands/save_map.md`
+/// - Docs: `docs-site/en/reference/commands/save_map.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SaveMapResponse {
@@ -412,7 +424,8 @@ pub struct SaveMapResponse {
 /// Code 0x0320. Changes the configuration, inferred.
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/download_maps.md`
+/// - 文档：`docs-site/reference/commands/download_maps.md`
+/// - Docs: `docs-site/en/reference/commands/download_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0320,
@@ -447,7 +460,8 @@ pub struct DownloadMapsRequest {
 /// Download maps: response
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/download_maps.md`
+/// - 文档：`docs-site/reference/commands/download_maps.md`
+/// - Docs: `docs-site/en/reference/commands/download_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
 #[non_exhaustive]
@@ -480,7 +494,8 @@ pub struct DownloadMapsResponse {
 /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/upload_maps.md`
+/// - 文档：`docs-site/reference/commands/upload_maps.md`
+/// - Docs: `docs-site/en/reference/commands/upload_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0321,
@@ -504,7 +519,8 @@ pub struct UploadMapsRequest {
 /// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/upload_maps.md`
+/// - 文档：`docs-site/reference/commands/upload_maps.md`
+/// - Docs: `docs-site/en/reference/commands/upload_maps.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct UploadMapsResponse {
@@ -528,7 +544,8 @@ pub struct UploadMapsResponse {
 /// Code 0x0322. Only reads.
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+/// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0322,
@@ -552,7 +569,8 @@ pub struct GetMapSyncProgressRequest {
 /// so.
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+/// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetMapSyncProgressResponse {
@@ -571,7 +589,8 @@ pub struct GetMapSyncProgressResponse {
 /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+/// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0343,
@@ -600,11 +619,12 @@ pub struct MapSyncProgress {
     pub extra: Extra,
 }
 
-/// 上报地图同步进度：确认
+/// 上报地图同步进度：应答
 /// Progress of map synchronisation: acknowledgement
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+/// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
 #[non_exhaustive]
@@ -625,7 +645,8 @@ pub struct MapSyncProgressAck {
 /// Information about a map
 ///
 /// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"id":1234567890,"name":"地图名称","pngPath":"地图图片路径","pgmPath":"","yamlPath":"","pbStreamPath":"","configPath":"","active":1,"buildingId":1234567890,"floorId":1234567890,"tower":"A1 栋","level":"B1","mapVersion":1234567890}"#
@@ -727,7 +748,8 @@ pub struct MapInfo {
 /// A map to download
 ///
 /// - Spec: `types.MapDownload` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapId":1234567890,"mapName":"地图名称","mapUrl":"https://cloud.tencent.com/xxx.zip"}"#
@@ -764,7 +786,8 @@ pub struct MapDownload {
 /// Progress of the synchronisation of a map
 ///
 /// - Spec: `types.MapSync` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}"#
@@ -810,7 +833,8 @@ pub struct MapSync {
 /// Direction of synchronisation
 ///
 /// - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum MapSyncDirection {
@@ -833,7 +857,8 @@ pub enum MapSyncDirection {
 /// Result of the synchronisation
 ///
 /// - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i8)]
 pub enum MapSyncResult {
@@ -870,7 +895,8 @@ impl crate::Client {
     /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
     ///
     /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_image.md`
+    /// - 文档：`docs-site/reference/commands/get_map_image.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_image.md`
     pub async fn get_map_image(
         &self,
         request: &GetMapImageRequest,
@@ -888,7 +914,8 @@ impl crate::Client {
     /// Code 0x0103. Only reads.
     ///
     /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/list_maps.md`
+    /// - 文档：`docs-site/reference/commands/list_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/list_maps.md`
     pub async fn list_maps(
         &self,
         request: &ListMapsRequest,
@@ -902,7 +929,8 @@ impl crate::Client {
     /// Code 0x010C. Only reads.
     ///
     /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_info.md`
+    /// - 文档：`docs-site/reference/commands/get_map_info.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_info.md`
     pub async fn get_map_info(
         &self,
         request: &GetMapInfoRequest,
@@ -920,7 +948,8 @@ impl crate::Client {
     /// Code 0x0109. Changes the configuration.
     ///
     /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/save_map.md`
+    /// - 文档：`docs-site/reference/commands/save_map.md`
+    /// - Docs: `docs-site/en/reference/commands/save_map.md`
     pub async fn save_map(
         &self,
         request: &SaveMapRequest,
@@ -942,20 +971,20 @@ impl crate::Client {
     ///
     /// Code 0x0320. Changes the configuration, inferred.
     ///
-    /// `.follow()`：先取得响应，再逐个取得它引起的 [`MapSyncProgress`]。
-    /// `.follow()` gives the response, and then each [`MapSyncProgress`] that it sets off.
+    /// `.follow()`：先返回响应，再逐个返回它引起的 [`MapSyncProgress`]。
+    /// `.follow()` returns the response, and then each [`MapSyncProgress`] that the command sets off.
     ///
-    /// 没有写明哪个状态是终态：要由 app 停止。
+    /// 规范没有写明终态：由 app 停止。
     ///
-    /// No state is said to be final: the app has to stop it.
+    /// The spec marks no state as final. The app stops it.
     ///
-    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
     ///
-    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
-    /// off come as well.
+    /// No key ties a report to a call: reports of this kind from other calls arrive as well.
     ///
     /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/download_maps.md`
+    /// - 文档：`docs-site/reference/commands/download_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/download_maps.md`
     pub fn download_maps<'a>(
         &'a self,
         request: &'a DownloadMapsRequest,
@@ -974,20 +1003,20 @@ impl crate::Client {
     ///
     /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
     ///
-    /// `.follow()`：先取得响应，再逐个取得它引起的 [`MapSyncProgress`]。
-    /// `.follow()` gives the response, and then each [`MapSyncProgress`] that it sets off.
+    /// `.follow()`：先返回响应，再逐个返回它引起的 [`MapSyncProgress`]。
+    /// `.follow()` returns the response, and then each [`MapSyncProgress`] that the command sets off.
     ///
-    /// 没有写明哪个状态是终态：要由 app 停止。
+    /// 规范没有写明终态：由 app 停止。
     ///
-    /// No state is said to be final: the app has to stop it.
+    /// The spec marks no state as final. The app stops it.
     ///
-    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
     ///
-    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
-    /// off come as well.
+    /// No key ties a report to a call: reports of this kind from other calls arrive as well.
     ///
     /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_maps.md`
+    /// - 文档：`docs-site/reference/commands/upload_maps.md`
+    /// - Docs: `docs-site/en/reference/commands/upload_maps.md`
     pub fn upload_maps<'a>(
         &'a self,
         request: &'a UploadMapsRequest,
@@ -1006,7 +1035,8 @@ impl crate::Client {
     /// Code 0x0322. Only reads.
     ///
     /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    /// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+    /// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
     pub async fn get_map_sync_progress(
         &self,
         request: &GetMapSyncProgressRequest,
@@ -1106,10 +1136,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-    /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+    /// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+    /// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
     pub async fn map_sync_progress(
         &self,
         audience: fc_runtime::Audience,

@@ -31,7 +31,8 @@ use fc_runtime::Extra;
 /// Code 0x0A04. Moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/start_recharge.md`
+/// - 文档：`docs-site/reference/commands/start_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/start_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A04,
@@ -51,7 +52,8 @@ pub struct StartRechargeRequest {
 /// Start returning to dock: response
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/start_recharge.md`
+/// - 文档：`docs-site/reference/commands/start_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/start_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct StartRechargeResponse {
@@ -76,7 +78,8 @@ pub struct StartRechargeResponse {
 /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+/// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A05,
@@ -100,7 +103,8 @@ pub struct CancelRechargeRequest {
 /// kept.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+/// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct CancelRechargeResponse {
@@ -120,7 +124,8 @@ pub struct CancelRechargeResponse {
 /// Code 0x0A06. Only reads, inferred. Since 2023-05.
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A06,
@@ -139,7 +144,8 @@ pub struct GetRechargeStatusRequest {
 /// Get the charging state: response
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"rechargeStatus":1,"errorStatus":0}}"#)]
 #[non_exhaustive]
@@ -159,7 +165,8 @@ pub struct GetRechargeStatusResponse {
 /// `data` of [`GetRechargeStatusResponse`].
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
 #[non_exhaustive]
@@ -205,7 +212,8 @@ pub struct GetRechargeStatusResponseData {
 /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0B01,
@@ -232,7 +240,8 @@ pub struct RechargeProgress {
 /// `data` of [`RechargeProgress`].
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"rechargeStatus":1,"errorStatus":0}"#)]
 #[non_exhaustive]
@@ -254,11 +263,12 @@ pub struct RechargeProgressData {
     pub extra: Extra,
 }
 
-/// 主动上报回充过程和结果：确认
+/// 主动上报回充过程和结果：应答
 /// Progress and result of charging: acknowledgement
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct RechargeProgressAck {
@@ -275,7 +285,8 @@ pub struct RechargeProgressAck {
 /// The normal order is 0 → 4 → 1 → 2 → 3. The numbers do not follow it, so do not compare them.
 ///
 /// - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8, order = "normal")]
 pub enum RechargeStatus {
@@ -313,7 +324,8 @@ pub enum RechargeStatus {
 /// Whether charging failed
 ///
 /// - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum RechargeError {
@@ -348,21 +360,21 @@ impl crate::Client {
     ///
     /// Code 0x0A04. Moves the robot. Since 2023-05.
     ///
-    /// `.follow()`：先取得响应，再逐个取得它引起的 [`RechargeProgress`]。
-    /// `.follow()` gives the response, and then each [`RechargeProgress`] that it sets off.
+    /// `.follow()`：先返回响应，再逐个返回它引起的 [`RechargeProgress`]。
+    /// `.follow()` returns the response, and then each [`RechargeProgress`] that the command sets off.
     ///
-    /// 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+    /// 规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
     ///
-    /// No state is said to be final: it ends only when `data.errorStatus` says that something
-    /// failed, or when the app stops it.
+    /// The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when
+    /// the app stops it.
     ///
-    /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+    /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
     ///
-    /// Nothing in the messages ties a report to a call: reports of this kind that others have set
-    /// off come as well.
+    /// No key ties a report to a call: reports of this kind from other calls arrive as well.
     ///
     /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/start_recharge.md`
+    /// - 文档：`docs-site/reference/commands/start_recharge.md`
+    /// - Docs: `docs-site/en/reference/commands/start_recharge.md`
     pub fn start_recharge<'a>(
         &'a self,
         request: &'a StartRechargeRequest,
@@ -381,7 +393,8 @@ impl crate::Client {
     /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
     ///
     /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    /// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+    /// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
     pub async fn cancel_recharge(
         &self,
         request: &CancelRechargeRequest,
@@ -400,7 +413,8 @@ impl crate::Client {
     /// Code 0x0A06. Only reads, inferred. Since 2023-05.
     ///
     /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    /// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
     pub async fn get_recharge_status(
         &self,
         request: &GetRechargeStatusRequest,
@@ -466,10 +480,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-    /// - Docs: `docs-site/reference/reports/recharge_progress.md`
+    /// - 文档：`docs-site/reference/reports/recharge_progress.md`
+    /// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
     pub async fn recharge_progress(
         &self,
         audience: fc_runtime::Audience,

@@ -23,7 +23,8 @@ use fc_runtime::Extra;
 /// `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A08,
@@ -49,7 +50,8 @@ pub struct Switch0a08Request {
 /// `data` of [`Switch0a08Request`].
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"update":"none"}"#)]
 #[non_exhaustive]
@@ -67,7 +69,8 @@ pub struct Switch0a08RequestData {
 /// Read or set a switch (0x0A08, purpose unknown): response
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
 #[non_exhaustive]
@@ -87,7 +90,8 @@ pub struct Switch0a08Response {
 /// `data` of [`Switch0a08Response`].
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"state":"on"}"#)]
 #[non_exhaustive]
@@ -126,7 +130,8 @@ pub struct Switch0a08ResponseData {
 /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A09,
@@ -152,7 +157,8 @@ pub struct SetVoiceReminderRequest {
 /// `data` of [`SetVoiceReminderRequest`].
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"update":"none"}"#)]
 #[non_exhaustive]
@@ -170,7 +176,8 @@ pub struct SetVoiceReminderRequestData {
 /// Voice reminder switch: response
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"data":{"state":"on"}}"#)]
 #[non_exhaustive]
@@ -190,7 +197,8 @@ pub struct SetVoiceReminderResponse {
 /// `data` of [`SetVoiceReminderResponse`].
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"state":"on"}"#)]
 #[non_exhaustive]
@@ -219,7 +227,8 @@ pub struct SetVoiceReminderResponseData {
 /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_environment.md`
+/// - 文档：`docs-site/reference/commands/switch_environment.md`
+/// - Docs: `docs-site/en/reference/commands/switch_environment.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x03A0,
@@ -238,7 +247,8 @@ pub struct SwitchEnvironmentRequest {
 /// Switch the environment: response
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_environment.md`
+/// - 文档：`docs-site/reference/commands/switch_environment.md`
+/// - Docs: `docs-site/en/reference/commands/switch_environment.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SwitchEnvironmentResponse {
@@ -251,7 +261,8 @@ pub struct SwitchEnvironmentResponse {
 /// What to do with a switch
 ///
 /// - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum SwitchUpdate {
@@ -279,7 +290,8 @@ pub enum SwitchUpdate {
 /// State of a switch
 ///
 /// - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum SwitchState {
@@ -313,7 +325,8 @@ impl crate::Client {
     /// in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+    /// - 文档：`docs-site/reference/commands/switch_0a08.md`
+    /// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     pub async fn switch_0a08(
         &self,
         request: &Switch0a08Request,
@@ -336,7 +349,8 @@ impl crate::Client {
     /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    /// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    /// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     #[deprecated(
         note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
     )]
@@ -357,7 +371,8 @@ impl crate::Client {
     /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
     ///
     /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    /// - Docs: `docs-site/reference/commands/switch_environment.md`
+    /// - 文档：`docs-site/reference/commands/switch_environment.md`
+    /// - Docs: `docs-site/en/reference/commands/switch_environment.md`
     pub async fn switch_environment(
         &self,
         request: &SwitchEnvironmentRequest,

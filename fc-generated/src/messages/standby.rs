@@ -24,7 +24,8 @@ use fc_runtime::Extra;
 /// Code 0x0311. Changes the configuration. Since 2024-01-02.
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_standby_position.md`
+/// - 文档：`docs-site/reference/commands/set_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0311,
@@ -48,7 +49,8 @@ pub struct SetStandbyPositionRequest {
 /// Set the standby position: response
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_standby_position.md`
+/// - 文档：`docs-site/reference/commands/set_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SetStandbyPositionResponse {
@@ -68,7 +70,8 @@ pub struct SetStandbyPositionResponse {
 /// Code 0x0312. Only reads. Since 2024-01-02.
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_standby_position.md`
+/// - 文档：`docs-site/reference/commands/get_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0312,
@@ -93,7 +96,8 @@ pub struct GetStandbyPositionRequest {
 /// that of 0x0313, but nothing says so.
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_standby_position.md`
+/// - 文档：`docs-site/reference/commands/get_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetStandbyPositionResponse {
@@ -108,7 +112,8 @@ pub struct GetStandbyPositionResponse {
 /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+/// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+/// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0313,
@@ -136,7 +141,8 @@ pub struct SetPositions0313Request {
 /// Open: The response is lost; its label runs straight into section 48.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+/// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+/// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct SetPositions0313Response {
@@ -156,7 +162,8 @@ pub struct SetPositions0313Response {
 /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+/// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+/// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0314,
@@ -175,7 +182,8 @@ pub struct GetPositions0314Request {
 /// Get points (0x0314, purpose unknown): response
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+/// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+/// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}"#)]
 #[non_exhaustive]
@@ -193,7 +201,8 @@ pub struct GetPositions0314Response {
 /// A standby position
 ///
 /// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}"#)]
 #[non_exhaustive]
@@ -228,7 +237,8 @@ pub struct StandbyPosition {
 /// A point, given by map ID and station ID
 ///
 /// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":1667823500544,"stationId":1667823500544}"#)]
 #[non_exhaustive]
@@ -265,7 +275,8 @@ impl crate::Client {
     /// Code 0x0311. Changes the configuration. Since 2024-01-02.
     ///
     /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/set_standby_position.md`
+    /// - 文档：`docs-site/reference/commands/set_standby_position.md`
+    /// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
     pub async fn set_standby_position(
         &self,
         request: &SetStandbyPositionRequest,
@@ -279,7 +290,8 @@ impl crate::Client {
     /// Code 0x0312. Only reads. Since 2024-01-02.
     ///
     /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/get_standby_position.md`
+    /// - 文档：`docs-site/reference/commands/get_standby_position.md`
+    /// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
     pub async fn get_standby_position(
         &self,
         request: &GetStandbyPositionRequest,
@@ -293,7 +305,8 @@ impl crate::Client {
     /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
     ///
     /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+    /// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+    /// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
     pub async fn set_positions_0313(
         &self,
         request: &SetPositions0313Request,
@@ -312,7 +325,8 @@ impl crate::Client {
     /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
     ///
     /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-    /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+    /// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+    /// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
     pub async fn get_positions_0314(
         &self,
         request: &GetPositions0314Request,

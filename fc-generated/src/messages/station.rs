@@ -24,7 +24,8 @@ use fc_runtime::Extra;
 /// Code 0x0A03. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A03,
@@ -50,7 +51,8 @@ pub struct GetStationRequest {
 /// `data` of [`GetStationRequest`].
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"stationId":0}"#)]
 #[non_exhaustive]
@@ -71,7 +73,8 @@ pub struct GetStationRequestData {
 /// Get a station by its ID: response
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}}"#
@@ -93,7 +96,8 @@ pub struct GetStationResponse {
 /// `data` of [`GetStationResponse`].
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}"#)]
 #[non_exhaustive]
@@ -160,7 +164,8 @@ pub struct GetStationResponseData {
 /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+/// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+/// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0308,
@@ -183,7 +188,8 @@ pub struct UploadMapStationsRequest {
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+/// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+/// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct UploadMapStationsResponse {
@@ -202,7 +208,8 @@ pub struct UploadMapStationsResponse {
 /// Code 0x0302. Changes the configuration. Since 2023-07-17.
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/add_station.md`
+/// - 文档：`docs-site/reference/commands/add_station.md`
+/// - Docs: `docs-site/en/reference/commands/add_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0302,
@@ -266,7 +273,8 @@ pub struct AddStationRequest {
 /// Add a station: response
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/add_station.md`
+/// - 文档：`docs-site/reference/commands/add_station.md`
+/// - Docs: `docs-site/en/reference/commands/add_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct AddStationResponse {
@@ -285,7 +293,8 @@ pub struct AddStationResponse {
 /// Code 0x0304. Changes the configuration. Since 2023-10-13.
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/delete_station.md`
+/// - 文档：`docs-site/reference/commands/delete_station.md`
+/// - Docs: `docs-site/en/reference/commands/delete_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0304,
@@ -328,7 +337,8 @@ pub struct DeleteStationRequest {
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/delete_station.md`
+/// - 文档：`docs-site/reference/commands/delete_station.md`
+/// - Docs: `docs-site/en/reference/commands/delete_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct DeleteStationResponse {
@@ -343,7 +353,8 @@ pub struct DeleteStationResponse {
 /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/rename_station.md`
+/// - 文档：`docs-site/reference/commands/rename_station.md`
+/// - Docs: `docs-site/en/reference/commands/rename_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0305,
@@ -395,7 +406,8 @@ pub struct RenameStationRequest {
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/rename_station.md`
+/// - 文档：`docs-site/reference/commands/rename_station.md`
+/// - Docs: `docs-site/en/reference/commands/rename_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct RenameStationResponse {
@@ -410,7 +422,8 @@ pub struct RenameStationResponse {
 /// No code yet: types only. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/list_stations.md`
+/// - 文档：`docs-site/reference/commands/list_stations.md`
+/// - Docs: `docs-site/en/reference/commands/list_stations.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"mapId":12345678,"mapName":"abc","stationType":0}"#)]
 #[non_exhaustive]
@@ -443,7 +456,8 @@ pub struct ListStationsRequest {
 /// List the stations of a map: response
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/list_stations.md`
+/// - 文档：`docs-site/reference/commands/list_stations.md`
+/// - Docs: `docs-site/en/reference/commands/list_stations.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"stations":[{"deviceId":"1001330000000001","stationId":1694140206787,"stationName":"wait","stationPos":"wait","mapId":1694140206787,"x":"-0.81532","y":"-1.2139","yaw":"-0.07654"},{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}]}"#
@@ -474,7 +488,8 @@ pub struct ListStationsResponse {
 /// No code yet: types only. Only reads. Since 2024-01-29.
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetCurrentStationRequest {
@@ -487,7 +502,8 @@ pub struct GetCurrentStationRequest {
 /// Get the station the robot is at: response
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":{"mapId":123456666,"stationId":3333333,"stationName":"21 楼-导航点 3","stationType":0}}"#
@@ -512,7 +528,8 @@ pub struct GetCurrentStationResponse {
 /// `data` of [`GetCurrentStationResponse`].
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"mapId":123456666,"stationId":3333333,"stationName":"21 楼-导航点 3","stationType":0}"#
@@ -561,7 +578,8 @@ pub struct GetCurrentStationResponseData {
 /// No code yet: types only. Since 2024-01-29.
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/reports/station_reached.md`
+/// - 文档：`docs-site/reference/reports/station_reached.md`
+/// - Docs: `docs-site/en/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct StationReached {
@@ -570,11 +588,12 @@ pub struct StationReached {
     pub extra: Extra,
 }
 
-/// 主动上报机器人抵达站点：确认
+/// 主动上报机器人抵达站点：应答
 /// Station reached: acknowledgement
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/reports/station_reached.md`
+/// - 文档：`docs-site/reference/reports/station_reached.md`
+/// - Docs: `docs-site/en/reference/reports/station_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"msgId":90842323}"#)]
 #[non_exhaustive]
@@ -596,7 +615,8 @@ pub struct StationReachedAck {
 /// Position of a station relative to the elevator
 ///
 /// - Spec: `types.StationPos` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum StationPos {
@@ -634,7 +654,8 @@ pub enum StationPos {
 /// A station in the list
 ///
 /// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"deviceId":"1001330000000001","stationId":1694140255073,"stationName":"outside","stationPos":"outside","mapId":1694140206787,"x":"-0.42947","y":"-0.25831","yaw":"-0.05305"}"#
@@ -708,7 +729,8 @@ impl crate::Client {
     /// Code 0x0A03. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/get_station.md`
+    /// - 文档：`docs-site/reference/commands/get_station.md`
+    /// - Docs: `docs-site/en/reference/commands/get_station.md`
     pub async fn get_station(
         &self,
         request: &GetStationRequest,
@@ -728,7 +750,8 @@ impl crate::Client {
     /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    /// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+    /// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
     pub async fn upload_map_stations(
         &self,
         request: &UploadMapStationsRequest,
@@ -746,7 +769,8 @@ impl crate::Client {
     /// Code 0x0302. Changes the configuration. Since 2023-07-17.
     ///
     /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/add_station.md`
+    /// - 文档：`docs-site/reference/commands/add_station.md`
+    /// - Docs: `docs-site/en/reference/commands/add_station.md`
     pub async fn add_station(
         &self,
         request: &AddStationRequest,
@@ -760,7 +784,8 @@ impl crate::Client {
     /// Code 0x0304. Changes the configuration. Since 2023-10-13.
     ///
     /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/delete_station.md`
+    /// - 文档：`docs-site/reference/commands/delete_station.md`
+    /// - Docs: `docs-site/en/reference/commands/delete_station.md`
     pub async fn delete_station(
         &self,
         request: &DeleteStationRequest,
@@ -774,7 +799,8 @@ impl crate::Client {
     /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
     ///
     /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    /// - Docs: `docs-site/reference/commands/rename_station.md`
+    /// - 文档：`docs-site/reference/commands/rename_station.md`
+    /// - Docs: `docs-site/en/reference/commands/rename_station.md`
     pub async fn rename_station(
         &self,
         request: &RenameStationRequest,

@@ -21,7 +21,8 @@ use fc_runtime::Extra;
 /// Code 0x0A0C. Only reads, inferred.
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/list_faults.md`
+/// - 文档：`docs-site/reference/commands/list_faults.md`
+/// - Docs: `docs-site/en/reference/commands/list_faults.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0C,
@@ -40,7 +41,8 @@ pub struct ListFaultsRequest {
 /// List the faults: response
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/list_faults.md`
+/// - 文档：`docs-site/reference/commands/list_faults.md`
+/// - Docs: `docs-site/en/reference/commands/list_faults.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(
     example = r#"{"data":[{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}]}"#
@@ -67,7 +69,8 @@ pub struct ListFaultsResponse {
 /// Code 0x0A0D. Only reads, inferred.
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/get_self_check.md`
+/// - 文档：`docs-site/reference/commands/get_self_check.md`
+/// - Docs: `docs-site/en/reference/commands/get_self_check.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0A0D,
@@ -86,7 +89,8 @@ pub struct GetSelfCheckRequest {
 /// Get the result of the self-check: response
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/get_self_check.md`
+/// - 文档：`docs-site/reference/commands/get_self_check.md`
+/// - Docs: `docs-site/en/reference/commands/get_self_check.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[fc(example = r#"{"data":[{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}]}"#)]
 #[non_exhaustive]
@@ -111,7 +115,8 @@ pub struct GetSelfCheckResponse {
 /// Code 0x0342. Since 2023-05.
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0342,
@@ -136,7 +141,8 @@ pub struct RobotStatus {
 /// `data` of [`RobotStatus`].
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"upper_status":14,"lower_status":1401,"broke_code":123456}"#)]
 #[non_exhaustive]
@@ -169,11 +175,12 @@ pub struct RobotStatusData {
     pub extra: Extra,
 }
 
-/// 主动上报机器人状态：确认
+/// 主动上报机器人状态：应答
 /// Status of the robot: acknowledgement
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct RobotStatusAck {
@@ -193,7 +200,8 @@ pub struct RobotStatusAck {
 /// value is kept as it is.
 ///
 /// - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u16)]
 pub enum UpperStatus {
@@ -250,7 +258,8 @@ pub enum UpperStatus {
 /// The constants in the source: NO_LOWER_STATUS, MOVING, ARRIVED, ENTER_ELEV and EXIT_ELEV.
 ///
 /// - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u16)]
 pub enum LowerStatus {
@@ -288,7 +297,8 @@ pub enum LowerStatus {
 /// A fault
 ///
 /// - Spec: `types.Fault` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"code":320001,"triggerTimeStampMs":1701247598,"description":"xxx","guidance":"xxx","name":"recharge_failed_after_retry","level":"FATAL","source":"controller","cause":"xxx"}"#
@@ -356,7 +366,8 @@ pub struct Fault {
 /// Level of a fault
 ///
 /// - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum FaultLevel {
@@ -384,7 +395,8 @@ pub enum FaultLevel {
 /// Result of one item of the self-check
 ///
 /// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}"#)]
 #[non_exhaustive]
@@ -421,7 +433,8 @@ pub struct SelfCheckItem {
 /// Item of the self-check
 ///
 /// - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str)]
 pub enum SelfCheckName {
@@ -459,7 +472,8 @@ pub enum SelfCheckName {
 /// State of an item of the self-check
 ///
 /// - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = str, order = "normal")]
 pub enum SelfCheckStatus {
@@ -495,7 +509,8 @@ impl crate::Client {
     /// Code 0x0A0C. Only reads, inferred.
     ///
     /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/commands/list_faults.md`
+    /// - 文档：`docs-site/reference/commands/list_faults.md`
+    /// - Docs: `docs-site/en/reference/commands/list_faults.md`
     pub async fn list_faults(
         &self,
         request: &ListFaultsRequest,
@@ -514,7 +529,8 @@ impl crate::Client {
     /// Code 0x0A0D. Only reads, inferred.
     ///
     /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/commands/get_self_check.md`
+    /// - 文档：`docs-site/reference/commands/get_self_check.md`
+    /// - Docs: `docs-site/en/reference/commands/get_self_check.md`
     pub async fn get_self_check(
         &self,
         request: &GetSelfCheckRequest,
@@ -560,10 +576,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0342. Since 2023-05.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-    /// - Docs: `docs-site/reference/reports/robot_status.md`
+    /// - 文档：`docs-site/reference/reports/robot_status.md`
+    /// - Docs: `docs-site/en/reference/reports/robot_status.md`
     pub async fn robot_status(
         &self,
         audience: fc_runtime::Audience,

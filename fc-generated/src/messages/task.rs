@@ -32,7 +32,8 @@ use fc_runtime::Extra;
 /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/create_task.md`
+/// - 文档：`docs-site/reference/commands/create_task.md`
+/// - Docs: `docs-site/en/reference/commands/create_task.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0350,
@@ -51,7 +52,8 @@ pub struct CreateTaskRequest {
 /// Create a patrol or delivery task: response
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/create_task.md`
+/// - 文档：`docs-site/reference/commands/create_task.md`
+/// - Docs: `docs-site/en/reference/commands/create_task.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
 #[non_exhaustive]
@@ -91,7 +93,8 @@ pub struct CreateTaskResponse {
 /// No code yet: types only. Moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/execute_task.md`
+/// - 文档：`docs-site/reference/commands/execute_task.md`
+/// - Docs: `docs-site/en/reference/commands/execute_task.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct ExecuteTaskRequest {
@@ -104,7 +107,8 @@ pub struct ExecuteTaskRequest {
 /// Execute a task: response
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/execute_task.md`
+/// - 文档：`docs-site/reference/commands/execute_task.md`
+/// - Docs: `docs-site/en/reference/commands/execute_task.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskName":"task_1","taskId":1695733900004}"#)]
 #[non_exhaustive]
@@ -138,7 +142,8 @@ pub struct ExecuteTaskResponse {
 /// Code 0x0353. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_status.md`
+/// - 文档：`docs-site/reference/commands/get_task_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0353,
@@ -161,7 +166,8 @@ pub struct GetTaskStatusRequest {
 /// Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_status.md`
+/// - 文档：`docs-site/reference/commands/get_task_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct GetTaskStatusResponse {
@@ -183,7 +189,8 @@ pub struct GetTaskStatusResponse {
 /// No code yet: types only. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_history.md`
+/// - 文档：`docs-site/reference/commands/get_task_history.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"taskId":123}"#)]
 #[non_exhaustive]
@@ -204,7 +211,8 @@ pub struct GetTaskHistoryRequest {
 /// Get a task's execution history: response
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_history.md`
+/// - 文档：`docs-site/reference/commands/get_task_history.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_history.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"taskId":123,"taskName":"任务名称","startTime":123,"finishTime":123,"taskStatus":0,"stationStatus":[{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}]}"#
@@ -267,7 +275,8 @@ pub struct GetTaskHistoryResponse {
 /// Code 0x0341. Since 2023-05.
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+/// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+/// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0341,
@@ -289,11 +298,12 @@ pub struct ObstacleAnnouncement {
     pub extra: Extra,
 }
 
-/// 遇障语音播报：确认
+/// 遇障语音播报：应答
 /// Voice announcement of an obstacle: acknowledgement
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+/// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+/// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct ObstacleAnnouncementAck {
@@ -317,7 +327,8 @@ pub struct ObstacleAnnouncementAck {
 /// Code 0x0340, inferred. Since 2023-05.
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/target_reached.md`
+/// - 文档：`docs-site/reference/reports/target_reached.md`
+/// - Docs: `docs-site/en/reference/reports/target_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0340,
@@ -331,11 +342,12 @@ pub struct TargetReached {
     pub extra: Extra,
 }
 
-/// 到达目标点通知上报：确认
+/// 到达目标点通知上报：应答
 /// Target reached: acknowledgement
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/target_reached.md`
+/// - 文档：`docs-site/reference/reports/target_reached.md`
+/// - Docs: `docs-site/en/reference/reports/target_reached.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct TargetReachedAck {
@@ -355,7 +367,8 @@ pub struct TargetReachedAck {
 /// Code 0x0345. Since 2024-01-29.
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/task_progress.md`
+/// - 文档：`docs-site/reference/reports/task_progress.md`
+/// - Docs: `docs-site/en/reference/reports/task_progress.md`
 #[derive(Clone, Debug, PartialEq, Message, New, Report)]
 #[fc(
     code = 0x0345,
@@ -376,7 +389,7 @@ pub struct TaskProgress {
     pub extra: Extra,
 }
 
-/// 上报机器人任务进度：确认
+/// 上报机器人任务进度：应答
 /// Task progress: acknowledgement
 ///
 /// 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -385,7 +398,8 @@ pub struct TaskProgress {
 /// msgId, so this one is taken to be the envelope alone.
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/task_progress.md`
+/// - 文档：`docs-site/reference/reports/task_progress.md`
+/// - Docs: `docs-site/en/reference/reports/task_progress.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct TaskProgressAck {
@@ -398,7 +412,8 @@ pub struct TaskProgressAck {
 /// Status of a task or of one of its stations
 ///
 /// - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum TaskStatus {
@@ -426,7 +441,8 @@ pub enum TaskStatus {
 /// Record of one station of a task
 ///
 /// - Spec: `types.TaskStation` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"stationId":122,"stationName":"站点 1","arriveTime":111,"x":1.0,"y":2.0,"yaw":3.0,"status":0}"#
@@ -490,7 +506,8 @@ pub struct TaskStation {
 /// is calling (5), entering (6), riding (4), leaving (7).
 ///
 /// - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = u8)]
 pub enum TaskProcess {
@@ -554,7 +571,8 @@ impl crate::Client {
     /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
     ///
     /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/create_task.md`
+    /// - 文档：`docs-site/reference/commands/create_task.md`
+    /// - Docs: `docs-site/en/reference/commands/create_task.md`
     pub async fn create_task(
         &self,
         request: &CreateTaskRequest,
@@ -568,7 +586,8 @@ impl crate::Client {
     /// Code 0x0353. Only reads. Since 2023-05.
     ///
     /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/commands/get_task_status.md`
+    /// - 文档：`docs-site/reference/commands/get_task_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_task_status.md`
     pub async fn get_task_status(
         &self,
         request: &GetTaskStatusRequest,
@@ -616,10 +635,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0341. Since 2023-05.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+    /// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+    /// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
     pub async fn obstacle_announcement(
         &self,
         audience: fc_runtime::Audience,
@@ -637,10 +657,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0340, inferred. Since 2023-05.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/target_reached.md`
+    /// - 文档：`docs-site/reference/reports/target_reached.md`
+    /// - Docs: `docs-site/en/reference/reports/target_reached.md`
     pub async fn target_reached(
         &self,
         audience: fc_runtime::Audience,
@@ -659,10 +680,11 @@ impl crate::Reporter {
     ///
     /// Code 0x0345. Since 2024-01-29.
     ///
-    /// Returns what became of it at each connection.
+    /// Returns the outcome at each connection.
     ///
     /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-    /// - Docs: `docs-site/reference/reports/task_progress.md`
+    /// - 文档：`docs-site/reference/reports/task_progress.md`
+    /// - Docs: `docs-site/en/reference/reports/task_progress.md`
     pub async fn task_progress(
         &self,
         audience: fc_runtime::Audience,

@@ -26,7 +26,8 @@ use fc_runtime::Extra;
 /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0309,
@@ -49,7 +50,8 @@ pub struct Unnamed0309Request {
 /// Open: The response is lost; its label runs straight into section 9.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct Unnamed0309Response {
@@ -69,7 +71,8 @@ pub struct Unnamed0309Response {
 /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0460,
@@ -88,7 +91,8 @@ pub struct Unnamed0460Request {
 /// Unnamed command (0x0460): response
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New)]
 #[non_exhaustive]
 pub struct Unnamed0460Response {
@@ -112,7 +116,8 @@ impl crate::Client {
     /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    /// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+    /// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
     pub async fn unnamed_0309(
         &self,
         request: &Unnamed0309Request,
@@ -131,7 +136,8 @@ impl crate::Client {
     /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
     ///
     /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    /// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+    /// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
     pub async fn unnamed_0460(
         &self,
         request: &Unnamed0460Request,

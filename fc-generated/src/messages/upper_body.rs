@@ -26,7 +26,8 @@ use fc_runtime::Extra;
 /// Code 0x0204. Only reads.
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+/// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
 #[derive(Clone, Debug, Default, PartialEq, Message, New, Command)]
 #[fc(
     code = 0x0204,
@@ -45,7 +46,8 @@ pub struct GetUpperBodyStatusRequest {
 /// Get the upper body's status: response
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+/// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(
     example = r#"{"boxPushStatus":7,"selectCellId":0,"doorLockInfoList":[{"lockId":1,"lockStatus":7}]}"#
@@ -82,7 +84,8 @@ pub struct GetUpperBodyStatusResponse {
 /// Status of the push rod
 ///
 /// - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i32)]
 pub enum PushRodStatus {
@@ -105,7 +108,8 @@ pub enum PushRodStatus {
 /// Status of a door lock
 ///
 /// - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]
 #[fc(repr = i32)]
 pub enum DoorLockStatus {
@@ -128,7 +132,8 @@ pub enum DoorLockStatus {
 /// Status of one door lock
 ///
 /// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 #[derive(Clone, Debug, PartialEq, Message, New)]
 #[fc(example = r#"{"lockId":1,"lockStatus":7}"#)]
 #[non_exhaustive]
@@ -166,7 +171,8 @@ impl crate::Client {
     /// Code 0x0204. Only reads.
     ///
     /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+    /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
     pub async fn get_upper_body_status(
         &self,
         request: &GetUpperBodyStatusRequest,

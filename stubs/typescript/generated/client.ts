@@ -13,7 +13,7 @@ import type { ClientConfig, Platform, UnknownReport } from '../src/runtime.ts'
 import type * as messages from './messages.ts'
 import { Fc, service } from './operations.ts'
 
-/** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */
+/** 任意一个上报，`case` 是它的名称。Any report. `case` is its name. */
 export type AnyReport =
   | messages.MapReport
   | messages.RechargeReport
@@ -46,7 +46,7 @@ export class Client extends Connection<AnyReport> {
 
   /**
    * 连接机器人；`config` 中没有设置的项使用规范的默认值。
-   * Connects to a robot; what `config` does not set has the default of the spec.
+   * Connects to a robot. Settings missing from `config` have the defaults of the spec.
    */
   static async connect(platform: Platform, config: ClientConfig = {}): Promise<Client> {
     return new Client(await dial(Fc, platform, config))
@@ -54,7 +54,7 @@ export class Client extends Connection<AnyReport> {
 
   /**
    * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
-   * Returns at once and connects in the background; calls made meanwhile wait for the connection within their timeout.
+   * Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.
    */
   static connectLazy(platform: Platform, config: ClientConfig = {}): Client {
     return new Client(dialLater(Fc, platform, config))

@@ -13,7 +13,7 @@ import type { ClientConfig, DataConnection, Platform, UnknownReport } from '../s
 import type * as messages from './messages.ts'
 import { Beacon, service, streams } from './operations.ts'
 
-/** 任意一个主动上报，`case` 说明是哪一种。Any report: `case` tells which. */
+/** 任意一个上报，`case` 是它的名称。Any report. `case` is its name. */
 export type AnyReport = messages.PlaceReport | UnknownReport
 
 /** 每组指令的方法。The methods of each group of commands. */
@@ -27,7 +27,7 @@ export class Client extends Connection<AnyReport> {
 
   /**
    * 连接机器人；`config` 中没有设置的项使用规范的默认值。
-   * Connects to a robot; what `config` does not set has the default of the spec.
+   * Connects to a robot. Settings missing from `config` have the defaults of the spec.
    */
   static async connect(platform: Platform, config: ClientConfig = {}): Promise<Client> {
     return new Client(await dial(Beacon, platform, config))
@@ -35,7 +35,7 @@ export class Client extends Connection<AnyReport> {
 
   /**
    * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
-   * Returns at once and connects in the background; calls made meanwhile wait for the connection within their timeout.
+   * Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.
    */
   static connectLazy(platform: Platform, config: ClientConfig = {}): Client {
     return new Client(dialLater(Beacon, platform, config))
@@ -46,8 +46,8 @@ export class Client extends Connection<AnyReport> {
 export interface Streams extends messages.PlaceStreams {}
 
 /**
- * 数据端口上的数据流：机器人发来的可以逐个订阅，app 自己的可以发送。
- * The streams of the data port: each that the robot sends can be subscribed to, each of the app's own can be sent.
+ * 数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。
+ * The streams of the data port. Subscribe to those of the robot, and send those of the app.
  */
 export class Streams {
   static {
@@ -57,7 +57,7 @@ export class Streams {
   /** 数据连接。The data connection. */
   protected readonly data: DataConnection
 
-  /** 数据连接上的数据流，见 `client.data()`。Those of a data connection; see `client.data()`. */
+  /** 数据连接上的数据流，见 `client.data()`。The streams of a data connection; see `client.data()`. */
   constructor(data: DataConnection) {
     this.data = data
   }

@@ -10,7 +10,7 @@
  *
  * 规范版本 1。Version 1 of the spec.
  *
- * An app starts at {@link Client}, a robot at {@link PartialRobot} or {@link Robot}, and at {@link serve}.
+ * An app starts with {@link Client}, a robot with {@link PartialRobot} or {@link Robot} and {@link serve}.
  *
  * @module
  */

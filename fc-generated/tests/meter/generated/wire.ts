@@ -11,8 +11,8 @@
 import type { Struct, Wire } from '../src/runtime.ts'
 
 /**
- * 每个请求和主动上报都带的公共字段。
- * The keys that every request and every report carries beside its own.
+ * 每个请求和上报都带的公共字段。
+ * The keys of every request and report, in addition to those of its body.
  */
 export interface RequestEnvelope {
   /**
@@ -23,8 +23,8 @@ export interface RequestEnvelope {
 }
 
 /**
- * 每个请求和主动上报都带的公共字段。
- * The keys that every request and every report carries beside its own.
+ * 每个请求和上报都带的公共字段。
+ * The keys of every request and report, in addition to those of its body.
  */
 export const RequestEnvelope: Struct<RequestEnvelope> = {
   is: 'struct',
@@ -35,8 +35,8 @@ export const RequestEnvelope: Struct<RequestEnvelope> = {
 }
 
 /**
- * 每个响应和确认都带的公共字段。
- * The keys that every response and every acknowledgement carries beside its own.
+ * 每个响应和应答都带的公共字段。
+ * The keys of every response and acknowledgement, in addition to those of its body.
  */
 export interface ResponseEnvelope {
   /**
@@ -53,8 +53,8 @@ export interface ResponseEnvelope {
 }
 
 /**
- * 每个响应和确认都带的公共字段。
- * The keys that every response and every acknowledgement carries beside its own.
+ * 每个响应和应答都带的公共字段。
+ * The keys of every response and acknowledgement, in addition to those of its body.
  */
 export const ResponseEnvelope: Struct<ResponseEnvelope> = {
   is: 'struct',
@@ -66,8 +66,8 @@ export const ResponseEnvelope: Struct<ResponseEnvelope> = {
 }
 
 /**
- * 结果码。只依据它判断成败，不依据旁边的文字。
- * Result codes. Go by them and never by the text beside them.
+ * 结果码。用结果码判断成败，不要用随附的文字。
+ * Result codes. Use the code to detect success, not the text that comes with it.
  */
 export type ResultCode = 0 | 16 | 17 | 18 | 19 | 20 | (number & {})
 
@@ -134,7 +134,7 @@ export const ResultCode = {
   Locked: 20,
 } as const
 
-/** 协议在消息之下的全部数值。All numbers of the protocol beneath its messages. */
+/** 消息之下各层的全部数值。All numbers of the layers below the messages. */
 export const wire: Wire = {
   name: 'meter',
   host: '10.0.0.9',

@@ -11,7 +11,7 @@ namespace fc {
 std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {
   auto raw = queue_->next(wait);
   if (!raw) return std::nullopt;
-  // They were read before they were acknowledged.
+  // Reports are read before they are acknowledged.
   return fc_runtime::any_report<AnyReport>(protocol(), *std::move(raw));
 }
 

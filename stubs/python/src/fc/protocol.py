@@ -27,10 +27,11 @@ from .groups.upper_body import UPPER_BODY_COMMANDS
 
 
 class ResultCode(rt.Result):
-    """结果码。只依据它判断成败，不依据旁边的文字。
-    Result codes. Go by them and never by the text beside them.
+    """结果码。用结果码判断成败，不要用随附的文字。
+    Result codes. Use the code to detect success, not the text that comes with it.
 
-    Docs: `docs-site/reference/results.md`.
+    - 文档：`docs-site/reference/results.md`
+    - Docs: `docs-site/en/reference/results.md`
     """
 
     SUCCESS = 1001, "响应成功"
@@ -88,8 +89,8 @@ class ResultCode(rt.Result):
 
 @dataclass(slots=True, kw_only=True)
 class RequestEnvelope(rt.Message):
-    """每个请求和主动上报都带的公共字段。
-    The keys that every request and every report carries beside its own.
+    """每个请求和上报都带的公共字段。
+    The keys of every request and report, in addition to those of its body.
     """
 
     cmd_time: Annotated[rt.TimestampMs | None, rt.Key("cmdTime")] = None
@@ -103,8 +104,8 @@ class RequestEnvelope(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class ResponseEnvelope(rt.Message):
-    """每个响应和确认都带的公共字段。
-    The keys that every response and every acknowledgement carries beside its own.
+    """每个响应和应答都带的公共字段。
+    The keys of every response and acknowledgement, in addition to those of its body.
     """
 
     cmd_time: Annotated[rt.TimestampMs | None, rt.Key("cmdTime")] = None
@@ -232,5 +233,6 @@ of their own.
 
 Version 2024.09 of the spec.
 
-Docs: `docs-site/reference/wire.md`.
+- 文档：`docs-site/reference/wire.md`
+- Docs: `docs-site/en/reference/wire.md`
 """

@@ -16,32 +16,33 @@
 
 namespace fc {
 
-/// 任意一个主动上报；编码不在规范中的，原样保留。
-/// Any report; one whose code the spec does not know is kept unchanged.
+/// 任意一个上报；功能码不在规范中的，原样保留。
+/// Any report. A report with a code that is not in the spec is kept unchanged.
 using AnyReport =
     fc_runtime::VariantOf<groups::MapReports, groups::RechargeReports, groups::StatusReports,
                           groups::TaskReports, fc_runtime::Types<fc_runtime::RawReport>>;
 
-/// 收到的主动上报，按到达的先后。
+/// 收到的上报，按到达的先后。
 ///
-/// Reports in the order in which they came. Each is acknowledged when at least one receiver has it in
-/// its queue; several receivers of one connection each get all of them. A report that does not read as
-/// its type says is refused, counted as `reports_invalid`, and never comes out here.
+/// Reports in the order of arrival. A report is acknowledged when at least one receiver has it in its
+/// queue. Every receiver of a connection gets all reports. A report with an invalid body is refused,
+/// counted as `reports_invalid`, and not delivered.
 class Reports {
  public:
   explicit Reports(std::shared_ptr<fc_runtime::ReportQueue> queue) : queue_(std::move(queue)) {}
 
-  /// 下一个上报；到时没有收到，或者连接已经结束，则没有。
+  /// 返回下一个上报；超过 `wait` 没有收到，或者连接已经结束且队列为空时，没有返回值。
   ///
-  /// The next report; none if none has come in time, or if the connection has ended and none is left.
+  /// Returns the next report. Returns nothing after `wait`, or if the connection has ended and the queue
+  /// is empty.
   [[nodiscard]] std::optional<AnyReport> next(std::chrono::milliseconds wait) const;
-  /// 自上次询问以来，因自己的队列已满而错过的上报数。
+  /// 返回上次调用以来错过的上报数：自己的队列已满。
   ///
-  /// How many reports this receiver has missed since this was last asked, because its queue was full.
+  /// Returns the number of reports that this receiver missed since the last call: its queue was full.
   [[nodiscard]] std::uint64_t missed() const { return queue_->take_missed(); }
-  /// 连接是否已经结束，且没有剩下的上报。
+  /// 连接是否已经结束，且队列为空。
   ///
-  /// Whether the connection has ended and none is left.
+  /// Returns `true` if the connection has ended and the queue is empty.
   [[nodiscard]] bool is_over() const { return queue_->is_over(); }
 
  private:
@@ -51,7 +52,7 @@ class Reports {
 /// 一个机器人，从 app 一侧看：每条指令一个方法，等到响应才返回。
 ///
 /// A robot as seen from the app: one method per command, which waits for the response. Cheap to copy; all
-/// copies share one connection. May be used from any thread. What must not wait calls
+/// copies share one connection. Any thread can use it. To call without waiting, use
 /// `connection().call_async`.
 class Client : public groups::BuildingCalls<Client>,
                public groups::CellCalls<Client>,
@@ -70,45 +71,45 @@ class Client : public groups::BuildingCalls<Client>,
  public:
   /// 连接机器人；`config` 中没有设置的项使用规范的默认值。
   ///
-  /// Connects to a robot; what `config` does not set has the default of the spec.
+  /// Connects to a robot. Settings missing from `config` have the defaults of the spec.
   [[nodiscard]] static fc_runtime::Result<Client, fc_runtime::Loss> connect(
       const fc_runtime::ClientConfig& config = {});
   /// 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
   ///
-  /// Returns at once and connects in the background; calls made meanwhile wait within their timeout.
+  /// Returns at once and connects in the background. Calls made before that wait within their timeout.
   [[nodiscard]] static Client connect_lazy(const fc_runtime::ClientConfig& config = {});
   explicit Client(fc_runtime::Connection connection) : robot_connection_(std::move(connection)) {}
 
   /// 此刻的连接状态；没有连接时说明原因。
   ///
-  /// Whether there is a connection at this moment, and why not.
+  /// Returns the present state of the connection, with the reason if there is none.
   [[nodiscard]] fc_runtime::ConnectionState state() const { return robot_connection_.state(); }
   /// 连接状态的变化：先是此刻的状态，之后是每一次变化。
   ///
-  /// The states of the connection: the present one first, and then each that it comes to.
+  /// The states of the connection: the present one first, then each change.
   [[nodiscard]] fc_runtime::ConnectionStates states() const { return robot_connection_.states(); }
-  /// 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
+  /// 返回此后全部上报的接收端。没有接收端时，上报不会得到应答。
   ///
-  /// All reports received from now on. While nobody receives, no report is acknowledged.
+  /// Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged.
   [[nodiscard]] Reports reports() const { return Reports(robot_connection_.reports()); }
   /// 连接数据端口：在后台建立，断线后重连，随指令连接一起结束。
   ///
-  /// A connection to the data port: made in the background, made again after a loss, and as long as this
-  /// one.
+  /// Connects to the data port in the background and reconnects after a loss. It ends with this
+  /// connection.
   [[nodiscard]] fc_runtime::DataConnection data() const { return robot_connection_.data(); }
   /// 永久关闭连接。
   ///
-  /// Ends the connection for good.
+  /// Closes the connection for good.
   void close() const { robot_connection_.close(); }
   /// 底层连接：原始指令、不等待的调用、计数。
   ///
   /// The underlying connection: raw commands, calls that do not wait, counters.
   [[nodiscard]] const fc_runtime::Connection& connection() const { return robot_connection_; }
 
-  /// 发出指令，取得响应，再逐个取得它引起的 `Message`，直到终态、失败或连接结束。
+  /// 发出指令，先返回响应，再逐个返回它引起的 `Message`，直到终态、失败或连接结束。
   ///
-  /// Calls a command, and after its response gives each `Message` that it sets off, until one of them
-  /// says that the process has ended or failed.
+  /// Calls a command and returns its response, then each `Message` that it sets off. It ends at a final
+  /// state, at a failure or with the connection.
   template <class Message, class Request>
   [[nodiscard]] fc_runtime::Called<fc_runtime::Following<Request, Message>> follow(
       const Request& request, const fc_runtime::CallOptions& options = {}) const {
@@ -135,7 +136,7 @@ extern template class groups::UnnamedCalls<Client>;
 extern template class groups::UpperBodyCalls<Client>;
 
 /// 对每一种请求调用一次 `visit`，参数是该类型的一个值。
-/// Calls `visit` once for each command, with a value of its type, to be told by that.
+/// Calls `visit` once for each command, with a value of its type.
 template <class Visitor>
 void for_each_command(Visitor&& visit) {
   fc_runtime::visit_each(visit, groups::BuildingCommands());
@@ -155,7 +156,7 @@ void for_each_command(Visitor&& visit) {
 }
 
 /// 对每一种上报调用一次 `visit`，参数是该类型的一个值。
-/// Calls `visit` once for each report, with a value of its type, to be told by that.
+/// Calls `visit` once for each report, with a value of its type.
 template <class Visitor>
 void for_each_report(Visitor&& visit) {
   fc_runtime::visit_each(visit, groups::MapReports());

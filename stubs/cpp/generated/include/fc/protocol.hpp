@@ -23,10 +23,11 @@ namespace fc {
 /// Version 2024.09 of the spec.
 [[nodiscard]] const fc_runtime::Protocol& protocol();
 
-/// 结果码。只依据它判断成败，不依据旁边的文字。
-/// Result codes. Go by them and never by the text beside them.
+/// 结果码。用结果码判断成败，不要用随附的文字。
+/// Result codes. Use the code to detect success, not the text that comes with it.
 ///
-/// Docs: `docs-site/reference/results.md`.
+/// - 文档：`docs-site/reference/results.md`
+/// - Docs: `docs-site/en/reference/results.md`
 enum class ResultCode : std::int64_t {
   /// 响应成功
   /// Success
@@ -73,7 +74,7 @@ enum class ResultCode : std::int64_t {
   Expired = 2004,
 };
 
-/// 随结果码发送的文字。The text sent beside the code.
+/// 随结果码发送的文字。The text sent with the code.
 [[nodiscard]] std::string_view text(ResultCode code) noexcept;
 /// 以此结果码拒绝。A refusal with this code.
 [[nodiscard]] fc_runtime::Refusal refusal(ResultCode code);

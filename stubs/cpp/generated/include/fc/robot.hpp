@@ -13,20 +13,20 @@
 namespace fc {
 
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing
-/// here, and the compiler says so.
+/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
+/// reports a missing method.
 ///
-/// 只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。
+/// 只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。指令齐全之后，改为继承 `Robot`。
 ///
-/// A robot that has some of them so far derives from `PartialRobot`: what is left out is refused as not
-/// implemented. That one word is all that changes once nothing is missing.
+/// A robot with some of the commands derives from `PartialRobot`, which refuses the others as not
+/// implemented. Once the robot has all commands, change `PartialRobot` to `Robot`.
 ///
-/// 各个方法可能同时被多个线程调用。处理超时后，机器人替它应答超时，方法仍运行到结束；
-/// `Context::is_abandoned` 让它知道没有人等待了。
+/// 各个方法可能同时被多个线程调用。处理超时后，机器人替它返回超时，方法仍运行到结束；
+/// 方法用 `Context::is_abandoned` 得知调用方不再等待。
 ///
-/// Methods may be called by several threads at once. When one takes too long, the robot answers with a
-/// timeout in its place, and it still runs to its end: `Context::is_abandoned` tells it that nobody
-/// waits any more.
+/// Several threads can call methods at the same time. After a timeout, the robot responds with a timeout,
+/// and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any
+/// more.
 class Robot : public groups::BuildingRobot,
               public groups::CellRobot,
               public groups::DispatchRobot,
@@ -49,26 +49,26 @@ class Robot : public groups::BuildingRobot,
   /// 直接透传给上装
   /// Passed straight through to the upper body
   ///
-  /// Codes 0x0200 to 0x0300 that have no method of their own.
+  /// Codes 0x0200 to 0x0300 without a separate method.
   ///
   /// 不实现此方法时，按未知指令拒绝。
   ///
-  /// Refused as an unknown command unless the robot has this method.
+  /// Without this method, the robot refuses them as unknown commands.
   virtual fc_runtime::RawReplied pass_through(const fc_runtime::Context& context,
                                               std::string_view text);
 
   /// 功能码不在规范中的指令。
-  /// Commands whose code is not in the spec.
+  /// Commands with a code that is not in the spec.
   ///
   /// 不实现此方法时，按未知指令拒绝。
   ///
-  /// Refused as an unknown command unless the robot has this method.
+  /// Without this method, the robot refuses them as unknown commands.
   virtual fc_runtime::RawReplied unknown(const fc_runtime::Context& context, std::string_view text);
 };
 
 // clang-format off
 /// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。
-/// A robot that has some of the commands: the others are refused as not implemented. It is a `Robot`.
+/// A robot with some of the commands. It refuses the others as not implemented. It is a `Robot`.
 class PartialRobot : public fc_runtime::Stacked<
     fc_runtime::Refusing<Robot, protocol>,
     groups::BuildingDefaults,
@@ -92,11 +92,11 @@ class PartialRobot : public fc_runtime::Stacked<
 // clang-format on
 
 // clang-format off
-/// 用规范中的示例回答指令，只用于演示和测试。会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，
-/// 除非要求它假装。它是一个 `Robot`。
-/// Answers with the spec's examples, for demos and tests alone. It does not carry out what sets something
-/// in motion, or may do so: such commands are refused as not implemented, unless it is told to pretend.
-/// It is a `Robot`.
+/// 用规范中的示例响应指令，只用于演示和测试。它不执行运动指令和影响不详的指令，以“未实现”拒绝；
+/// `pretend_motion` 为真时假装成功。它是一个 `Robot`。
+/// Responds with the examples of the spec, only for demos and tests. It does not execute commands that move
+/// the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion`, it
+/// pretends success. It is a `Robot`.
 class ExampleRobot : public fc_runtime::Stacked<
     fc_runtime::Exemplary<Robot, protocol>,
     groups::BuildingDefaults,
@@ -119,15 +119,15 @@ class ExampleRobot : public fc_runtime::Stacked<
 };
 // clang-format on
 
-/// 由一个机器人处理规范中的指令，交给 `fc_runtime::Server::bind`。
+/// 包装一个机器人，交给 `fc_runtime::Server::bind`。
 ///
-/// Has a robot handle the commands of the spec, for `fc_runtime::Server::bind`.
+/// Wraps a robot for `fc_runtime::Server::bind`.
 [[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);
 
-/// 主动上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
+/// 发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
 ///
-/// Pushes reports: one method per report, which waits until it has ended at each app. Without a connection
-/// it goes to all apps connected at the moment. The server has to outlive it.
+/// Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,
+/// the report goes to all connected apps. The server must outlive this object.
 class Reporter : public groups::MapReporter<Reporter>,
                  public groups::RechargeReporter<Reporter>,
                  public groups::StatusReporter<Reporter>,
@@ -135,7 +135,7 @@ class Reporter : public groups::MapReporter<Reporter>,
  public:
   explicit Reporter(const fc_runtime::Server& server) : robot_server_(&server) {}
 
-  /// 上报由它发出。What sends the reports.
+  /// 发送上报的服务端。The server that sends the reports.
   [[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }
 
  private:

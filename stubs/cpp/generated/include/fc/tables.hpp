@@ -22,7 +22,8 @@ namespace fc {
 /// Kept in `chassis_config`.
 ///
 /// - Spec: `tables.cell_layouts` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/tables.md`
+/// - 文档：`docs-site/reference/tables.md`
+/// - Docs: `docs-site/en/reference/tables.md`
 [[nodiscard]] const std::vector<CellLayout>& cell_layouts();
 
 }  // namespace fc

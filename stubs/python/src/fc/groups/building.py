@@ -39,7 +39,8 @@ class IotDeviceType(Enum):
     The list changes as device types are added; an unknown type is kept as the string it is.
 
     - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     ELEVATOR = "elevator"
@@ -81,7 +82,8 @@ class ListIotDevicesRequest(rt.Message):
     Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 
     - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    - 文档：`docs-site/reference/commands/list_iot_devices.md`
+    - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"iotDeviceType":"elevator"}}'
@@ -103,7 +105,8 @@ class ListIotDevicesRequestData(rt.Message):
     `data` of `ListIotDevicesRequest`.
 
     - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    - 文档：`docs-site/reference/commands/list_iot_devices.md`
+    - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
     """
 
     __example__: ClassVar[str] = '{"iotDeviceType":"elevator"}'
@@ -127,7 +130,8 @@ class ListIotDevicesResponse(rt.Message):
     List the IoT devices of a type: response
 
     - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/commands/list_iot_devices.md`
+    - 文档：`docs-site/reference/commands/list_iot_devices.md`
+    - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
     """
 
     __example__: ClassVar[str] = (
@@ -156,7 +160,8 @@ class GetFloorsRequest(rt.Message):
     Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/commands/get_floors.md`
+    - 文档：`docs-site/reference/commands/get_floors.md`
+    - Docs: `docs-site/en/reference/commands/get_floors.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -169,7 +174,8 @@ class GetFloorsResponse(rt.Message):
     Get the floors: response
 
     - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/commands/get_floors.md`
+    - 文档：`docs-site/reference/commands/get_floors.md`
+    - Docs: `docs-site/en/reference/commands/get_floors.md`
     """
 
     __example__: ClassVar[str] = (
@@ -209,7 +215,8 @@ class IotDevice(rt.Message):
     An IoT device
 
     - Spec: `types.IotDevice` in `spec/commands/building.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"address":"xxx","id":"001","comAddress":20}'
@@ -279,7 +286,7 @@ BUILDING_COMMANDS: Final = (
 
 class BuildingCalls(rt.Calls):
     """`Client` 的一部分：`building` 组的指令。
-    The part of `Client` with the commands of the group `building`.
+    Part of `Client`: the commands of the group `building`.
     """
 
     async def list_iot_devices(
@@ -296,7 +303,8 @@ class BuildingCalls(rt.Calls):
         Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 
         - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/list_iot_devices.md`
+        - 文档：`docs-site/reference/commands/list_iot_devices.md`
+        - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
         """
         return await self.connection.call(LIST_IOT_DEVICES, request, timeout=timeout, repeat=repeat)
 
@@ -314,14 +322,15 @@ class BuildingCalls(rt.Calls):
         Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/get_floors.md`
+        - 文档：`docs-site/reference/commands/get_floors.md`
+        - Docs: `docs-site/en/reference/commands/get_floors.md`
         """
         return await self.connection.call(GET_FLOORS, request, timeout=timeout, repeat=repeat)
 
 
 class BuildingSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`building` 组的指令。
-    The part of `sync.Client` with the commands of the group `building`.
+    Part of `sync.Client`: the commands of the group `building`.
     """
 
     def list_iot_devices(
@@ -338,7 +347,8 @@ class BuildingSyncCalls(rt.SyncCalls):
         Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 
         - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/list_iot_devices.md`
+        - 文档：`docs-site/reference/commands/list_iot_devices.md`
+        - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
         """
         return self._call(LIST_IOT_DEVICES, request, timeout, repeat)
 
@@ -356,14 +366,15 @@ class BuildingSyncCalls(rt.SyncCalls):
         Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/get_floors.md`
+        - 文档：`docs-site/reference/commands/get_floors.md`
+        - Docs: `docs-site/en/reference/commands/get_floors.md`
         """
         return self._call(GET_FLOORS, request, timeout, repeat)
 
 
 class BuildingHandlers(ABC):
     """`Robot` 的一部分：`building` 组的指令。
-    The part of `Robot` with the commands of the group `building`.
+    Part of `Robot`: the commands of the group `building`.
     """
 
     @abstractmethod
@@ -379,7 +390,8 @@ class BuildingHandlers(ABC):
         Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 
         - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/list_iot_devices.md`
+        - 文档：`docs-site/reference/commands/list_iot_devices.md`
+        - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
         """
 
     @abstractmethod
@@ -395,13 +407,14 @@ class BuildingHandlers(ABC):
         Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-        - Docs: `docs-site/reference/commands/get_floors.md`
+        - 文档：`docs-site/reference/commands/get_floors.md`
+        - Docs: `docs-site/en/reference/commands/get_floors.md`
         """
 
 
 class BuildingPartialHandlers(BuildingHandlers):
     """`PartialRobot` 的一部分：`building` 组的指令。
-    The part of `PartialRobot` with the commands of the group `building`.
+    Part of `PartialRobot`: the commands of the group `building`.
     """
 
     @rt.left_out

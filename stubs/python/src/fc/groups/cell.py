@@ -47,7 +47,8 @@ class CellType(Enum):
     in section 43 disagrees (see C138), so do not derive the number of doors from the size.
 
     - Spec: `types.CellType` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     SMALL = 1
@@ -72,7 +73,8 @@ class CellLocation(Enum):
     Physical location of a compartment
 
     - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     LEFT_TOP = "leftTop"
@@ -134,7 +136,8 @@ class GetCellConfigRequest(rt.Message):
     Code 0x0A02. Only reads.
 
     - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/get_cell_config.md`
+    - 文档：`docs-site/reference/commands/get_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/get_cell_config.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -147,7 +150,8 @@ class GetCellConfigResponse(rt.Message):
     Get the compartment configuration: response
 
     - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/get_cell_config.md`
+    - 文档：`docs-site/reference/commands/get_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/get_cell_config.md`
     """
 
     __example__: ClassVar[str] = (
@@ -173,7 +177,8 @@ class GetCellConfigResponseData(rt.Message):
     `data` of `GetCellConfigResponse`.
 
     - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/get_cell_config.md`
+    - 文档：`docs-site/reference/commands/get_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/get_cell_config.md`
     """
 
     __example__: ClassVar[str] = (
@@ -220,7 +225,8 @@ class SetCellConfigRequest(rt.Message):
     Code 0x0A0B. Changes the configuration.
 
     - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/set_cell_config.md`
+    - 文档：`docs-site/reference/commands/set_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"activeCellConfigTypeIndex":1}}'
@@ -242,7 +248,8 @@ class SetCellConfigRequestDataActiveIndex(rt.Message):
     `data` of `SetCellConfigRequest`.
 
     - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/set_cell_config.md`
+    - 文档：`docs-site/reference/commands/set_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     """
 
     __example__: ClassVar[str] = '{"activeCellConfigTypeIndex":1}'
@@ -266,7 +273,8 @@ class SetCellConfigRequestDataOldLayout(rt.Message):
     `data` of `SetCellConfigRequest`.
 
     - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/set_cell_config.md`
+    - 文档：`docs-site/reference/commands/set_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     """
 
     __example__: ClassVar[str] = '{"cellNums":1,"cellDoorList":[{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}]}'
@@ -295,7 +303,8 @@ class SetCellConfigResponse(rt.Message):
     Set the compartment configuration: response
 
     - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/commands/set_cell_config.md`
+    - 文档：`docs-site/reference/commands/set_cell_config.md`
+    - Docs: `docs-site/en/reference/commands/set_cell_config.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -308,7 +317,8 @@ class Cell(rt.Message):
     A compartment of the current configuration
 
     - Spec: `types.Cell` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"cellLocation":"leftTop","cellId":1,"cellType":1,"cellLockId":1,"cellDoorId":[1]}'
@@ -358,7 +368,8 @@ class OldCell(rt.Message):
     A compartment of the old form
 
     - Spec: `types.OldCell` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}'
@@ -394,7 +405,8 @@ class CellLayout(rt.Message):
     A layout of compartments
 
     - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -431,7 +443,8 @@ class LayoutCell(rt.Message):
     A compartment of a layout
 
     - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"cellLocation":"all","cellId":1,"cellType":3,"cellDoorId":[1,2,3,4]}'
@@ -477,7 +490,8 @@ The layout to activate, by index or, in the old form, in full
 `data` of `SetCellConfigRequest`.
 
 - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-- Docs: `docs-site/reference/commands/set_cell_config.md`
+- 文档：`docs-site/reference/commands/set_cell_config.md`
+- Docs: `docs-site/en/reference/commands/set_cell_config.md`
 
 `SetCellConfigRequestDataActiveIndex`：新版：选用一种已存储的配置
 
@@ -531,7 +545,7 @@ CELL_COMMANDS: Final = (
 
 class CellCalls(rt.Calls):
     """`Client` 的一部分：`cell` 组的指令。
-    The part of `Client` with the commands of the group `cell`.
+    Part of `Client`: the commands of the group `cell`.
     """
 
     async def get_cell_config(
@@ -548,7 +562,8 @@ class CellCalls(rt.Calls):
         Code 0x0A02. Only reads.
 
         - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        - 文档：`docs-site/reference/commands/get_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/get_cell_config.md`
         """
         return await self.connection.call(GET_CELL_CONFIG, request, timeout=timeout, repeat=repeat)
 
@@ -575,14 +590,15 @@ class CellCalls(rt.Calls):
         Code 0x0A0B. Changes the configuration.
 
         - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        - 文档：`docs-site/reference/commands/set_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/set_cell_config.md`
         """
         return await self.connection.call(SET_CELL_CONFIG, request, timeout=timeout, repeat=repeat)
 
 
 class CellSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`cell` 组的指令。
-    The part of `sync.Client` with the commands of the group `cell`.
+    Part of `sync.Client`: the commands of the group `cell`.
     """
 
     def get_cell_config(
@@ -599,7 +615,8 @@ class CellSyncCalls(rt.SyncCalls):
         Code 0x0A02. Only reads.
 
         - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        - 文档：`docs-site/reference/commands/get_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/get_cell_config.md`
         """
         return self._call(GET_CELL_CONFIG, request, timeout, repeat)
 
@@ -626,14 +643,15 @@ class CellSyncCalls(rt.SyncCalls):
         Code 0x0A0B. Changes the configuration.
 
         - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        - 文档：`docs-site/reference/commands/set_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/set_cell_config.md`
         """
         return self._call(SET_CELL_CONFIG, request, timeout, repeat)
 
 
 class CellHandlers(ABC):
     """`Robot` 的一部分：`cell` 组的指令。
-    The part of `Robot` with the commands of the group `cell`.
+    Part of `Robot`: the commands of the group `cell`.
     """
 
     @abstractmethod
@@ -649,7 +667,8 @@ class CellHandlers(ABC):
         Code 0x0A02. Only reads.
 
         - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/get_cell_config.md`
+        - 文档：`docs-site/reference/commands/get_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/get_cell_config.md`
         """
 
     @abstractmethod
@@ -674,13 +693,14 @@ class CellHandlers(ABC):
         Code 0x0A0B. Changes the configuration.
 
         - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-        - Docs: `docs-site/reference/commands/set_cell_config.md`
+        - 文档：`docs-site/reference/commands/set_cell_config.md`
+        - Docs: `docs-site/en/reference/commands/set_cell_config.md`
         """
 
 
 class CellPartialHandlers(CellHandlers):
     """`PartialRobot` 的一部分：`cell` 组的指令。
-    The part of `PartialRobot` with the commands of the group `cell`.
+    Part of `PartialRobot`: the commands of the group `cell`.
     """
 
     @rt.left_out

@@ -42,7 +42,8 @@ class UploadContendedResourcesRequest(rt.Message):
     No code yet: types only. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 
     - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-    - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+    - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+    - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -59,7 +60,8 @@ class UploadContendedResourcesResponse(rt.Message):
     Open: The response is lost; nothing is known beyond the envelope.
 
     - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-    - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+    - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+    - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -79,7 +81,8 @@ class CheckCondition0333Request(rt.Message):
     Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 
     - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    - 文档：`docs-site/reference/commands/check_condition_0333.md`
+    - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -92,7 +95,8 @@ class CheckCondition0333Response(rt.Message):
     Check a condition (0x0333, purpose unknown): response
 
     - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    - 文档：`docs-site/reference/commands/check_condition_0333.md`
+    - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"condision":"true"}}'
@@ -114,7 +118,8 @@ class CheckCondition0333ResponseData(rt.Message):
     `data` of `CheckCondition0333Response`.
 
     - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-    - Docs: `docs-site/reference/commands/check_condition_0333.md`
+    - 文档：`docs-site/reference/commands/check_condition_0333.md`
+    - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
     """
 
     __example__: ClassVar[str] = '{"condision":"true"}'
@@ -170,7 +175,7 @@ DISPATCH_COMMANDS: Final = (
 
 class DispatchCalls(rt.Calls):
     """`Client` 的一部分：`dispatch` 组的指令。
-    The part of `Client` with the commands of the group `dispatch`.
+    Part of `Client`: the commands of the group `dispatch`.
     """
 
     async def check_condition_0333(
@@ -191,14 +196,15 @@ class DispatchCalls(rt.Calls):
         Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 
         - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-        - Docs: `docs-site/reference/commands/check_condition_0333.md`
+        - 文档：`docs-site/reference/commands/check_condition_0333.md`
+        - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
         """
         return await self.connection.call(CHECK_CONDITION_0333, request, timeout=timeout, repeat=repeat)
 
 
 class DispatchSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`dispatch` 组的指令。
-    The part of `sync.Client` with the commands of the group `dispatch`.
+    Part of `sync.Client`: the commands of the group `dispatch`.
     """
 
     def check_condition_0333(
@@ -219,14 +225,15 @@ class DispatchSyncCalls(rt.SyncCalls):
         Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 
         - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-        - Docs: `docs-site/reference/commands/check_condition_0333.md`
+        - 文档：`docs-site/reference/commands/check_condition_0333.md`
+        - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
         """
         return self._call(CHECK_CONDITION_0333, request, timeout, repeat)
 
 
 class DispatchHandlers(ABC):
     """`Robot` 的一部分：`dispatch` 组的指令。
-    The part of `Robot` with the commands of the group `dispatch`.
+    Part of `Robot`: the commands of the group `dispatch`.
     """
 
     @abstractmethod
@@ -244,13 +251,14 @@ class DispatchHandlers(ABC):
         Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 
         - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-        - Docs: `docs-site/reference/commands/check_condition_0333.md`
+        - 文档：`docs-site/reference/commands/check_condition_0333.md`
+        - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
         """
 
 
 class DispatchPartialHandlers(DispatchHandlers):
     """`PartialRobot` 的一部分：`dispatch` 组的指令。
-    The part of `PartialRobot` with the commands of the group `dispatch`.
+    Part of `PartialRobot`: the commands of the group `dispatch`.
     """
 
     @rt.left_out

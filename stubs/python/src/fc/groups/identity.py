@@ -38,7 +38,8 @@ class GetRobotSnRequest(rt.Message):
     Code 0x0A01. Only reads. Since 2023-05.
 
     - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    - 文档：`docs-site/reference/commands/get_robot_sn.md`
+    - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -51,7 +52,8 @@ class GetRobotSnResponse(rt.Message):
     Get the serial number: response
 
     - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    - 文档：`docs-site/reference/commands/get_robot_sn.md`
+    - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"robotSn":"100132001234567","robotModel":"Indoor"}}'
@@ -73,7 +75,8 @@ class GetRobotSnResponseData(rt.Message):
     `data` of `GetRobotSnResponse`.
 
     - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-    - Docs: `docs-site/reference/commands/get_robot_sn.md`
+    - 文档：`docs-site/reference/commands/get_robot_sn.md`
+    - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
     """
 
     __example__: ClassVar[str] = '{"robotSn":"100132001234567","robotModel":"Indoor"}'
@@ -115,7 +118,8 @@ class GetFirmwareVersionsRequest(rt.Message):
     Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+    - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -132,7 +136,8 @@ class GetFirmwareVersionsResponse(rt.Message):
     Open: The response is lost, and with it the keys of the three versions; every key received is kept.
 
     - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-    - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+    - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+    - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -179,7 +184,7 @@ IDENTITY_COMMANDS: Final = (
 
 class IdentityCalls(rt.Calls):
     """`Client` 的一部分：`identity` 组的指令。
-    The part of `Client` with the commands of the group `identity`.
+    Part of `Client`: the commands of the group `identity`.
     """
 
     async def get_robot_sn(
@@ -195,7 +200,8 @@ class IdentityCalls(rt.Calls):
         Code 0x0A01. Only reads. Since 2023-05.
 
         - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_robot_sn.md`
+        - 文档：`docs-site/reference/commands/get_robot_sn.md`
+        - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
         """
         return await self.connection.call(GET_ROBOT_SN, request, timeout=timeout, repeat=repeat)
 
@@ -219,14 +225,15 @@ class IdentityCalls(rt.Calls):
         Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+        - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+        - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
         """
         return await self.connection.call(GET_FIRMWARE_VERSIONS, request, timeout=timeout, repeat=repeat)
 
 
 class IdentitySyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`identity` 组的指令。
-    The part of `sync.Client` with the commands of the group `identity`.
+    Part of `sync.Client`: the commands of the group `identity`.
     """
 
     def get_robot_sn(
@@ -242,7 +249,8 @@ class IdentitySyncCalls(rt.SyncCalls):
         Code 0x0A01. Only reads. Since 2023-05.
 
         - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_robot_sn.md`
+        - 文档：`docs-site/reference/commands/get_robot_sn.md`
+        - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
         """
         return self._call(GET_ROBOT_SN, request, timeout, repeat)
 
@@ -266,14 +274,15 @@ class IdentitySyncCalls(rt.SyncCalls):
         Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+        - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+        - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
         """
         return self._call(GET_FIRMWARE_VERSIONS, request, timeout, repeat)
 
 
 class IdentityHandlers(ABC):
     """`Robot` 的一部分：`identity` 组的指令。
-    The part of `Robot` with the commands of the group `identity`.
+    Part of `Robot`: the commands of the group `identity`.
     """
 
     @abstractmethod
@@ -288,7 +297,8 @@ class IdentityHandlers(ABC):
         Code 0x0A01. Only reads. Since 2023-05.
 
         - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_robot_sn.md`
+        - 文档：`docs-site/reference/commands/get_robot_sn.md`
+        - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
         """
 
     @abstractmethod
@@ -308,13 +318,14 @@ class IdentityHandlers(ABC):
         Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-        - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+        - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+        - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
         """
 
 
 class IdentityPartialHandlers(IdentityHandlers):
     """`PartialRobot` 的一部分：`identity` 组的指令。
-    The part of `PartialRobot` with the commands of the group `identity`.
+    Part of `PartialRobot`: the commands of the group `identity`.
     """
 
     @rt.left_out

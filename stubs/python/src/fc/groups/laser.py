@@ -34,7 +34,8 @@ class GetLaserScanRequest(rt.Message):
     Code 0x0001. Only reads. Since 2023-08-10.
 
     - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-    - Docs: `docs-site/reference/commands/get_laser_scan.md`
+    - 文档：`docs-site/reference/commands/get_laser_scan.md`
+    - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":1671124918288}'
@@ -60,7 +61,8 @@ class GetLaserScanResponse(rt.Message):
     Open: The response is lost, and with it the structure of the point cloud; every key received is kept.
 
     - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-    - Docs: `docs-site/reference/commands/get_laser_scan.md`
+    - 文档：`docs-site/reference/commands/get_laser_scan.md`
+    - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -88,7 +90,7 @@ LASER_COMMANDS: Final = (GET_LASER_SCAN,)
 
 class LaserCalls(rt.Calls):
     """`Client` 的一部分：`laser` 组的指令。
-    The part of `Client` with the commands of the group `laser`.
+    Part of `Client`: the commands of the group `laser`.
     """
 
     async def get_laser_scan(
@@ -104,14 +106,15 @@ class LaserCalls(rt.Calls):
         Code 0x0001. Only reads. Since 2023-08-10.
 
         - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-        - Docs: `docs-site/reference/commands/get_laser_scan.md`
+        - 文档：`docs-site/reference/commands/get_laser_scan.md`
+        - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
         """
         return await self.connection.call(GET_LASER_SCAN, request, timeout=timeout, repeat=repeat)
 
 
 class LaserSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`laser` 组的指令。
-    The part of `sync.Client` with the commands of the group `laser`.
+    Part of `sync.Client`: the commands of the group `laser`.
     """
 
     def get_laser_scan(
@@ -127,14 +130,15 @@ class LaserSyncCalls(rt.SyncCalls):
         Code 0x0001. Only reads. Since 2023-08-10.
 
         - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-        - Docs: `docs-site/reference/commands/get_laser_scan.md`
+        - 文档：`docs-site/reference/commands/get_laser_scan.md`
+        - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
         """
         return self._call(GET_LASER_SCAN, request, timeout, repeat)
 
 
 class LaserHandlers(ABC):
     """`Robot` 的一部分：`laser` 组的指令。
-    The part of `Robot` with the commands of the group `laser`.
+    Part of `Robot`: the commands of the group `laser`.
     """
 
     @abstractmethod
@@ -149,13 +153,14 @@ class LaserHandlers(ABC):
         Code 0x0001. Only reads. Since 2023-08-10.
 
         - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-        - Docs: `docs-site/reference/commands/get_laser_scan.md`
+        - 文档：`docs-site/reference/commands/get_laser_scan.md`
+        - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
         """
 
 
 class LaserPartialHandlers(LaserHandlers):
     """`PartialRobot` 的一部分：`laser` 组的指令。
-    The part of `PartialRobot` with the commands of the group `laser`.
+    Part of `PartialRobot`: the commands of the group `laser`.
     """
 
     @rt.left_out

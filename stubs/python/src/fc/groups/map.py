@@ -60,7 +60,8 @@ class MapSyncDirection(Enum):
     Direction of synchronisation
 
     - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     UPLOAD = 1
@@ -80,7 +81,8 @@ class MapSyncResult(Enum):
     Result of the synchronisation
 
     - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     PENDING = 0
@@ -116,7 +118,8 @@ class SetTargetMapRequest(rt.Message):
     `2002`: The target map could not be set
 
     - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/set_target_map.md`
+    - 文档：`docs-site/reference/commands/set_target_map.md`
+    - Docs: `docs-site/en/reference/commands/set_target_map.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -128,7 +131,8 @@ class SetTargetMapError(rt.Result):
     Set the target map: its declared errors
 
     - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/set_target_map.md`
+    - 文档：`docs-site/reference/commands/set_target_map.md`
+    - Docs: `docs-site/en/reference/commands/set_target_map.md`
     """
 
     TIMEOUT = 2002, "硬件通信超时"
@@ -143,7 +147,8 @@ class SetTargetMapResponse(rt.Message):
     Set the target map: response
 
     - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/set_target_map.md`
+    - 文档：`docs-site/reference/commands/set_target_map.md`
+    - Docs: `docs-site/en/reference/commands/set_target_map.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -163,7 +168,8 @@ class GetMapImageRequest(rt.Message):
     Code 0x0111. Only reads, inferred. Since 2023-08-10.
 
     - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_image.md`
+    - 文档：`docs-site/reference/commands/get_map_image.md`
+    - Docs: `docs-site/en/reference/commands/get_map_image.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":1671124918288}'
@@ -185,7 +191,8 @@ class GetMapImageResponse(rt.Message):
     Get the picture of a map: response
 
     - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_image.md`
+    - 文档：`docs-site/reference/commands/get_map_image.md`
+    - Docs: `docs-site/en/reference/commands/get_map_image.md`
     """
 
     __example__: ClassVar[str] = (
@@ -261,7 +268,8 @@ class GetMapImageResponseOrigin(rt.Message):
     `origin` of `GetMapImageResponse`.
 
     - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_image.md`
+    - 文档：`docs-site/reference/commands/get_map_image.md`
+    - Docs: `docs-site/en/reference/commands/get_map_image.md`
     """
 
     __example__: ClassVar[str] = '{"x":1.0,"y":1.0,"yaw":1.0}'
@@ -303,7 +311,8 @@ class ListMapsRequest(rt.Message):
     Code 0x0103. Only reads.
 
     - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/list_maps.md`
+    - 文档：`docs-site/reference/commands/list_maps.md`
+    - Docs: `docs-site/en/reference/commands/list_maps.md`
     """
 
     __example__: ClassVar[str] = '{"msgId":90842323}'
@@ -325,7 +334,8 @@ class ListMapsResponse(rt.Message):
     List the maps: response
 
     - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/list_maps.md`
+    - 文档：`docs-site/reference/commands/list_maps.md`
+    - Docs: `docs-site/en/reference/commands/list_maps.md`
     """
 
     __example__: ClassVar[str] = (
@@ -362,7 +372,8 @@ class GetMapInfoRequest(rt.Message):
     Code 0x010C. Only reads.
 
     - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_info.md`
+    - 文档：`docs-site/reference/commands/get_map_info.md`
+    - Docs: `docs-site/en/reference/commands/get_map_info.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -379,7 +390,8 @@ class GetMapInfoResponse(rt.Message):
     Open: No response is printed; every key received is kept.
 
     - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_info.md`
+    - 文档：`docs-site/reference/commands/get_map_info.md`
+    - Docs: `docs-site/en/reference/commands/get_map_info.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -398,7 +410,8 @@ class SaveMapRequest(rt.Message):
     Code 0x0109. Changes the configuration.
 
     - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/save_map.md`
+    - 文档：`docs-site/reference/commands/save_map.md`
+    - Docs: `docs-site/en/reference/commands/save_map.md`
     """
 
     __example__: ClassVar[str] = (
@@ -407,10 +420,10 @@ class SaveMapRequest(rt.Message):
     )
 
     DEFAULT_TOWER: ClassVar[str] = "未知"
-    """没有 `tower` 时的取值。What the absence of `tower` means."""
+    """没有 `tower` 时的取值。The default of `tower`."""
 
     DEFAULT_LEVEL: ClassVar[str] = "1"
-    """没有 `level` 时的取值。What the absence of `level` means."""
+    """没有 `level` 时的取值。The default of `level`."""
 
     body_msg_id: Annotated[rt.I64 | None, rt.Key("msgId")] = None
     """正文中的指令 id
@@ -466,12 +479,12 @@ class SaveMapRequest(rt.Message):
 
     @property
     def tower_or_default(self) -> str:
-        """`tower`，没有时为默认值。`tower`, or what its absence means."""
+        """`tower`，没有时为默认值。`tower`, or its default."""
         return self.DEFAULT_TOWER if self.tower is None else self.tower
 
     @property
     def level_or_default(self) -> str:
-        """`level`，没有时为默认值。`level`, or what its absence means."""
+        """`level`，没有时为默认值。`level`, or its default."""
         return self.DEFAULT_LEVEL if self.level is None else self.level
 
 
@@ -485,7 +498,8 @@ class SaveMapResponse(rt.Message):
     Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
 
     - Spec: `commands.save_map` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/save_map.md`
+    - 文档：`docs-site/reference/commands/save_map.md`
+    - Docs: `docs-site/en/reference/commands/save_map.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -507,7 +521,8 @@ class DownloadMapsRequest(rt.Message):
     Code 0x0320. Changes the configuration, inferred.
 
     - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/download_maps.md`
+    - 文档：`docs-site/reference/commands/download_maps.md`
+    - Docs: `docs-site/en/reference/commands/download_maps.md`
     """
 
     __example__: ClassVar[str] = (
@@ -537,7 +552,8 @@ class DownloadMapsResponse(rt.Message):
     Download maps: response
 
     - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/download_maps.md`
+    - 文档：`docs-site/reference/commands/download_maps.md`
+    - Docs: `docs-site/en/reference/commands/download_maps.md`
     """
 
     __example__: ClassVar[str] = '{"msgId":90842323}'
@@ -570,7 +586,8 @@ class UploadMapsRequest(rt.Message):
     Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 
     - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/upload_maps.md`
+    - 文档：`docs-site/reference/commands/upload_maps.md`
+    - Docs: `docs-site/en/reference/commands/upload_maps.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -587,7 +604,8 @@ class UploadMapsResponse(rt.Message):
     Open: The response is lost; nothing is known beyond the envelope.
 
     - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/upload_maps.md`
+    - 文档：`docs-site/reference/commands/upload_maps.md`
+    - Docs: `docs-site/en/reference/commands/upload_maps.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -610,7 +628,8 @@ class GetMapSyncProgressRequest(rt.Message):
     Code 0x0322. Only reads.
 
     - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+    - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -627,7 +646,8 @@ class GetMapSyncProgressResponse(rt.Message):
     Open: The response is lost. It may hold the syncMapList of map_sync_progress, but nothing says so.
 
     - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+    - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+    - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -646,7 +666,8 @@ class MapSyncProgress(rt.Message):
     Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
 
     - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/reports/map_sync_progress.md`
+    - 文档：`docs-site/reference/reports/map_sync_progress.md`
+    - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
     """
 
     __example__: ClassVar[str] = (
@@ -672,11 +693,12 @@ class MapSyncProgress(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class MapSyncProgressAck(rt.Message):
-    """上报地图同步进度：确认
+    """上报地图同步进度：应答
     Progress of map synchronisation: acknowledgement
 
     - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/reports/map_sync_progress.md`
+    - 文档：`docs-site/reference/reports/map_sync_progress.md`
+    - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
     """
 
     __example__: ClassVar[str] = '{"msgId":90842323}'
@@ -698,7 +720,8 @@ class MapInfo(rt.Message):
     Information about a map
 
     - Spec: `types.MapInfo` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -808,7 +831,8 @@ class MapDownload(rt.Message):
     A map to download
 
     - Spec: `types.MapDownload` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -846,7 +870,8 @@ class MapSync(rt.Message):
     Progress of the synchronisation of a map
 
     - Spec: `types.MapSync` in `spec/commands/map.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"mapName":"地图名称","mapId":1234567890,"syncStatus":1,"progress":0,"result":0}'
@@ -1044,7 +1069,7 @@ AnyMapReport: TypeAlias = MapSyncProgress
 
 class MapCalls(rt.Calls):
     """`Client` 的一部分：`map` 组的指令。
-    The part of `Client` with the commands of the group `map`.
+    Part of `Client`: the commands of the group `map`.
     """
 
     async def get_map_image(
@@ -1061,7 +1086,8 @@ class MapCalls(rt.Calls):
         Code 0x0111. Only reads, inferred. Since 2023-08-10.
 
         - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_image.md`
+        - 文档：`docs-site/reference/commands/get_map_image.md`
+        - Docs: `docs-site/en/reference/commands/get_map_image.md`
         """
         return await self.connection.call(GET_MAP_IMAGE, request, timeout=timeout, repeat=repeat)
 
@@ -1078,7 +1104,8 @@ class MapCalls(rt.Calls):
         Code 0x0103. Only reads.
 
         - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/list_maps.md`
+        - 文档：`docs-site/reference/commands/list_maps.md`
+        - Docs: `docs-site/en/reference/commands/list_maps.md`
         """
         return await self.connection.call(LIST_MAPS, request, timeout=timeout, repeat=repeat)
 
@@ -1091,7 +1118,8 @@ class MapCalls(rt.Calls):
         Code 0x010C. Only reads.
 
         - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_info.md`
+        - 文档：`docs-site/reference/commands/get_map_info.md`
+        - Docs: `docs-site/en/reference/commands/get_map_info.md`
         """
         return await self.connection.call(GET_MAP_INFO, request, timeout=timeout, repeat=repeat)
 
@@ -1108,7 +1136,8 @@ class MapCalls(rt.Calls):
         Code 0x0109. Changes the configuration.
 
         - Spec: `commands.save_map` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/save_map.md`
+        - 文档：`docs-site/reference/commands/save_map.md`
+        - Docs: `docs-site/en/reference/commands/save_map.md`
         """
         return await self.connection.call(SAVE_MAP, request, timeout=timeout, repeat=repeat)
 
@@ -1127,19 +1156,20 @@ class MapCalls(rt.Calls):
 
         Code 0x0320. Changes the configuration, inferred.
 
-        `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-        `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
+        `.follow()`：先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+        `.follow()` returns the response, and then each `MapSyncProgress` that the command sets off.
 
-        没有写明哪个状态是终态：要由 app 停止。
+        规范没有写明终态：由 app 停止。
 
-        No state is said to be final: the app has to stop it.
+        The spec marks no state as final. The app stops it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/download_maps.md`
+        - 文档：`docs-site/reference/commands/download_maps.md`
+        - Docs: `docs-site/en/reference/commands/download_maps.md`
         """
         return self._followable(DOWNLOAD_MAPS, MAP_SYNC_PROGRESS, request=request, timeout=timeout, repeat=repeat)
 
@@ -1156,19 +1186,20 @@ class MapCalls(rt.Calls):
 
         Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 
-        `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-        `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
+        `.follow()`：先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+        `.follow()` returns the response, and then each `MapSyncProgress` that the command sets off.
 
-        没有写明哪个状态是终态：要由 app 停止。
+        规范没有写明终态：由 app 停止。
 
-        No state is said to be final: the app has to stop it.
+        The spec marks no state as final. The app stops it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/upload_maps.md`
+        - 文档：`docs-site/reference/commands/upload_maps.md`
+        - Docs: `docs-site/en/reference/commands/upload_maps.md`
         """
         return self._followable(UPLOAD_MAPS, MAP_SYNC_PROGRESS, request=request, timeout=timeout, repeat=repeat)
 
@@ -1189,14 +1220,15 @@ class MapCalls(rt.Calls):
         Code 0x0322. Only reads.
 
         - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+        - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+        - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
         """
         return await self.connection.call(GET_MAP_SYNC_PROGRESS, request, timeout=timeout, repeat=repeat)
 
 
 class MapSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`map` 组的指令。
-    The part of `sync.Client` with the commands of the group `map`.
+    Part of `sync.Client`: the commands of the group `map`.
     """
 
     def get_map_image(
@@ -1213,7 +1245,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0111. Only reads, inferred. Since 2023-08-10.
 
         - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_image.md`
+        - 文档：`docs-site/reference/commands/get_map_image.md`
+        - Docs: `docs-site/en/reference/commands/get_map_image.md`
         """
         return self._call(GET_MAP_IMAGE, request, timeout, repeat)
 
@@ -1230,7 +1263,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0103. Only reads.
 
         - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/list_maps.md`
+        - 文档：`docs-site/reference/commands/list_maps.md`
+        - Docs: `docs-site/en/reference/commands/list_maps.md`
         """
         return self._call(LIST_MAPS, request, timeout, repeat)
 
@@ -1243,7 +1277,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x010C. Only reads.
 
         - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_info.md`
+        - 文档：`docs-site/reference/commands/get_map_info.md`
+        - Docs: `docs-site/en/reference/commands/get_map_info.md`
         """
         return self._call(GET_MAP_INFO, request, timeout, repeat)
 
@@ -1260,7 +1295,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0109. Changes the configuration.
 
         - Spec: `commands.save_map` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/save_map.md`
+        - 文档：`docs-site/reference/commands/save_map.md`
+        - Docs: `docs-site/en/reference/commands/save_map.md`
         """
         return self._call(SAVE_MAP, request, timeout, repeat)
 
@@ -1280,7 +1316,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0320. Changes the configuration, inferred.
 
         - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/download_maps.md`
+        - 文档：`docs-site/reference/commands/download_maps.md`
+        - Docs: `docs-site/en/reference/commands/download_maps.md`
         """
         return self._call(DOWNLOAD_MAPS, request, timeout, repeat)
 
@@ -1290,19 +1327,20 @@ class MapSyncCalls(rt.SyncCalls):
         """下载地图
         Download maps
 
-        先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-        Gives the response, and then each `MapSyncProgress` that it sets off.
+        先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+        Returns the response, and then each `MapSyncProgress` that the command sets off.
 
-        没有写明哪个状态是终态：要由 app 停止。
+        规范没有写明终态：由 app 停止。
 
-        No state is said to be final: the app has to stop it.
+        The spec marks no state as final. The app stops it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/download_maps.md`
+        - 文档：`docs-site/reference/commands/download_maps.md`
+        - Docs: `docs-site/en/reference/commands/download_maps.md`
         """
         return self._follow(DOWNLOAD_MAPS, MAP_SYNC_PROGRESS, request, timeout, repeat)
 
@@ -1320,7 +1358,8 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 
         - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/upload_maps.md`
+        - 文档：`docs-site/reference/commands/upload_maps.md`
+        - Docs: `docs-site/en/reference/commands/upload_maps.md`
         """
         return self._call(UPLOAD_MAPS, request, timeout, repeat)
 
@@ -1330,19 +1369,20 @@ class MapSyncCalls(rt.SyncCalls):
         """上传地图
         Upload maps
 
-        先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-        Gives the response, and then each `MapSyncProgress` that it sets off.
+        先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+        Returns the response, and then each `MapSyncProgress` that the command sets off.
 
-        没有写明哪个状态是终态：要由 app 停止。
+        规范没有写明终态：由 app 停止。
 
-        No state is said to be final: the app has to stop it.
+        The spec marks no state as final. The app stops it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/upload_maps.md`
+        - 文档：`docs-site/reference/commands/upload_maps.md`
+        - Docs: `docs-site/en/reference/commands/upload_maps.md`
         """
         return self._follow(UPLOAD_MAPS, MAP_SYNC_PROGRESS, request, timeout, repeat)
 
@@ -1363,14 +1403,15 @@ class MapSyncCalls(rt.SyncCalls):
         Code 0x0322. Only reads.
 
         - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+        - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+        - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
         """
         return self._call(GET_MAP_SYNC_PROGRESS, request, timeout, repeat)
 
 
 class MapHandlers(ABC):
     """`Robot` 的一部分：`map` 组的指令。
-    The part of `Robot` with the commands of the group `map`.
+    Part of `Robot`: the commands of the group `map`.
     """
 
     @abstractmethod
@@ -1386,7 +1427,8 @@ class MapHandlers(ABC):
         Code 0x0111. Only reads, inferred. Since 2023-08-10.
 
         - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_image.md`
+        - 文档：`docs-site/reference/commands/get_map_image.md`
+        - Docs: `docs-site/en/reference/commands/get_map_image.md`
         """
 
     @abstractmethod
@@ -1401,7 +1443,8 @@ class MapHandlers(ABC):
         Code 0x0103. Only reads.
 
         - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/list_maps.md`
+        - 文档：`docs-site/reference/commands/list_maps.md`
+        - Docs: `docs-site/en/reference/commands/list_maps.md`
         """
 
     @abstractmethod
@@ -1412,7 +1455,8 @@ class MapHandlers(ABC):
         Code 0x010C. Only reads.
 
         - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_info.md`
+        - 文档：`docs-site/reference/commands/get_map_info.md`
+        - Docs: `docs-site/en/reference/commands/get_map_info.md`
         """
 
     @abstractmethod
@@ -1427,7 +1471,8 @@ class MapHandlers(ABC):
         Code 0x0109. Changes the configuration.
 
         - Spec: `commands.save_map` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/save_map.md`
+        - 文档：`docs-site/reference/commands/save_map.md`
+        - Docs: `docs-site/en/reference/commands/save_map.md`
         """
 
     @abstractmethod
@@ -1445,7 +1490,8 @@ class MapHandlers(ABC):
         Code 0x0320. Changes the configuration, inferred.
 
         - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/download_maps.md`
+        - 文档：`docs-site/reference/commands/download_maps.md`
+        - Docs: `docs-site/en/reference/commands/download_maps.md`
         """
 
     @abstractmethod
@@ -1461,7 +1507,8 @@ class MapHandlers(ABC):
         Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 
         - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/upload_maps.md`
+        - 文档：`docs-site/reference/commands/upload_maps.md`
+        - Docs: `docs-site/en/reference/commands/upload_maps.md`
         """
 
     @abstractmethod
@@ -1478,13 +1525,14 @@ class MapHandlers(ABC):
         Code 0x0322. Only reads.
 
         - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+        - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+        - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
         """
 
 
 class MapPartialHandlers(MapHandlers):
     """`PartialRobot` 的一部分：`map` 组的指令。
-    The part of `PartialRobot` with the commands of the group `map`.
+    Part of `PartialRobot`: the commands of the group `map`.
     """
 
     @rt.left_out
@@ -1527,7 +1575,7 @@ class MapPartialHandlers(MapHandlers):
 
 class MapReporter(rt.Reporter):
     """`Reporter` 的一部分：`map` 组的上报。
-    The part of `Reporter` with the reports of the group `map`.
+    Part of `Reporter`: the reports of the group `map`.
     """
 
     async def map_sync_progress(self, report: MapSyncProgress, to: int | None = None) -> list[rt.Acknowledgement]:
@@ -1540,9 +1588,10 @@ class MapReporter(rt.Reporter):
 
         Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-        - Docs: `docs-site/reference/reports/map_sync_progress.md`
+        - 文档：`docs-site/reference/reports/map_sync_progress.md`
+        - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
         """
         return await self.server.push(MAP_SYNC_PROGRESS, report, to)

@@ -46,7 +46,8 @@ class RechargeStatus(rt.State):
     The normal order is 0 → 4 → 1 → 2 → 3. The numbers do not follow it, so do not compare them.
 
     - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     IDLE = 0
@@ -76,7 +77,7 @@ class RechargeStatus(rt.State):
 
     @classmethod
     def process(cls) -> rt.Process:
-        """规范对这些状态的说明。What the spec says of these states."""
+        """规范对这些状态的说明。The description of these states in the spec."""
         return rt.Process(
             normal={
                 cls.IDLE: (cls.NAVIGATING,),
@@ -93,7 +94,8 @@ class RechargeError(rt.State):
     Whether charging failed
 
     - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     OK = 0
@@ -108,7 +110,7 @@ class RechargeError(rt.State):
 
     @classmethod
     def process(cls) -> rt.Process:
-        """规范对这些状态的说明。What the spec says of these states."""
+        """规范对这些状态的说明。The description of these states in the spec."""
         return rt.Process(error=(cls.FAILED,))
 
 
@@ -133,7 +135,8 @@ class StartRechargeRequest(rt.Message):
     Code 0x0A04. Moves the robot. Since 2023-05.
 
     - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/start_recharge.md`
+    - 文档：`docs-site/reference/commands/start_recharge.md`
+    - Docs: `docs-site/en/reference/commands/start_recharge.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -146,7 +149,8 @@ class StartRechargeResponse(rt.Message):
     Start returning to dock: response
 
     - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/start_recharge.md`
+    - 文档：`docs-site/reference/commands/start_recharge.md`
+    - Docs: `docs-site/en/reference/commands/start_recharge.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -170,7 +174,8 @@ class CancelRechargeRequest(rt.Message):
     Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 
     - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    - 文档：`docs-site/reference/commands/cancel_recharge.md`
+    - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -187,7 +192,8 @@ class CancelRechargeResponse(rt.Message):
     Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
 
     - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/cancel_recharge.md`
+    - 文档：`docs-site/reference/commands/cancel_recharge.md`
+    - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -207,7 +213,8 @@ class GetRechargeStatusRequest(rt.Message):
     Code 0x0A06. Only reads, inferred. Since 2023-05.
 
     - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    - 文档：`docs-site/reference/commands/get_recharge_status.md`
+    - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -220,7 +227,8 @@ class GetRechargeStatusResponse(rt.Message):
     Get the charging state: response
 
     - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    - 文档：`docs-site/reference/commands/get_recharge_status.md`
+    - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"rechargeStatus":1,"errorStatus":0}}'
@@ -242,7 +250,8 @@ class GetRechargeStatusResponseData(rt.Message):
     `data` of `GetRechargeStatusResponse`.
 
     - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/commands/get_recharge_status.md`
+    - 文档：`docs-site/reference/commands/get_recharge_status.md`
+    - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
     """
 
     __example__: ClassVar[str] = '{"rechargeStatus":1,"errorStatus":0}'
@@ -289,7 +298,8 @@ class RechargeProgress(rt.Message):
     Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
 
     - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/reports/recharge_progress.md`
+    - 文档：`docs-site/reference/reports/recharge_progress.md`
+    - Docs: `docs-site/en/reference/reports/recharge_progress.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"rechargeStatus":1,"errorStatus":0}}'
@@ -311,7 +321,8 @@ class RechargeProgressData(rt.Message):
     `data` of `RechargeProgress`.
 
     - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/reports/recharge_progress.md`
+    - 文档：`docs-site/reference/reports/recharge_progress.md`
+    - Docs: `docs-site/en/reference/reports/recharge_progress.md`
     """
 
     __example__: ClassVar[str] = '{"rechargeStatus":1,"errorStatus":0}'
@@ -334,11 +345,12 @@ class RechargeProgressData(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class RechargeProgressAck(rt.Message):
-    """主动上报回充过程和结果：确认
+    """主动上报回充过程和结果：应答
     Progress and result of charging: acknowledgement
 
     - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-    - Docs: `docs-site/reference/reports/recharge_progress.md`
+    - 文档：`docs-site/reference/reports/recharge_progress.md`
+    - Docs: `docs-site/en/reference/reports/recharge_progress.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -426,7 +438,7 @@ AnyRechargeReport: TypeAlias = RechargeProgress
 
 class RechargeCalls(rt.Calls):
     """`Client` 的一部分：`recharge` 组的指令。
-    The part of `Client` with the commands of the group `recharge`.
+    Part of `Client`: the commands of the group `recharge`.
     """
 
     def start_recharge(
@@ -445,20 +457,21 @@ class RechargeCalls(rt.Calls):
 
         Code 0x0A04. Moves the robot. Since 2023-05.
 
-        `.follow()`：先取得响应，再逐个取得它引起的 `RechargeProgress`。
-        `.follow()` gives the response, and then each `RechargeProgress` that it sets off.
+        `.follow()`：先返回响应，再逐个返回它引起的 `RechargeProgress`。
+        `.follow()` returns the response, and then each `RechargeProgress` that the command sets off.
 
-        没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+        规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
 
-        No state is said to be final: it ends only when `data.errorStatus` says that something failed, or when the
-        app stops it.
+        The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when the app stops
+        it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/start_recharge.md`
+        - 文档：`docs-site/reference/commands/start_recharge.md`
+        - Docs: `docs-site/en/reference/commands/start_recharge.md`
         """
         return self._followable(START_RECHARGE, RECHARGE_PROGRESS, request=request, timeout=timeout, repeat=repeat)
 
@@ -476,7 +489,8 @@ class RechargeCalls(rt.Calls):
         Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 
         - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/cancel_recharge.md`
+        - 文档：`docs-site/reference/commands/cancel_recharge.md`
+        - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
         """
         return await self.connection.call(CANCEL_RECHARGE, request, timeout=timeout, repeat=repeat)
 
@@ -498,14 +512,15 @@ class RechargeCalls(rt.Calls):
         Code 0x0A06. Only reads, inferred. Since 2023-05.
 
         - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/get_recharge_status.md`
+        - 文档：`docs-site/reference/commands/get_recharge_status.md`
+        - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
         """
         return await self.connection.call(GET_RECHARGE_STATUS, request, timeout=timeout, repeat=repeat)
 
 
 class RechargeSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`recharge` 组的指令。
-    The part of `sync.Client` with the commands of the group `recharge`.
+    Part of `sync.Client`: the commands of the group `recharge`.
     """
 
     def start_recharge(
@@ -525,7 +540,8 @@ class RechargeSyncCalls(rt.SyncCalls):
         Code 0x0A04. Moves the robot. Since 2023-05.
 
         - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/start_recharge.md`
+        - 文档：`docs-site/reference/commands/start_recharge.md`
+        - Docs: `docs-site/en/reference/commands/start_recharge.md`
         """
         return self._call(START_RECHARGE, request, timeout, repeat)
 
@@ -535,20 +551,21 @@ class RechargeSyncCalls(rt.SyncCalls):
         """发起一键回充
         Start returning to dock
 
-        先取得响应，再逐个取得它引起的 `RechargeProgress`。
-        Gives the response, and then each `RechargeProgress` that it sets off.
+        先返回响应，再逐个返回它引起的 `RechargeProgress`。
+        Returns the response, and then each `RechargeProgress` that the command sets off.
 
-        没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+        规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
 
-        No state is said to be final: it ends only when `data.errorStatus` says that something failed, or when the
-        app stops it.
+        The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when the app stops
+        it.
 
-        报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+        报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
 
-        Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+        No key ties a report to a call: reports of this kind from other calls arrive as well.
 
         - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/start_recharge.md`
+        - 文档：`docs-site/reference/commands/start_recharge.md`
+        - Docs: `docs-site/en/reference/commands/start_recharge.md`
         """
         return self._follow(START_RECHARGE, RECHARGE_PROGRESS, request, timeout, repeat)
 
@@ -566,7 +583,8 @@ class RechargeSyncCalls(rt.SyncCalls):
         Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 
         - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/cancel_recharge.md`
+        - 文档：`docs-site/reference/commands/cancel_recharge.md`
+        - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
         """
         return self._call(CANCEL_RECHARGE, request, timeout, repeat)
 
@@ -588,14 +606,15 @@ class RechargeSyncCalls(rt.SyncCalls):
         Code 0x0A06. Only reads, inferred. Since 2023-05.
 
         - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/get_recharge_status.md`
+        - 文档：`docs-site/reference/commands/get_recharge_status.md`
+        - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
         """
         return self._call(GET_RECHARGE_STATUS, request, timeout, repeat)
 
 
 class RechargeHandlers(ABC):
     """`Robot` 的一部分：`recharge` 组的指令。
-    The part of `Robot` with the commands of the group `recharge`.
+    Part of `Robot`: the commands of the group `recharge`.
     """
 
     @abstractmethod
@@ -614,7 +633,8 @@ class RechargeHandlers(ABC):
         Code 0x0A04. Moves the robot. Since 2023-05.
 
         - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/start_recharge.md`
+        - 文档：`docs-site/reference/commands/start_recharge.md`
+        - Docs: `docs-site/en/reference/commands/start_recharge.md`
         """
 
     @abstractmethod
@@ -630,7 +650,8 @@ class RechargeHandlers(ABC):
         Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 
         - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/cancel_recharge.md`
+        - 文档：`docs-site/reference/commands/cancel_recharge.md`
+        - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
         """
 
     @abstractmethod
@@ -648,13 +669,14 @@ class RechargeHandlers(ABC):
         Code 0x0A06. Only reads, inferred. Since 2023-05.
 
         - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/commands/get_recharge_status.md`
+        - 文档：`docs-site/reference/commands/get_recharge_status.md`
+        - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
         """
 
 
 class RechargePartialHandlers(RechargeHandlers):
     """`PartialRobot` 的一部分：`recharge` 组的指令。
-    The part of `PartialRobot` with the commands of the group `recharge`.
+    Part of `PartialRobot`: the commands of the group `recharge`.
     """
 
     @rt.left_out
@@ -677,7 +699,7 @@ class RechargePartialHandlers(RechargeHandlers):
 
 class RechargeReporter(rt.Reporter):
     """`Reporter` 的一部分：`recharge` 组的上报。
-    The part of `Reporter` with the reports of the group `recharge`.
+    Part of `Reporter`: the reports of the group `recharge`.
     """
 
     async def recharge_progress(self, report: RechargeProgress, to: int | None = None) -> list[rt.Acknowledgement]:
@@ -699,9 +721,10 @@ class RechargeReporter(rt.Reporter):
 
         Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-        - Docs: `docs-site/reference/reports/recharge_progress.md`
+        - 文档：`docs-site/reference/reports/recharge_progress.md`
+        - Docs: `docs-site/en/reference/reports/recharge_progress.md`
         """
         return await self.server.push(RECHARGE_PROGRESS, report, to)

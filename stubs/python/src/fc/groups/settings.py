@@ -41,7 +41,8 @@ class SwitchUpdate(Enum):
     What to do with a switch
 
     - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     READ = "none"
@@ -66,7 +67,8 @@ class SwitchState(Enum):
     State of a switch
 
     - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     ON = "on"
@@ -93,7 +95,8 @@ class Switch0a08Request(rt.Message):
     Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_0a08.md`
+    - 文档：`docs-site/reference/commands/switch_0a08.md`
+    - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"update":"none"}}'
@@ -115,7 +118,8 @@ class Switch0a08RequestData(rt.Message):
     `data` of `Switch0a08Request`.
 
     - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_0a08.md`
+    - 文档：`docs-site/reference/commands/switch_0a08.md`
+    - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     """
 
     __example__: ClassVar[str] = '{"update":"none"}'
@@ -135,7 +139,8 @@ class Switch0a08Response(rt.Message):
     Read or set a switch (0x0A08, purpose unknown): response
 
     - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_0a08.md`
+    - 文档：`docs-site/reference/commands/switch_0a08.md`
+    - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"state":"on"}}'
@@ -157,7 +162,8 @@ class Switch0a08ResponseData(rt.Message):
     `data` of `Switch0a08Response`.
 
     - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_0a08.md`
+    - 文档：`docs-site/reference/commands/switch_0a08.md`
+    - Docs: `docs-site/en/reference/commands/switch_0a08.md`
     """
 
     __example__: ClassVar[str] = '{"state":"on"}'
@@ -197,7 +203,8 @@ class SetVoiceReminderRequest(rt.Message):
     Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"update":"none"}}'
@@ -219,7 +226,8 @@ class SetVoiceReminderRequestData(rt.Message):
     `data` of `SetVoiceReminderRequest`.
 
     - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     """
 
     __example__: ClassVar[str] = '{"update":"none"}'
@@ -239,7 +247,8 @@ class SetVoiceReminderResponse(rt.Message):
     Voice reminder switch: response
 
     - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"state":"on"}}'
@@ -261,7 +270,8 @@ class SetVoiceReminderResponseData(rt.Message):
     `data` of `SetVoiceReminderResponse`.
 
     - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+    - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+    - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
     """
 
     __example__: ClassVar[str] = '{"state":"on"}'
@@ -292,7 +302,8 @@ class SwitchEnvironmentRequest(rt.Message):
     Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_environment.md`
+    - 文档：`docs-site/reference/commands/switch_environment.md`
+    - Docs: `docs-site/en/reference/commands/switch_environment.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -305,7 +316,8 @@ class SwitchEnvironmentResponse(rt.Message):
     Switch the environment: response
 
     - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-    - Docs: `docs-site/reference/commands/switch_environment.md`
+    - 文档：`docs-site/reference/commands/switch_environment.md`
+    - Docs: `docs-site/en/reference/commands/switch_environment.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -370,7 +382,7 @@ SETTINGS_COMMANDS: Final = (
 
 class SettingsCalls(rt.Calls):
     """`Client` 的一部分：`settings` 组的指令。
-    The part of `Client` with the commands of the group `settings`.
+    Part of `Client`: the commands of the group `settings`.
     """
 
     async def switch_0a08(
@@ -387,7 +399,8 @@ class SettingsCalls(rt.Calls):
         Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_0a08.md`
+        - 文档：`docs-site/reference/commands/switch_0a08.md`
+        - Docs: `docs-site/en/reference/commands/switch_0a08.md`
         """
         return await self.connection.call(SWITCH_0A08, request, timeout=timeout, repeat=repeat)
 
@@ -412,7 +425,8 @@ class SettingsCalls(rt.Calls):
         Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+        - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+        - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
         """
         return await self.connection.call(SET_VOICE_REMINDER, request, timeout=timeout, repeat=repeat)
 
@@ -433,14 +447,15 @@ class SettingsCalls(rt.Calls):
         Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_environment.md`
+        - 文档：`docs-site/reference/commands/switch_environment.md`
+        - Docs: `docs-site/en/reference/commands/switch_environment.md`
         """
         return await self.connection.call(SWITCH_ENVIRONMENT, request, timeout=timeout, repeat=repeat)
 
 
 class SettingsSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`settings` 组的指令。
-    The part of `sync.Client` with the commands of the group `settings`.
+    Part of `sync.Client`: the commands of the group `settings`.
     """
 
     def switch_0a08(
@@ -457,7 +472,8 @@ class SettingsSyncCalls(rt.SyncCalls):
         Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_0a08.md`
+        - 文档：`docs-site/reference/commands/switch_0a08.md`
+        - Docs: `docs-site/en/reference/commands/switch_0a08.md`
         """
         return self._call(SWITCH_0A08, request, timeout, repeat)
 
@@ -482,7 +498,8 @@ class SettingsSyncCalls(rt.SyncCalls):
         Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+        - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+        - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
         """
         return self._call(SET_VOICE_REMINDER, request, timeout, repeat)
 
@@ -503,14 +520,15 @@ class SettingsSyncCalls(rt.SyncCalls):
         Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_environment.md`
+        - 文档：`docs-site/reference/commands/switch_environment.md`
+        - Docs: `docs-site/en/reference/commands/switch_environment.md`
         """
         return self._call(SWITCH_ENVIRONMENT, request, timeout, repeat)
 
 
 class SettingsHandlers(ABC):
     """`Robot` 的一部分：`settings` 组的指令。
-    The part of `Robot` with the commands of the group `settings`.
+    Part of `Robot`: the commands of the group `settings`.
     """
 
     @abstractmethod
@@ -526,7 +544,8 @@ class SettingsHandlers(ABC):
         Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_0a08.md`
+        - 文档：`docs-site/reference/commands/switch_0a08.md`
+        - Docs: `docs-site/en/reference/commands/switch_0a08.md`
         """
 
     @abstractmethod
@@ -548,7 +567,8 @@ class SettingsHandlers(ABC):
         Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+        - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+        - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
         """
 
     @abstractmethod
@@ -565,13 +585,14 @@ class SettingsHandlers(ABC):
         Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 
         - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-        - Docs: `docs-site/reference/commands/switch_environment.md`
+        - 文档：`docs-site/reference/commands/switch_environment.md`
+        - Docs: `docs-site/en/reference/commands/switch_environment.md`
         """
 
 
 class SettingsPartialHandlers(SettingsHandlers):
     """`PartialRobot` 的一部分：`settings` 组的指令。
-    The part of `PartialRobot` with the commands of the group `settings`.
+    Part of `PartialRobot`: the commands of the group `settings`.
     """
 
     @rt.left_out

@@ -49,7 +49,8 @@ class SetStandbyPositionRequest(rt.Message):
     Code 0x0311. Changes the configuration. Since 2024-01-02.
 
     - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/set_standby_position.md`
+    - 文档：`docs-site/reference/commands/set_standby_position.md`
+    - Docs: `docs-site/en/reference/commands/set_standby_position.md`
     """
 
     __example__: ClassVar[str] = '{"data":[{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}]}'
@@ -69,7 +70,8 @@ class SetStandbyPositionResponse(rt.Message):
     Set the standby position: response
 
     - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/set_standby_position.md`
+    - 文档：`docs-site/reference/commands/set_standby_position.md`
+    - Docs: `docs-site/en/reference/commands/set_standby_position.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -89,7 +91,8 @@ class GetStandbyPositionRequest(rt.Message):
     Code 0x0312. Only reads. Since 2024-01-02.
 
     - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/get_standby_position.md`
+    - 文档：`docs-site/reference/commands/get_standby_position.md`
+    - Docs: `docs-site/en/reference/commands/get_standby_position.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -107,7 +110,8 @@ class GetStandbyPositionResponse(rt.Message):
     but nothing says so.
 
     - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/get_standby_position.md`
+    - 文档：`docs-site/reference/commands/get_standby_position.md`
+    - Docs: `docs-site/en/reference/commands/get_standby_position.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -122,7 +126,8 @@ class SetPositions0313Request(rt.Message):
     Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
     - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/set_positions_0313.md`
+    - 文档：`docs-site/reference/commands/set_positions_0313.md`
+    - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
     """
 
     __example__: ClassVar[str] = '{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}'
@@ -146,7 +151,8 @@ class SetPositions0313Response(rt.Message):
     Open: The response is lost; its label runs straight into section 48.
 
     - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/set_positions_0313.md`
+    - 文档：`docs-site/reference/commands/set_positions_0313.md`
+    - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -166,7 +172,8 @@ class GetPositions0314Request(rt.Message):
     Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
     - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/get_positions_0314.md`
+    - 文档：`docs-site/reference/commands/get_positions_0314.md`
+    - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -179,7 +186,8 @@ class GetPositions0314Response(rt.Message):
     Get points (0x0314, purpose unknown): response
 
     - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/commands/get_positions_0314.md`
+    - 文档：`docs-site/reference/commands/get_positions_0314.md`
+    - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
     """
 
     __example__: ClassVar[str] = '{"data":[{"mapId":1667823500544,"stationId":1667823500544}]}'
@@ -199,7 +207,8 @@ class StandbyPosition(rt.Message):
     A standby position
 
     - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":1667823500544,"stationId":1667823500544,"stationType":6}'
@@ -237,7 +246,8 @@ class StationRef(rt.Message):
     A point, given by map ID and station ID
 
     - Spec: `types.StationRef` in `spec/commands/standby.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":1667823500544,"stationId":1667823500544}'
@@ -334,7 +344,7 @@ STANDBY_COMMANDS: Final = (
 
 class StandbyCalls(rt.Calls):
     """`Client` 的一部分：`standby` 组的指令。
-    The part of `Client` with the commands of the group `standby`.
+    Part of `Client`: the commands of the group `standby`.
     """
 
     async def set_standby_position(
@@ -351,7 +361,8 @@ class StandbyCalls(rt.Calls):
         Code 0x0311. Changes the configuration. Since 2024-01-02.
 
         - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_standby_position.md`
+        - 文档：`docs-site/reference/commands/set_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/set_standby_position.md`
         """
         return await self.connection.call(SET_STANDBY_POSITION, request, timeout=timeout, repeat=repeat)
 
@@ -368,7 +379,8 @@ class StandbyCalls(rt.Calls):
         Code 0x0312. Only reads. Since 2024-01-02.
 
         - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_standby_position.md`
+        - 文档：`docs-site/reference/commands/get_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/get_standby_position.md`
         """
         return await self.connection.call(GET_STANDBY_POSITION, request, timeout=timeout, repeat=repeat)
 
@@ -381,7 +393,8 @@ class StandbyCalls(rt.Calls):
         Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_positions_0313.md`
+        - 文档：`docs-site/reference/commands/set_positions_0313.md`
+        - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
         """
         return await self.connection.call(SET_POSITIONS_0313, request, timeout=timeout, repeat=repeat)
 
@@ -403,14 +416,15 @@ class StandbyCalls(rt.Calls):
         Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_positions_0314.md`
+        - 文档：`docs-site/reference/commands/get_positions_0314.md`
+        - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
         """
         return await self.connection.call(GET_POSITIONS_0314, request, timeout=timeout, repeat=repeat)
 
 
 class StandbySyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`standby` 组的指令。
-    The part of `sync.Client` with the commands of the group `standby`.
+    Part of `sync.Client`: the commands of the group `standby`.
     """
 
     def set_standby_position(
@@ -427,7 +441,8 @@ class StandbySyncCalls(rt.SyncCalls):
         Code 0x0311. Changes the configuration. Since 2024-01-02.
 
         - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_standby_position.md`
+        - 文档：`docs-site/reference/commands/set_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/set_standby_position.md`
         """
         return self._call(SET_STANDBY_POSITION, request, timeout, repeat)
 
@@ -444,7 +459,8 @@ class StandbySyncCalls(rt.SyncCalls):
         Code 0x0312. Only reads. Since 2024-01-02.
 
         - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_standby_position.md`
+        - 文档：`docs-site/reference/commands/get_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/get_standby_position.md`
         """
         return self._call(GET_STANDBY_POSITION, request, timeout, repeat)
 
@@ -457,7 +473,8 @@ class StandbySyncCalls(rt.SyncCalls):
         Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_positions_0313.md`
+        - 文档：`docs-site/reference/commands/set_positions_0313.md`
+        - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
         """
         return self._call(SET_POSITIONS_0313, request, timeout, repeat)
 
@@ -479,14 +496,15 @@ class StandbySyncCalls(rt.SyncCalls):
         Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_positions_0314.md`
+        - 文档：`docs-site/reference/commands/get_positions_0314.md`
+        - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
         """
         return self._call(GET_POSITIONS_0314, request, timeout, repeat)
 
 
 class StandbyHandlers(ABC):
     """`Robot` 的一部分：`standby` 组的指令。
-    The part of `Robot` with the commands of the group `standby`.
+    Part of `Robot`: the commands of the group `standby`.
     """
 
     @abstractmethod
@@ -504,7 +522,8 @@ class StandbyHandlers(ABC):
         Code 0x0311. Changes the configuration. Since 2024-01-02.
 
         - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_standby_position.md`
+        - 文档：`docs-site/reference/commands/set_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/set_standby_position.md`
         """
 
     @abstractmethod
@@ -517,7 +536,8 @@ class StandbyHandlers(ABC):
         Code 0x0312. Only reads. Since 2024-01-02.
 
         - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_standby_position.md`
+        - 文档：`docs-site/reference/commands/get_standby_position.md`
+        - Docs: `docs-site/en/reference/commands/get_standby_position.md`
         """
 
     @abstractmethod
@@ -530,7 +550,8 @@ class StandbyHandlers(ABC):
         Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/set_positions_0313.md`
+        - 文档：`docs-site/reference/commands/set_positions_0313.md`
+        - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
         """
 
     @abstractmethod
@@ -548,13 +569,14 @@ class StandbyHandlers(ABC):
         Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 
         - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-        - Docs: `docs-site/reference/commands/get_positions_0314.md`
+        - 文档：`docs-site/reference/commands/get_positions_0314.md`
+        - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
         """
 
 
 class StandbyPartialHandlers(StandbyHandlers):
     """`PartialRobot` 的一部分：`standby` 组的指令。
-    The part of `PartialRobot` with the commands of the group `standby`.
+    Part of `PartialRobot`: the commands of the group `standby`.
     """
 
     @rt.left_out

@@ -57,7 +57,8 @@ class StationPos(Enum):
     Position of a station relative to the elevator
 
     - Spec: `types.StationPos` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     OUTSIDE = "outside"
@@ -99,7 +100,8 @@ class GetStationRequest(rt.Message):
     Code 0x0A03. Only reads. Since 2023-05.
 
     - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_station.md`
+    - 文档：`docs-site/reference/commands/get_station.md`
+    - Docs: `docs-site/en/reference/commands/get_station.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"stationId":0}}'
@@ -121,7 +123,8 @@ class GetStationRequestData(rt.Message):
     `data` of `GetStationRequest`.
 
     - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_station.md`
+    - 文档：`docs-site/reference/commands/get_station.md`
+    - Docs: `docs-site/en/reference/commands/get_station.md`
     """
 
     __example__: ClassVar[str] = '{"stationId":0}'
@@ -143,7 +146,8 @@ class GetStationResponse(rt.Message):
     Get a station by its ID: response
 
     - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_station.md`
+    - 文档：`docs-site/reference/commands/get_station.md`
+    - Docs: `docs-site/en/reference/commands/get_station.md`
     """
 
     __example__: ClassVar[str] = (
@@ -167,7 +171,8 @@ class GetStationResponseData(rt.Message):
     `data` of `GetStationResponse`.
 
     - Spec: `commands.get_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_station.md`
+    - 文档：`docs-site/reference/commands/get_station.md`
+    - Docs: `docs-site/en/reference/commands/get_station.md`
     """
 
     __example__: ClassVar[str] = '{"stationName":"hhh","stationId":0,"stationType":0,"x":0.5,"y":0.6,"yaw":0.2}'
@@ -237,7 +242,8 @@ class UploadMapStationsRequest(rt.Message):
     Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
     - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    - 文档：`docs-site/reference/commands/upload_map_stations.md`
+    - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -254,7 +260,8 @@ class UploadMapStationsResponse(rt.Message):
     Open: The response is lost; beyond the envelope nothing is known.
 
     - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/upload_map_stations.md`
+    - 文档：`docs-site/reference/commands/upload_map_stations.md`
+    - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -273,7 +280,8 @@ class AddStationRequest(rt.Message):
     Code 0x0302. Changes the configuration. Since 2023-07-17.
 
     - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/add_station.md`
+    - 文档：`docs-site/reference/commands/add_station.md`
+    - Docs: `docs-site/en/reference/commands/add_station.md`
     """
 
     __example__: ClassVar[str] = (
@@ -335,7 +343,8 @@ class AddStationResponse(rt.Message):
     Add a station: response
 
     - Spec: `commands.add_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/add_station.md`
+    - 文档：`docs-site/reference/commands/add_station.md`
+    - Docs: `docs-site/en/reference/commands/add_station.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -354,7 +363,8 @@ class DeleteStationRequest(rt.Message):
     Code 0x0304. Changes the configuration. Since 2023-10-13.
 
     - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/delete_station.md`
+    - 文档：`docs-site/reference/commands/delete_station.md`
+    - Docs: `docs-site/en/reference/commands/delete_station.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":1671124918288,"stationId":1671124918008,"stationType":0}'
@@ -392,7 +402,8 @@ class DeleteStationResponse(rt.Message):
     Open: The response is lost; beyond the envelope nothing is known.
 
     - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/delete_station.md`
+    - 文档：`docs-site/reference/commands/delete_station.md`
+    - Docs: `docs-site/en/reference/commands/delete_station.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -407,7 +418,8 @@ class RenameStationRequest(rt.Message):
     Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 
     - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/rename_station.md`
+    - 文档：`docs-site/reference/commands/rename_station.md`
+    - Docs: `docs-site/en/reference/commands/rename_station.md`
     """
 
     __example__: ClassVar[str] = (
@@ -454,7 +466,8 @@ class RenameStationResponse(rt.Message):
     Open: The response is lost; beyond the envelope nothing is known.
 
     - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/rename_station.md`
+    - 文档：`docs-site/reference/commands/rename_station.md`
+    - Docs: `docs-site/en/reference/commands/rename_station.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -469,7 +482,8 @@ class ListStationsRequest(rt.Message):
     No code yet: types only. Only reads, inferred. Since 2023-10-13.
 
     - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/list_stations.md`
+    - 文档：`docs-site/reference/commands/list_stations.md`
+    - Docs: `docs-site/en/reference/commands/list_stations.md`
     """
 
     __example__: ClassVar[str] = '{"mapId":12345678,"mapName":"abc","stationType":0}'
@@ -503,7 +517,8 @@ class ListStationsResponse(rt.Message):
     List the stations of a map: response
 
     - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/list_stations.md`
+    - 文档：`docs-site/reference/commands/list_stations.md`
+    - Docs: `docs-site/en/reference/commands/list_stations.md`
     """
 
     __example__: ClassVar[str] = (
@@ -538,7 +553,8 @@ class GetCurrentStationRequest(rt.Message):
     No code yet: types only. Only reads. Since 2024-01-29.
 
     - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_current_station.md`
+    - 文档：`docs-site/reference/commands/get_current_station.md`
+    - Docs: `docs-site/en/reference/commands/get_current_station.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -551,7 +567,8 @@ class GetCurrentStationResponse(rt.Message):
     Get the station the robot is at: response
 
     - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_current_station.md`
+    - 文档：`docs-site/reference/commands/get_current_station.md`
+    - Docs: `docs-site/en/reference/commands/get_current_station.md`
     """
 
     __example__: ClassVar[str] = (
@@ -577,7 +594,8 @@ class GetCurrentStationResponseData(rt.Message):
     `data` of `GetCurrentStationResponse`.
 
     - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/commands/get_current_station.md`
+    - 文档：`docs-site/reference/commands/get_current_station.md`
+    - Docs: `docs-site/en/reference/commands/get_current_station.md`
     """
 
     __example__: ClassVar[str] = (
@@ -627,7 +645,8 @@ class StationReached(rt.Message):
     No code yet: types only. Since 2024-01-29.
 
     - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/reports/station_reached.md`
+    - 文档：`docs-site/reference/reports/station_reached.md`
+    - Docs: `docs-site/en/reference/reports/station_reached.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -636,11 +655,12 @@ class StationReached(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class StationReachedAck(rt.Message):
-    """主动上报机器人抵达站点：确认
+    """主动上报机器人抵达站点：应答
     Station reached: acknowledgement
 
     - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/reports/station_reached.md`
+    - 文档：`docs-site/reference/reports/station_reached.md`
+    - Docs: `docs-site/en/reference/reports/station_reached.md`
     """
 
     __example__: ClassVar[str] = '{"msgId":90842323}'
@@ -662,7 +682,8 @@ class ListedStation(rt.Message):
     A station in the list
 
     - Spec: `types.ListedStation` in `spec/commands/station.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -870,7 +891,7 @@ STATION_COMMANDS: Final = (
 
 class StationCalls(rt.Calls):
     """`Client` 的一部分：`station` 组的指令。
-    The part of `Client` with the commands of the group `station`.
+    Part of `Client`: the commands of the group `station`.
     """
 
     async def get_station(
@@ -882,7 +903,8 @@ class StationCalls(rt.Calls):
         Code 0x0A03. Only reads. Since 2023-05.
 
         - Spec: `commands.get_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/get_station.md`
+        - 文档：`docs-site/reference/commands/get_station.md`
+        - Docs: `docs-site/en/reference/commands/get_station.md`
         """
         return await self.connection.call(GET_STATION, request, timeout=timeout, repeat=repeat)
 
@@ -905,7 +927,8 @@ class StationCalls(rt.Calls):
         Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        - 文档：`docs-site/reference/commands/upload_map_stations.md`
+        - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
         """
         return await self.connection.call(UPLOAD_MAP_STATIONS, request, timeout=timeout, repeat=repeat)
 
@@ -922,7 +945,8 @@ class StationCalls(rt.Calls):
         Code 0x0302. Changes the configuration. Since 2023-07-17.
 
         - Spec: `commands.add_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/add_station.md`
+        - 文档：`docs-site/reference/commands/add_station.md`
+        - Docs: `docs-site/en/reference/commands/add_station.md`
         """
         return await self.connection.call(ADD_STATION, request, timeout=timeout, repeat=repeat)
 
@@ -935,7 +959,8 @@ class StationCalls(rt.Calls):
         Code 0x0304. Changes the configuration. Since 2023-10-13.
 
         - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/delete_station.md`
+        - 文档：`docs-site/reference/commands/delete_station.md`
+        - Docs: `docs-site/en/reference/commands/delete_station.md`
         """
         return await self.connection.call(DELETE_STATION, request, timeout=timeout, repeat=repeat)
 
@@ -948,14 +973,15 @@ class StationCalls(rt.Calls):
         Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 
         - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/rename_station.md`
+        - 文档：`docs-site/reference/commands/rename_station.md`
+        - Docs: `docs-site/en/reference/commands/rename_station.md`
         """
         return await self.connection.call(RENAME_STATION, request, timeout=timeout, repeat=repeat)
 
 
 class StationSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`station` 组的指令。
-    The part of `sync.Client` with the commands of the group `station`.
+    Part of `sync.Client`: the commands of the group `station`.
     """
 
     def get_station(
@@ -967,7 +993,8 @@ class StationSyncCalls(rt.SyncCalls):
         Code 0x0A03. Only reads. Since 2023-05.
 
         - Spec: `commands.get_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/get_station.md`
+        - 文档：`docs-site/reference/commands/get_station.md`
+        - Docs: `docs-site/en/reference/commands/get_station.md`
         """
         return self._call(GET_STATION, request, timeout, repeat)
 
@@ -990,7 +1017,8 @@ class StationSyncCalls(rt.SyncCalls):
         Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        - 文档：`docs-site/reference/commands/upload_map_stations.md`
+        - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
         """
         return self._call(UPLOAD_MAP_STATIONS, request, timeout, repeat)
 
@@ -1007,7 +1035,8 @@ class StationSyncCalls(rt.SyncCalls):
         Code 0x0302. Changes the configuration. Since 2023-07-17.
 
         - Spec: `commands.add_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/add_station.md`
+        - 文档：`docs-site/reference/commands/add_station.md`
+        - Docs: `docs-site/en/reference/commands/add_station.md`
         """
         return self._call(ADD_STATION, request, timeout, repeat)
 
@@ -1020,7 +1049,8 @@ class StationSyncCalls(rt.SyncCalls):
         Code 0x0304. Changes the configuration. Since 2023-10-13.
 
         - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/delete_station.md`
+        - 文档：`docs-site/reference/commands/delete_station.md`
+        - Docs: `docs-site/en/reference/commands/delete_station.md`
         """
         return self._call(DELETE_STATION, request, timeout, repeat)
 
@@ -1033,14 +1063,15 @@ class StationSyncCalls(rt.SyncCalls):
         Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 
         - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/rename_station.md`
+        - 文档：`docs-site/reference/commands/rename_station.md`
+        - Docs: `docs-site/en/reference/commands/rename_station.md`
         """
         return self._call(RENAME_STATION, request, timeout, repeat)
 
 
 class StationHandlers(ABC):
     """`Robot` 的一部分：`station` 组的指令。
-    The part of `Robot` with the commands of the group `station`.
+    Part of `Robot`: the commands of the group `station`.
     """
 
     @abstractmethod
@@ -1051,7 +1082,8 @@ class StationHandlers(ABC):
         Code 0x0A03. Only reads. Since 2023-05.
 
         - Spec: `commands.get_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/get_station.md`
+        - 文档：`docs-site/reference/commands/get_station.md`
+        - Docs: `docs-site/en/reference/commands/get_station.md`
         """
 
     @abstractmethod
@@ -1070,7 +1102,8 @@ class StationHandlers(ABC):
         Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/upload_map_stations.md`
+        - 文档：`docs-site/reference/commands/upload_map_stations.md`
+        - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
         """
 
     @abstractmethod
@@ -1085,7 +1118,8 @@ class StationHandlers(ABC):
         Code 0x0302. Changes the configuration. Since 2023-07-17.
 
         - Spec: `commands.add_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/add_station.md`
+        - 文档：`docs-site/reference/commands/add_station.md`
+        - Docs: `docs-site/en/reference/commands/add_station.md`
         """
 
     @abstractmethod
@@ -1096,7 +1130,8 @@ class StationHandlers(ABC):
         Code 0x0304. Changes the configuration. Since 2023-10-13.
 
         - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/delete_station.md`
+        - 文档：`docs-site/reference/commands/delete_station.md`
+        - Docs: `docs-site/en/reference/commands/delete_station.md`
         """
 
     @abstractmethod
@@ -1107,13 +1142,14 @@ class StationHandlers(ABC):
         Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 
         - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-        - Docs: `docs-site/reference/commands/rename_station.md`
+        - 文档：`docs-site/reference/commands/rename_station.md`
+        - Docs: `docs-site/en/reference/commands/rename_station.md`
         """
 
 
 class StationPartialHandlers(StationHandlers):
     """`PartialRobot` 的一部分：`station` 组的指令。
-    The part of `PartialRobot` with the commands of the group `station`.
+    Part of `PartialRobot`: the commands of the group `station`.
     """
 
     @rt.left_out

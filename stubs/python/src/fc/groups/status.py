@@ -49,7 +49,8 @@ class UpperStatus(Enum):
     UNINITIAL, MAPPING, IDLE, RECHARGE, TASK, PARKING, RECOVER and BROKEN. Any other value is kept as it is.
 
     - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     UNINITIALIZED = 10
@@ -103,7 +104,8 @@ class LowerStatus(Enum):
     The constants in the source: NO_LOWER_STATUS, MOVING, ARRIVED, ENTER_ELEV and EXIT_ELEV.
 
     - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     NONE = 0
@@ -138,7 +140,8 @@ class FaultLevel(Enum):
     Level of a fault
 
     - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     FATAL = "FATAL"
@@ -163,7 +166,8 @@ class SelfCheckName(Enum):
     Item of the self-check
 
     - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     NODE = "node"
@@ -198,7 +202,8 @@ class SelfCheckStatus(rt.State):
     State of an item of the self-check
 
     - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     UNKNOWN = "status_unknown"
@@ -218,7 +223,7 @@ class SelfCheckStatus(rt.State):
 
     @classmethod
     def process(cls) -> rt.Process:
-        """规范对这些状态的说明。What the spec says of these states."""
+        """规范对这些状态的说明。The description of these states in the spec."""
         return rt.Process(
             normal={cls.UNKNOWN: (cls.NORMAL, cls.ABNORMAL)}, final=(cls.NORMAL, cls.ABNORMAL), error=(cls.ABNORMAL,)
         )
@@ -236,7 +241,8 @@ class ListFaultsRequest(rt.Message):
     Code 0x0A0C. Only reads, inferred.
 
     - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/commands/list_faults.md`
+    - 文档：`docs-site/reference/commands/list_faults.md`
+    - Docs: `docs-site/en/reference/commands/list_faults.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -249,7 +255,8 @@ class ListFaultsResponse(rt.Message):
     List the faults: response
 
     - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/commands/list_faults.md`
+    - 文档：`docs-site/reference/commands/list_faults.md`
+    - Docs: `docs-site/en/reference/commands/list_faults.md`
     """
 
     __example__: ClassVar[str] = (
@@ -279,7 +286,8 @@ class GetSelfCheckRequest(rt.Message):
     Code 0x0A0D. Only reads, inferred.
 
     - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/commands/get_self_check.md`
+    - 文档：`docs-site/reference/commands/get_self_check.md`
+    - Docs: `docs-site/en/reference/commands/get_self_check.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -292,7 +300,8 @@ class GetSelfCheckResponse(rt.Message):
     Get the result of the self-check: response
 
     - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/commands/get_self_check.md`
+    - 文档：`docs-site/reference/commands/get_self_check.md`
+    - Docs: `docs-site/en/reference/commands/get_self_check.md`
     """
 
     __example__: ClassVar[str] = '{"data":[{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}]}'
@@ -318,7 +327,8 @@ class RobotStatus(rt.Message):
     Code 0x0342. Since 2023-05.
 
     - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/reports/robot_status.md`
+    - 文档：`docs-site/reference/reports/robot_status.md`
+    - Docs: `docs-site/en/reference/reports/robot_status.md`
     """
 
     __example__: ClassVar[str] = '{"data":{"upper_status":14,"lower_status":1401,"broke_code":123456}}'
@@ -340,7 +350,8 @@ class RobotStatusData(rt.Message):
     `data` of `RobotStatus`.
 
     - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/reports/robot_status.md`
+    - 文档：`docs-site/reference/reports/robot_status.md`
+    - Docs: `docs-site/en/reference/reports/robot_status.md`
     """
 
     __example__: ClassVar[str] = '{"upper_status":14,"lower_status":1401,"broke_code":123456}'
@@ -377,11 +388,12 @@ class RobotStatusData(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class RobotStatusAck(rt.Message):
-    """主动上报机器人状态：确认
+    """主动上报机器人状态：应答
     Status of the robot: acknowledgement
 
     - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/reports/robot_status.md`
+    - 文档：`docs-site/reference/reports/robot_status.md`
+    - Docs: `docs-site/en/reference/reports/robot_status.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -394,7 +406,8 @@ class Fault(rt.Message):
     A fault
 
     - Spec: `types.Fault` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -470,7 +483,8 @@ class SelfCheckItem(rt.Message):
     Result of one item of the self-check
 
     - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"itemName":"node","itemStatus":"status_abnormal","itemInfo":"xxx"}'
@@ -559,7 +573,7 @@ AnyStatusReport: TypeAlias = RobotStatus
 
 class StatusCalls(rt.Calls):
     """`Client` 的一部分：`status` 组的指令。
-    The part of `Client` with the commands of the group `status`.
+    Part of `Client`: the commands of the group `status`.
     """
 
     async def list_faults(
@@ -575,7 +589,8 @@ class StatusCalls(rt.Calls):
         Code 0x0A0C. Only reads, inferred.
 
         - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/list_faults.md`
+        - 文档：`docs-site/reference/commands/list_faults.md`
+        - Docs: `docs-site/en/reference/commands/list_faults.md`
         """
         return await self.connection.call(LIST_FAULTS, request, timeout=timeout, repeat=repeat)
 
@@ -593,14 +608,15 @@ class StatusCalls(rt.Calls):
         Code 0x0A0D. Only reads, inferred.
 
         - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/get_self_check.md`
+        - 文档：`docs-site/reference/commands/get_self_check.md`
+        - Docs: `docs-site/en/reference/commands/get_self_check.md`
         """
         return await self.connection.call(GET_SELF_CHECK, request, timeout=timeout, repeat=repeat)
 
 
 class StatusSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`status` 组的指令。
-    The part of `sync.Client` with the commands of the group `status`.
+    Part of `sync.Client`: the commands of the group `status`.
     """
 
     def list_faults(
@@ -616,7 +632,8 @@ class StatusSyncCalls(rt.SyncCalls):
         Code 0x0A0C. Only reads, inferred.
 
         - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/list_faults.md`
+        - 文档：`docs-site/reference/commands/list_faults.md`
+        - Docs: `docs-site/en/reference/commands/list_faults.md`
         """
         return self._call(LIST_FAULTS, request, timeout, repeat)
 
@@ -634,14 +651,15 @@ class StatusSyncCalls(rt.SyncCalls):
         Code 0x0A0D. Only reads, inferred.
 
         - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/get_self_check.md`
+        - 文档：`docs-site/reference/commands/get_self_check.md`
+        - Docs: `docs-site/en/reference/commands/get_self_check.md`
         """
         return self._call(GET_SELF_CHECK, request, timeout, repeat)
 
 
 class StatusHandlers(ABC):
     """`Robot` 的一部分：`status` 组的指令。
-    The part of `Robot` with the commands of the group `status`.
+    Part of `Robot`: the commands of the group `status`.
     """
 
     @abstractmethod
@@ -656,7 +674,8 @@ class StatusHandlers(ABC):
         Code 0x0A0C. Only reads, inferred.
 
         - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/list_faults.md`
+        - 文档：`docs-site/reference/commands/list_faults.md`
+        - Docs: `docs-site/en/reference/commands/list_faults.md`
         """
 
     @abstractmethod
@@ -672,13 +691,14 @@ class StatusHandlers(ABC):
         Code 0x0A0D. Only reads, inferred.
 
         - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/commands/get_self_check.md`
+        - 文档：`docs-site/reference/commands/get_self_check.md`
+        - Docs: `docs-site/en/reference/commands/get_self_check.md`
         """
 
 
 class StatusPartialHandlers(StatusHandlers):
     """`PartialRobot` 的一部分：`status` 组的指令。
-    The part of `PartialRobot` with the commands of the group `status`.
+    Part of `PartialRobot`: the commands of the group `status`.
     """
 
     @rt.left_out
@@ -694,7 +714,7 @@ class StatusPartialHandlers(StatusHandlers):
 
 class StatusReporter(rt.Reporter):
     """`Reporter` 的一部分：`status` 组的上报。
-    The part of `Reporter` with the reports of the group `status`.
+    Part of `Reporter`: the reports of the group `status`.
     """
 
     async def robot_status(self, report: RobotStatus, to: int | None = None) -> list[rt.Acknowledgement]:
@@ -708,9 +728,10 @@ class StatusReporter(rt.Reporter):
 
         Code 0x0342. Since 2023-05.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-        - Docs: `docs-site/reference/reports/robot_status.md`
+        - 文档：`docs-site/reference/reports/robot_status.md`
+        - Docs: `docs-site/en/reference/reports/robot_status.md`
         """
         return await self.server.push(ROBOT_STATUS, report, to)

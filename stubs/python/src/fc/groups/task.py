@@ -51,7 +51,8 @@ class TaskStatus(Enum):
     Status of a task or of one of its stations
 
     - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     RUNNING = 0
@@ -81,7 +82,8 @@ class TaskProcess(Enum):
     entering (6), riding (4), leaving (7).
 
     - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     GENERAL = 0
@@ -145,7 +147,8 @@ class CreateTaskRequest(rt.Message):
     Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 
     - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/create_task.md`
+    - 文档：`docs-site/reference/commands/create_task.md`
+    - Docs: `docs-site/en/reference/commands/create_task.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -158,7 +161,8 @@ class CreateTaskResponse(rt.Message):
     Create a patrol or delivery task: response
 
     - Spec: `commands.create_task` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/create_task.md`
+    - 文档：`docs-site/reference/commands/create_task.md`
+    - Docs: `docs-site/en/reference/commands/create_task.md`
     """
 
     __example__: ClassVar[str] = '{"taskName":"task_1","taskId":1695733900004}'
@@ -199,7 +203,8 @@ class ExecuteTaskRequest(rt.Message):
     No code yet: types only. Moves the robot. Since 2023-10.
 
     - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/execute_task.md`
+    - 文档：`docs-site/reference/commands/execute_task.md`
+    - Docs: `docs-site/en/reference/commands/execute_task.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -212,7 +217,8 @@ class ExecuteTaskResponse(rt.Message):
     Execute a task: response
 
     - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/execute_task.md`
+    - 文档：`docs-site/reference/commands/execute_task.md`
+    - Docs: `docs-site/en/reference/commands/execute_task.md`
     """
 
     __example__: ClassVar[str] = '{"taskName":"task_1","taskId":1695733900004}'
@@ -247,7 +253,8 @@ class GetTaskStatusRequest(rt.Message):
     Code 0x0353. Only reads. Since 2023-05.
 
     - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/get_task_status.md`
+    - 文档：`docs-site/reference/commands/get_task_status.md`
+    - Docs: `docs-site/en/reference/commands/get_task_status.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -264,7 +271,8 @@ class GetTaskStatusResponse(rt.Message):
     Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
 
     - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/get_task_status.md`
+    - 文档：`docs-site/reference/commands/get_task_status.md`
+    - Docs: `docs-site/en/reference/commands/get_task_status.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -285,7 +293,8 @@ class GetTaskHistoryRequest(rt.Message):
     No code yet: types only. Only reads. Since 2023-05.
 
     - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/get_task_history.md`
+    - 文档：`docs-site/reference/commands/get_task_history.md`
+    - Docs: `docs-site/en/reference/commands/get_task_history.md`
     """
 
     __example__: ClassVar[str] = '{"taskId":123}'
@@ -307,7 +316,8 @@ class GetTaskHistoryResponse(rt.Message):
     Get a task's execution history: response
 
     - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/commands/get_task_history.md`
+    - 文档：`docs-site/reference/commands/get_task_history.md`
+    - Docs: `docs-site/en/reference/commands/get_task_history.md`
     """
 
     __example__: ClassVar[str] = (
@@ -371,7 +381,8 @@ class ObstacleAnnouncement(rt.Message):
     Code 0x0341. Since 2023-05.
 
     - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+    - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+    - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
     """
 
     __example__: ClassVar[str] = '{"tasksId":123}'
@@ -389,11 +400,12 @@ class ObstacleAnnouncement(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class ObstacleAnnouncementAck(rt.Message):
-    """遇障语音播报：确认
+    """遇障语音播报：应答
     Voice announcement of an obstacle: acknowledgement
 
     - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+    - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+    - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -417,7 +429,8 @@ class TargetReached(rt.Message):
     Code 0x0340, inferred. Since 2023-05.
 
     - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/target_reached.md`
+    - 文档：`docs-site/reference/reports/target_reached.md`
+    - Docs: `docs-site/en/reference/reports/target_reached.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -426,11 +439,12 @@ class TargetReached(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class TargetReachedAck(rt.Message):
-    """到达目标点通知上报：确认
+    """到达目标点通知上报：应答
     Target reached: acknowledgement
 
     - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/target_reached.md`
+    - 文档：`docs-site/reference/reports/target_reached.md`
+    - Docs: `docs-site/en/reference/reports/target_reached.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -450,7 +464,8 @@ class TaskProgress(rt.Message):
     Code 0x0345. Since 2024-01-29.
 
     - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/task_progress.md`
+    - 文档：`docs-site/reference/reports/task_progress.md`
+    - Docs: `docs-site/en/reference/reports/task_progress.md`
     """
 
     __example__: ClassVar[str] = '{"process":1}'
@@ -468,7 +483,7 @@ class TaskProgress(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class TaskProgressAck(rt.Message):
-    """上报机器人任务进度：确认
+    """上报机器人任务进度：应答
     Task progress: acknowledgement
 
     推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -477,7 +492,8 @@ class TaskProgressAck(rt.Message):
     is taken to be the envelope alone.
 
     - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/reports/task_progress.md`
+    - 文档：`docs-site/reference/reports/task_progress.md`
+    - Docs: `docs-site/en/reference/reports/task_progress.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -490,7 +506,8 @@ class TaskStation(rt.Message):
     Record of one station of a task
 
     - Spec: `types.TaskStation` in `spec/commands/task.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = (
@@ -675,7 +692,7 @@ AnyTaskReport: TypeAlias = ObstacleAnnouncement | TargetReached | TaskProgress
 
 class TaskCalls(rt.Calls):
     """`Client` 的一部分：`task` 组的指令。
-    The part of `Client` with the commands of the group `task`.
+    Part of `Client`: the commands of the group `task`.
     """
 
     async def create_task(
@@ -693,7 +710,8 @@ class TaskCalls(rt.Calls):
         Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 
         - Spec: `commands.create_task` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/create_task.md`
+        - 文档：`docs-site/reference/commands/create_task.md`
+        - Docs: `docs-site/en/reference/commands/create_task.md`
         """
         return await self.connection.call(CREATE_TASK, request, timeout=timeout, repeat=repeat)
 
@@ -706,14 +724,15 @@ class TaskCalls(rt.Calls):
         Code 0x0353. Only reads. Since 2023-05.
 
         - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/get_task_status.md`
+        - 文档：`docs-site/reference/commands/get_task_status.md`
+        - Docs: `docs-site/en/reference/commands/get_task_status.md`
         """
         return await self.connection.call(GET_TASK_STATUS, request, timeout=timeout, repeat=repeat)
 
 
 class TaskSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`task` 组的指令。
-    The part of `sync.Client` with the commands of the group `task`.
+    Part of `sync.Client`: the commands of the group `task`.
     """
 
     def create_task(
@@ -731,7 +750,8 @@ class TaskSyncCalls(rt.SyncCalls):
         Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 
         - Spec: `commands.create_task` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/create_task.md`
+        - 文档：`docs-site/reference/commands/create_task.md`
+        - Docs: `docs-site/en/reference/commands/create_task.md`
         """
         return self._call(CREATE_TASK, request, timeout, repeat)
 
@@ -744,14 +764,15 @@ class TaskSyncCalls(rt.SyncCalls):
         Code 0x0353. Only reads. Since 2023-05.
 
         - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/get_task_status.md`
+        - 文档：`docs-site/reference/commands/get_task_status.md`
+        - Docs: `docs-site/en/reference/commands/get_task_status.md`
         """
         return self._call(GET_TASK_STATUS, request, timeout, repeat)
 
 
 class TaskHandlers(ABC):
     """`Robot` 的一部分：`task` 组的指令。
-    The part of `Robot` with the commands of the group `task`.
+    Part of `Robot`: the commands of the group `task`.
     """
 
     @abstractmethod
@@ -768,7 +789,8 @@ class TaskHandlers(ABC):
         Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 
         - Spec: `commands.create_task` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/create_task.md`
+        - 文档：`docs-site/reference/commands/create_task.md`
+        - Docs: `docs-site/en/reference/commands/create_task.md`
         """
 
     @abstractmethod
@@ -779,13 +801,14 @@ class TaskHandlers(ABC):
         Code 0x0353. Only reads. Since 2023-05.
 
         - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/commands/get_task_status.md`
+        - 文档：`docs-site/reference/commands/get_task_status.md`
+        - Docs: `docs-site/en/reference/commands/get_task_status.md`
         """
 
 
 class TaskPartialHandlers(TaskHandlers):
     """`PartialRobot` 的一部分：`task` 组的指令。
-    The part of `PartialRobot` with the commands of the group `task`.
+    Part of `PartialRobot`: the commands of the group `task`.
     """
 
     @rt.left_out
@@ -801,7 +824,7 @@ class TaskPartialHandlers(TaskHandlers):
 
 class TaskReporter(rt.Reporter):
     """`Reporter` 的一部分：`task` 组的上报。
-    The part of `Reporter` with the reports of the group `task`.
+    Part of `Reporter`: the reports of the group `task`.
     """
 
     async def obstacle_announcement(
@@ -818,10 +841,11 @@ class TaskReporter(rt.Reporter):
 
         Code 0x0341. Since 2023-05.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+        - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+        - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
         """
         return await self.server.push(OBSTACLE_ANNOUNCEMENT, report, to)
 
@@ -835,10 +859,11 @@ class TaskReporter(rt.Reporter):
 
         Code 0x0340, inferred. Since 2023-05.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/reports/target_reached.md`
+        - 文档：`docs-site/reference/reports/target_reached.md`
+        - Docs: `docs-site/en/reference/reports/target_reached.md`
         """
         return await self.server.push(TARGET_REACHED, report, to)
 
@@ -853,9 +878,10 @@ class TaskReporter(rt.Reporter):
 
         Code 0x0345. Since 2024-01-29.
 
-        Returns what became of it at each connection.
+        Returns the outcome at each connection.
 
         - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-        - Docs: `docs-site/reference/reports/task_progress.md`
+        - 文档：`docs-site/reference/reports/task_progress.md`
+        - Docs: `docs-site/en/reference/reports/task_progress.md`
         """
         return await self.server.push(TASK_PROGRESS, report, to)

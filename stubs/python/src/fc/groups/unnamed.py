@@ -40,7 +40,8 @@ class Unnamed0309Request(rt.Message):
     Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
     - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    - 文档：`docs-site/reference/commands/unnamed_0309.md`
+    - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -57,7 +58,8 @@ class Unnamed0309Response(rt.Message):
     Open: The response is lost; its label runs straight into section 9.
 
     - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-    - Docs: `docs-site/reference/commands/unnamed_0309.md`
+    - 文档：`docs-site/reference/commands/unnamed_0309.md`
+    - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -77,7 +79,8 @@ class Unnamed0460Request(rt.Message):
     Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
     - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    - 文档：`docs-site/reference/commands/unnamed_0460.md`
+    - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -90,7 +93,8 @@ class Unnamed0460Response(rt.Message):
     Unnamed command (0x0460): response
 
     - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-    - Docs: `docs-site/reference/commands/unnamed_0460.md`
+    - 文档：`docs-site/reference/commands/unnamed_0460.md`
+    - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -137,7 +141,7 @@ UNNAMED_COMMANDS: Final = (
 
 class UnnamedCalls(rt.Calls):
     """`Client` 的一部分：`unnamed` 组的指令。
-    The part of `Client` with the commands of the group `unnamed`.
+    Part of `Client`: the commands of the group `unnamed`.
     """
 
     async def unnamed_0309(
@@ -155,7 +159,8 @@ class UnnamedCalls(rt.Calls):
         Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0309.md`
+        - 文档：`docs-site/reference/commands/unnamed_0309.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
         """
         return await self.connection.call(UNNAMED_0309, request, timeout=timeout, repeat=repeat)
 
@@ -173,14 +178,15 @@ class UnnamedCalls(rt.Calls):
         Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0460.md`
+        - 文档：`docs-site/reference/commands/unnamed_0460.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
         """
         return await self.connection.call(UNNAMED_0460, request, timeout=timeout, repeat=repeat)
 
 
 class UnnamedSyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`unnamed` 组的指令。
-    The part of `sync.Client` with the commands of the group `unnamed`.
+    Part of `sync.Client`: the commands of the group `unnamed`.
     """
 
     def unnamed_0309(
@@ -198,7 +204,8 @@ class UnnamedSyncCalls(rt.SyncCalls):
         Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0309.md`
+        - 文档：`docs-site/reference/commands/unnamed_0309.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
         """
         return self._call(UNNAMED_0309, request, timeout, repeat)
 
@@ -216,14 +223,15 @@ class UnnamedSyncCalls(rt.SyncCalls):
         Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0460.md`
+        - 文档：`docs-site/reference/commands/unnamed_0460.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
         """
         return self._call(UNNAMED_0460, request, timeout, repeat)
 
 
 class UnnamedHandlers(ABC):
     """`Robot` 的一部分：`unnamed` 组的指令。
-    The part of `Robot` with the commands of the group `unnamed`.
+    Part of `Robot`: the commands of the group `unnamed`.
     """
 
     @abstractmethod
@@ -240,7 +248,8 @@ class UnnamedHandlers(ABC):
         Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0309.md`
+        - 文档：`docs-site/reference/commands/unnamed_0309.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
         """
 
     @abstractmethod
@@ -256,13 +265,14 @@ class UnnamedHandlers(ABC):
         Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
         - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-        - Docs: `docs-site/reference/commands/unnamed_0460.md`
+        - 文档：`docs-site/reference/commands/unnamed_0460.md`
+        - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
         """
 
 
 class UnnamedPartialHandlers(UnnamedHandlers):
     """`PartialRobot` 的一部分：`unnamed` 组的指令。
-    The part of `PartialRobot` with the commands of the group `unnamed`.
+    Part of `PartialRobot`: the commands of the group `unnamed`.
     """
 
     @rt.left_out

@@ -33,7 +33,8 @@ class PushRodStatus(Enum):
     Status of the push rod
 
     - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     RETRACTED = 7
@@ -53,7 +54,8 @@ class DoorLockStatus(Enum):
     Status of a door lock
 
     - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     OPEN = 4
@@ -81,7 +83,8 @@ class GetUpperBodyStatusRequest(rt.Message):
     Code 0x0204. Only reads.
 
     - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+    - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
     """
 
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -94,7 +97,8 @@ class GetUpperBodyStatusResponse(rt.Message):
     Get the upper body's status: response
 
     - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-    - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+    - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+    - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
     """
 
     __example__: ClassVar[str] = '{"boxPushStatus":7,"selectCellId":0,"doorLockInfoList":[{"lockId":1,"lockStatus":7}]}'
@@ -130,7 +134,8 @@ class DoorLockInfo(rt.Message):
     Status of one door lock
 
     - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
-    - Docs: `docs-site/reference/types.md`
+    - 文档：`docs-site/reference/types.md`
+    - Docs: `docs-site/en/reference/types.md`
     """
 
     __example__: ClassVar[str] = '{"lockId":1,"lockStatus":7}'
@@ -173,7 +178,7 @@ UPPER_BODY_COMMANDS: Final = (GET_UPPER_BODY_STATUS,)
 
 class UpperBodyCalls(rt.Calls):
     """`Client` 的一部分：`upper_body` 组的指令。
-    The part of `Client` with the commands of the group `upper_body`.
+    Part of `Client`: the commands of the group `upper_body`.
     """
 
     async def get_upper_body_status(
@@ -195,14 +200,15 @@ class UpperBodyCalls(rt.Calls):
         Code 0x0204. Only reads.
 
         - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-        - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+        - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+        - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
         """
         return await self.connection.call(GET_UPPER_BODY_STATUS, request, timeout=timeout, repeat=repeat)
 
 
 class UpperBodySyncCalls(rt.SyncCalls):
     """`sync.Client` 的一部分：`upper_body` 组的指令。
-    The part of `sync.Client` with the commands of the group `upper_body`.
+    Part of `sync.Client`: the commands of the group `upper_body`.
     """
 
     def get_upper_body_status(
@@ -224,14 +230,15 @@ class UpperBodySyncCalls(rt.SyncCalls):
         Code 0x0204. Only reads.
 
         - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-        - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+        - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+        - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
         """
         return self._call(GET_UPPER_BODY_STATUS, request, timeout, repeat)
 
 
 class UpperBodyHandlers(ABC):
     """`Robot` 的一部分：`upper_body` 组的指令。
-    The part of `Robot` with the commands of the group `upper_body`.
+    Part of `Robot`: the commands of the group `upper_body`.
     """
 
     @abstractmethod
@@ -250,13 +257,14 @@ class UpperBodyHandlers(ABC):
         Code 0x0204. Only reads.
 
         - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-        - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+        - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+        - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
         """
 
 
 class UpperBodyPartialHandlers(UpperBodyHandlers):
     """`PartialRobot` 的一部分：`upper_body` 组的指令。
-    The part of `PartialRobot` with the commands of the group `upper_body`.
+    Part of `PartialRobot`: the commands of the group `upper_body`.
     """
 
     @rt.left_out

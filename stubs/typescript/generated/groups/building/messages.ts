@@ -25,7 +25,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 export interface ListIotDevicesRequest {
   /**
@@ -45,7 +46,8 @@ export interface ListIotDevicesRequest {
  * `data` of {@link ListIotDevicesRequest}.
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 export interface ListIotDevicesRequestData {
   /**
@@ -67,7 +69,8 @@ export interface ListIotDevicesRequestData {
  * List the IoT devices of a type: response
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 export interface ListIotDevicesResponse {
   /**
@@ -92,7 +95,8 @@ export interface ListIotDevicesResponse {
  * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/get_floors.md`
+ * - 文档：`docs-site/reference/commands/get_floors.md`
+ * - Docs: `docs-site/en/reference/commands/get_floors.md`
  */
 export interface GetFloorsRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -104,7 +108,8 @@ export interface GetFloorsRequest {
  * Get the floors: response
  *
  * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/get_floors.md`
+ * - 文档：`docs-site/reference/commands/get_floors.md`
+ * - Docs: `docs-site/en/reference/commands/get_floors.md`
  */
 export interface GetFloorsResponse {
   /**
@@ -144,7 +149,8 @@ export interface GetFloorsResponse {
  * The list changes as device types are added; an unknown type is kept as the string it is.
  *
  * - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -189,7 +195,8 @@ export const IotDeviceType = {
  * An IoT device
  *
  * - Spec: `types.IotDevice` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface IotDevice {
   /**
@@ -220,7 +227,7 @@ export interface IotDevice {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface BuildingCalls {
   /**
    * 获取物联网设备列表
@@ -234,7 +241,8 @@ export interface BuildingCalls {
    * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
    *
    * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-   * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+   * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+   * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
    */
   listIotDevices(request: ListIotDevicesRequest, options?: CallOptions): Promise<ListIotDevicesResponse>
 
@@ -250,12 +258,13 @@ export interface BuildingCalls {
    * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-   * - Docs: `docs-site/reference/commands/get_floors.md`
+   * - 文档：`docs-site/reference/commands/get_floors.md`
+   * - Docs: `docs-site/en/reference/commands/get_floors.md`
    */
   getFloors(request?: GetFloorsRequest, options?: CallOptions): Promise<GetFloorsResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface BuildingRobot {
   /**
    * 获取物联网设备列表
@@ -269,7 +278,8 @@ export interface BuildingRobot {
    * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
    *
    * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-   * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+   * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+   * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
    */
   listIotDevices(request: ListIotDevicesRequest, context: Context): Answer<ListIotDevicesResponse>
 
@@ -285,7 +295,8 @@ export interface BuildingRobot {
    * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-   * - Docs: `docs-site/reference/commands/get_floors.md`
+   * - 文档：`docs-site/reference/commands/get_floors.md`
+   * - Docs: `docs-site/en/reference/commands/get_floors.md`
    */
   getFloors(request: GetFloorsRequest, context: Context): Answer<GetFloorsResponse>
 }

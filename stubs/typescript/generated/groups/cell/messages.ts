@@ -25,7 +25,8 @@ import type { Answer, CallOptions, Context, Extra, Tagged } from '../../../src/r
  * Code 0x0A02. Only reads.
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 export interface GetCellConfigRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -37,7 +38,8 @@ export interface GetCellConfigRequest {
  * Get the compartment configuration: response
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 export interface GetCellConfigResponse {
   /**
@@ -57,7 +59,8 @@ export interface GetCellConfigResponse {
  * `data` of {@link GetCellConfigResponse}.
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 export interface GetCellConfigResponseData {
   /**
@@ -98,7 +101,8 @@ export interface GetCellConfigResponseData {
  * Code 0x0A0B. Changes the configuration.
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 export interface SetCellConfigRequest {
   /**
@@ -118,10 +122,11 @@ export interface SetCellConfigRequest {
  * `data` of {@link SetCellConfigRequest}.
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  *
- * `case` 说明是哪一种，`value` 是它的内容。
- * `case` says which one it is, `value` is what it holds.
+ * `case` 是形式的名称，`value` 是它的内容。
+ * `case` is the name of the form, and `value` its content.
  */
 export type SetCellConfigRequestData =
   /**
@@ -148,7 +153,8 @@ export type SetCellConfigRequestData =
  * `data` of {@link SetCellConfigRequest}.
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 export interface SetCellConfigRequestDataActiveIndex {
   /**
@@ -170,7 +176,8 @@ export interface SetCellConfigRequestDataActiveIndex {
  * `data` of {@link SetCellConfigRequest}.
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 export interface SetCellConfigRequestDataOldLayout {
   /**
@@ -198,7 +205,8 @@ export interface SetCellConfigRequestDataOldLayout {
  * Set the compartment configuration: response
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 export interface SetCellConfigResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -210,7 +218,8 @@ export interface SetCellConfigResponse {
  * A compartment of the current configuration
  *
  * - Spec: `types.Cell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface Cell {
   /**
@@ -262,7 +271,8 @@ export interface Cell {
  * A compartment of the old form
  *
  * - Spec: `types.OldCell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface OldCell {
   /**
@@ -298,7 +308,8 @@ export interface OldCell {
  * A layout of compartments
  *
  * - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface CellLayout {
   /**
@@ -332,7 +343,8 @@ export interface CellLayout {
  * A compartment of a layout
  *
  * - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface LayoutCell {
   /**
@@ -381,7 +393,8 @@ export interface LayoutCell {
  * section 43 disagrees (see C138), so do not derive the number of doors from the size.
  *
  * - Spec: `types.CellType` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -414,7 +427,8 @@ export const CellType = {
  * Physical location of a compartment
  *
  * - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -488,7 +502,7 @@ export const CellLocation = {
   All: 'all',
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface CellCalls {
   /**
    * 获取机器人格口门配置
@@ -502,7 +516,8 @@ export interface CellCalls {
    * Code 0x0A02. Only reads.
    *
    * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-   * - Docs: `docs-site/reference/commands/get_cell_config.md`
+   * - 文档：`docs-site/reference/commands/get_cell_config.md`
+   * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
    */
   getCellConfig(request?: GetCellConfigRequest, options?: CallOptions): Promise<GetCellConfigResponse>
 
@@ -526,12 +541,13 @@ export interface CellCalls {
    * Code 0x0A0B. Changes the configuration.
    *
    * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-   * - Docs: `docs-site/reference/commands/set_cell_config.md`
+   * - 文档：`docs-site/reference/commands/set_cell_config.md`
+   * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
    */
   setCellConfig(request: SetCellConfigRequest, options?: CallOptions): Promise<SetCellConfigResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface CellRobot {
   /**
    * 获取机器人格口门配置
@@ -545,7 +561,8 @@ export interface CellRobot {
    * Code 0x0A02. Only reads.
    *
    * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-   * - Docs: `docs-site/reference/commands/get_cell_config.md`
+   * - 文档：`docs-site/reference/commands/get_cell_config.md`
+   * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
    */
   getCellConfig(request: GetCellConfigRequest, context: Context): Answer<GetCellConfigResponse>
 
@@ -569,7 +586,8 @@ export interface CellRobot {
    * Code 0x0A0B. Changes the configuration.
    *
    * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-   * - Docs: `docs-site/reference/commands/set_cell_config.md`
+   * - 文档：`docs-site/reference/commands/set_cell_config.md`
+   * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
    */
   setCellConfig(request: SetCellConfigRequest, context: Context): Answer<SetCellConfigResponse>
 }

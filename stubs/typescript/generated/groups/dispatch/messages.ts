@@ -28,7 +28,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * No code yet: types only. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
  *
  * - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+ * - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+ * - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
  */
 export interface UploadContendedResourcesRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -44,7 +45,8 @@ export interface UploadContendedResourcesRequest {
  * Open: The response is lost; nothing is known beyond the envelope.
  *
  * - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+ * - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+ * - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
  */
 export interface UploadContendedResourcesResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -63,7 +65,8 @@ export interface UploadContendedResourcesResponse {
  * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 export interface CheckCondition0333Request {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -75,7 +78,8 @@ export interface CheckCondition0333Request {
  * Check a condition (0x0333, purpose unknown): response
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 export interface CheckCondition0333Response {
   /**
@@ -95,7 +99,8 @@ export interface CheckCondition0333Response {
  * `data` of {@link CheckCondition0333Response}.
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 export interface CheckCondition0333ResponseData {
   /**
@@ -110,7 +115,7 @@ export interface CheckCondition0333ResponseData {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface DispatchCalls {
   /**
    * 检查条件是否满足（0x0333，用途不详）
@@ -124,12 +129,13 @@ export interface DispatchCalls {
    * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
    *
    * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-   * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+   * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+   * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
    */
   checkCondition0333(request?: CheckCondition0333Request, options?: CallOptions): Promise<CheckCondition0333Response>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface DispatchRobot {
   /**
    * 检查条件是否满足（0x0333，用途不详）
@@ -143,7 +149,8 @@ export interface DispatchRobot {
    * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
    *
    * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-   * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+   * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+   * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
    */
   checkCondition0333(request: CheckCondition0333Request, context: Context): Answer<CheckCondition0333Response>
 }

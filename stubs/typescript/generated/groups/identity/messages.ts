@@ -24,7 +24,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0A01. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 export interface GetRobotSnRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -36,7 +37,8 @@ export interface GetRobotSnRequest {
  * Get the serial number: response
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 export interface GetRobotSnResponse {
   /**
@@ -56,7 +58,8 @@ export interface GetRobotSnResponse {
  * `data` of {@link GetRobotSnResponse}.
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 export interface GetRobotSnResponseData {
   /**
@@ -97,7 +100,8 @@ export interface GetRobotSnResponseData {
  * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+ * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+ * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
  */
 export interface GetFirmwareVersionsRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -113,14 +117,15 @@ export interface GetFirmwareVersionsRequest {
  * Open: The response is lost, and with it the keys of the three versions; every key received is kept.
  *
  * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+ * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+ * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
  */
 export interface GetFirmwareVersionsResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface IdentityCalls {
   /**
    * 获取机器人序列号
@@ -133,7 +138,8 @@ export interface IdentityCalls {
    * Code 0x0A01. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-   * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+   * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+   * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
    */
   getRobotSn(request?: GetRobotSnRequest, options?: CallOptions): Promise<GetRobotSnResponse>
 
@@ -151,12 +157,13 @@ export interface IdentityCalls {
    * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-   * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+   * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+   * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
    */
   getFirmwareVersions(request?: GetFirmwareVersionsRequest, options?: CallOptions): Promise<GetFirmwareVersionsResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface IdentityRobot {
   /**
    * 获取机器人序列号
@@ -169,7 +176,8 @@ export interface IdentityRobot {
    * Code 0x0A01. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-   * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+   * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+   * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
    */
   getRobotSn(request: GetRobotSnRequest, context: Context): Answer<GetRobotSnResponse>
 
@@ -187,7 +195,8 @@ export interface IdentityRobot {
    * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-   * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+   * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+   * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
    */
   getFirmwareVersions(request: GetFirmwareVersionsRequest, context: Context): Answer<GetFirmwareVersionsResponse>
 }

@@ -24,7 +24,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0001. Only reads. Since 2023-08-10.
  *
  * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
- * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+ * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+ * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
  */
 export interface GetLaserScanRequest {
   /**
@@ -48,14 +49,15 @@ export interface GetLaserScanRequest {
  * Open: The response is lost, and with it the structure of the point cloud; every key received is kept.
  *
  * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
- * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+ * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+ * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
  */
 export interface GetLaserScanResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface LaserCalls {
   /**
    * 获取激光数据
@@ -68,12 +70,13 @@ export interface LaserCalls {
    * Code 0x0001. Only reads. Since 2023-08-10.
    *
    * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-   * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+   * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+   * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
    */
   getLaserScan(request: GetLaserScanRequest, options?: CallOptions): Promise<GetLaserScanResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface LaserRobot {
   /**
    * 获取激光数据
@@ -86,7 +89,8 @@ export interface LaserRobot {
    * Code 0x0001. Only reads. Since 2023-08-10.
    *
    * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-   * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+   * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+   * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
    */
   getLaserScan(request: GetLaserScanRequest, context: Context): Answer<GetLaserScanResponse>
 }

@@ -3,7 +3,7 @@
 /**
  * 字段不出现时的含义，用 `withDefaults` 填入。
  *
- * What the absence of fields means; `withDefaults` fills it in.
+ * Defaults of absent fields; `withDefaults` fills them in.
  *
  * @module
  */

@@ -38,7 +38,8 @@ import type {
  * `2002`: The target map could not be set
  *
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/set_target_map.md`
+ * - 文档：`docs-site/reference/commands/set_target_map.md`
+ * - Docs: `docs-site/en/reference/commands/set_target_map.md`
  */
 export interface SetTargetMapRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -50,7 +51,8 @@ export interface SetTargetMapRequest {
  * Set the target map: its declared errors
  *
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/set_target_map.md`
+ * - 文档：`docs-site/reference/commands/set_target_map.md`
+ * - Docs: `docs-site/en/reference/commands/set_target_map.md`
  */
 export type SetTargetMapError =
   /**
@@ -64,7 +66,8 @@ export type SetTargetMapError =
  * Set the target map: response
  *
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/set_target_map.md`
+ * - 文档：`docs-site/reference/commands/set_target_map.md`
+ * - Docs: `docs-site/en/reference/commands/set_target_map.md`
  */
 export interface SetTargetMapResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -83,7 +86,8 @@ export interface SetTargetMapResponse {
  * Code 0x0111. Only reads, inferred. Since 2023-08-10.
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 export interface GetMapImageRequest {
   /**
@@ -103,7 +107,8 @@ export interface GetMapImageRequest {
  * Get the picture of a map: response
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 export interface GetMapImageResponse {
   /**
@@ -179,7 +184,8 @@ export interface GetMapImageResponse {
  * `origin` of {@link GetMapImageResponse}.
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 export interface GetMapImageResponseOrigin {
   /**
@@ -221,7 +227,8 @@ export interface GetMapImageResponseOrigin {
  * Code 0x0103. Only reads.
  *
  * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/list_maps.md`
+ * - 文档：`docs-site/reference/commands/list_maps.md`
+ * - Docs: `docs-site/en/reference/commands/list_maps.md`
  */
 export interface ListMapsRequest {
   /**
@@ -241,7 +248,8 @@ export interface ListMapsRequest {
  * List the maps: response
  *
  * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/list_maps.md`
+ * - 文档：`docs-site/reference/commands/list_maps.md`
+ * - Docs: `docs-site/en/reference/commands/list_maps.md`
  */
 export interface ListMapsResponse {
   /**
@@ -273,7 +281,8 @@ export interface ListMapsResponse {
  * Code 0x010C. Only reads.
  *
  * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_info.md`
+ * - 文档：`docs-site/reference/commands/get_map_info.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_info.md`
  */
 export interface GetMapInfoRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -289,7 +298,8 @@ export interface GetMapInfoRequest {
  * Open: No response is printed; every key received is kept.
  *
  * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_info.md`
+ * - 文档：`docs-site/reference/commands/get_map_info.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_info.md`
  */
 export interface GetMapInfoResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -307,7 +317,8 @@ export interface GetMapInfoResponse {
  * Code 0x0109. Changes the configuration.
  *
  * - Spec: `commands.save_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/save_map.md`
+ * - 文档：`docs-site/reference/commands/save_map.md`
+ * - Docs: `docs-site/en/reference/commands/save_map.md`
  */
 export interface SaveMapRequest {
   /**
@@ -379,7 +390,8 @@ export interface SaveMapRequest {
  * Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
  *
  * - Spec: `commands.save_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/save_map.md`
+ * - 文档：`docs-site/reference/commands/save_map.md`
+ * - Docs: `docs-site/en/reference/commands/save_map.md`
  */
 export interface SaveMapResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -400,7 +412,8 @@ export interface SaveMapResponse {
  * Code 0x0320. Changes the configuration, inferred.
  *
  * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/download_maps.md`
+ * - 文档：`docs-site/reference/commands/download_maps.md`
+ * - Docs: `docs-site/en/reference/commands/download_maps.md`
  */
 export interface DownloadMapsRequest {
   /**
@@ -426,7 +439,8 @@ export interface DownloadMapsRequest {
  * Download maps: response
  *
  * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/download_maps.md`
+ * - 文档：`docs-site/reference/commands/download_maps.md`
+ * - Docs: `docs-site/en/reference/commands/download_maps.md`
  */
 export interface DownloadMapsResponse {
   /**
@@ -457,7 +471,8 @@ export interface DownloadMapsResponse {
  * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
  *
  * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/upload_maps.md`
+ * - 文档：`docs-site/reference/commands/upload_maps.md`
+ * - Docs: `docs-site/en/reference/commands/upload_maps.md`
  */
 export interface UploadMapsRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -473,7 +488,8 @@ export interface UploadMapsRequest {
  * Open: The response is lost; nothing is known beyond the envelope.
  *
  * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/upload_maps.md`
+ * - 文档：`docs-site/reference/commands/upload_maps.md`
+ * - Docs: `docs-site/en/reference/commands/upload_maps.md`
  */
 export interface UploadMapsResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -495,7 +511,8 @@ export interface UploadMapsResponse {
  * Code 0x0322. Only reads.
  *
  * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+ * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
  */
 export interface GetMapSyncProgressRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -511,7 +528,8 @@ export interface GetMapSyncProgressRequest {
  * Open: The response is lost. It may hold the syncMapList of map_sync_progress, but nothing says so.
  *
  * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+ * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
  */
 export interface GetMapSyncProgressResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -529,7 +547,8 @@ export interface GetMapSyncProgressResponse {
  * Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
  *
  * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+ * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
  */
 export interface MapSyncProgress {
   /**
@@ -551,11 +570,12 @@ export interface MapSyncProgress {
 }
 
 /**
- * 上报地图同步进度：确认
+ * 上报地图同步进度：应答
  * Progress of map synchronisation: acknowledgement
  *
  * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+ * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
  */
 export interface MapSyncProgressAck {
   /**
@@ -575,7 +595,8 @@ export interface MapSyncProgressAck {
  * Information about a map
  *
  * - Spec: `types.MapInfo` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface MapInfo {
   /**
@@ -691,7 +712,8 @@ export interface MapInfo {
  * A map to download
  *
  * - Spec: `types.MapDownload` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface MapDownload {
   /**
@@ -727,7 +749,8 @@ export interface MapDownload {
  * Progress of the synchronisation of a map
  *
  * - Spec: `types.MapSync` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface MapSync {
   /**
@@ -775,7 +798,8 @@ export interface MapSync {
  * Direction of synchronisation
  *
  * - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -802,7 +826,8 @@ export const MapSyncDirection = {
  * Result of the synchronisation
  *
  * - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -830,7 +855,7 @@ export const MapSyncResult = {
   Failed: -1,
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface MapCalls {
   /**
    * 获取地图图像
@@ -844,7 +869,8 @@ export interface MapCalls {
    * Code 0x0111. Only reads, inferred. Since 2023-08-10.
    *
    * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_image.md`
+   * - 文档：`docs-site/reference/commands/get_map_image.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_image.md`
    */
   getMapImage(request: GetMapImageRequest, options?: CallOptions): Promise<GetMapImageResponse>
 
@@ -859,7 +885,8 @@ export interface MapCalls {
    * Code 0x0103. Only reads.
    *
    * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/list_maps.md`
+   * - 文档：`docs-site/reference/commands/list_maps.md`
+   * - Docs: `docs-site/en/reference/commands/list_maps.md`
    */
   listMaps(request?: ListMapsRequest, options?: CallOptions): Promise<ListMapsResponse>
 
@@ -870,7 +897,8 @@ export interface MapCalls {
    * Code 0x010C. Only reads.
    *
    * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_info.md`
+   * - 文档：`docs-site/reference/commands/get_map_info.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_info.md`
    */
   getMapInfo(request?: GetMapInfoRequest, options?: CallOptions): Promise<GetMapInfoResponse>
 
@@ -885,7 +913,8 @@ export interface MapCalls {
    * Code 0x0109. Changes the configuration.
    *
    * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/save_map.md`
+   * - 文档：`docs-site/reference/commands/save_map.md`
+   * - Docs: `docs-site/en/reference/commands/save_map.md`
    */
   saveMap(request: SaveMapRequest, options?: CallOptions): Promise<SaveMapResponse>
 
@@ -902,19 +931,20 @@ export interface MapCalls {
    *
    * Code 0x0320. Changes the configuration, inferred.
    *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link MapSyncProgress}。
-   * `.follow()` gives the response, and then each {@link MapSyncProgress} that it sets off.
+   * `.follow()`：先返回响应，再逐个返回它引起的 {@link MapSyncProgress}。
+   * `.follow()` returns the response, and then each {@link MapSyncProgress} that the command sets off.
    *
-   * 没有写明哪个状态是终态：要由 app 停止。
+   * 规范没有写明终态：由 app 停止。
    *
-   * No state is said to be final: the app has to stop it.
+   * The spec marks no state as final. The app stops it.
    *
-   * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+   * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
    *
-   * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+   * No key ties a report to a call: reports of this kind from other calls arrive as well.
    *
    * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/download_maps.md`
+   * - 文档：`docs-site/reference/commands/download_maps.md`
+   * - Docs: `docs-site/en/reference/commands/download_maps.md`
    */
   downloadMaps(
     request: DownloadMapsRequest,
@@ -932,19 +962,20 @@ export interface MapCalls {
    *
    * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
    *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link MapSyncProgress}。
-   * `.follow()` gives the response, and then each {@link MapSyncProgress} that it sets off.
+   * `.follow()`：先返回响应，再逐个返回它引起的 {@link MapSyncProgress}。
+   * `.follow()` returns the response, and then each {@link MapSyncProgress} that the command sets off.
    *
-   * 没有写明哪个状态是终态：要由 app 停止。
+   * 规范没有写明终态：由 app 停止。
    *
-   * No state is said to be final: the app has to stop it.
+   * The spec marks no state as final. The app stops it.
    *
-   * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+   * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
    *
-   * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+   * No key ties a report to a call: reports of this kind from other calls arrive as well.
    *
    * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/upload_maps.md`
+   * - 文档：`docs-site/reference/commands/upload_maps.md`
+   * - Docs: `docs-site/en/reference/commands/upload_maps.md`
    */
   uploadMaps(request?: UploadMapsRequest, options?: CallOptions): FollowableCall<UploadMapsResponse, MapSyncProgress>
 
@@ -959,12 +990,13 @@ export interface MapCalls {
    * Code 0x0322. Only reads.
    *
    * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+   * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
    */
   getMapSyncProgress(request?: GetMapSyncProgressRequest, options?: CallOptions): Promise<GetMapSyncProgressResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type MapReport =
   /**
    * 上报地图同步进度
@@ -972,7 +1004,7 @@ export type MapReport =
    */
   Reported<'MapSyncProgress', MapSyncProgress>
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface MapRobot {
   /**
    * 获取地图图像
@@ -986,7 +1018,8 @@ export interface MapRobot {
    * Code 0x0111. Only reads, inferred. Since 2023-08-10.
    *
    * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_image.md`
+   * - 文档：`docs-site/reference/commands/get_map_image.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_image.md`
    */
   getMapImage(request: GetMapImageRequest, context: Context): Answer<GetMapImageResponse>
 
@@ -1001,7 +1034,8 @@ export interface MapRobot {
    * Code 0x0103. Only reads.
    *
    * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/list_maps.md`
+   * - 文档：`docs-site/reference/commands/list_maps.md`
+   * - Docs: `docs-site/en/reference/commands/list_maps.md`
    */
   listMaps(request: ListMapsRequest, context: Context): Answer<ListMapsResponse>
 
@@ -1012,7 +1046,8 @@ export interface MapRobot {
    * Code 0x010C. Only reads.
    *
    * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_info.md`
+   * - 文档：`docs-site/reference/commands/get_map_info.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_info.md`
    */
   getMapInfo(request: GetMapInfoRequest, context: Context): Answer<GetMapInfoResponse>
 
@@ -1027,7 +1062,8 @@ export interface MapRobot {
    * Code 0x0109. Changes the configuration.
    *
    * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/save_map.md`
+   * - 文档：`docs-site/reference/commands/save_map.md`
+   * - Docs: `docs-site/en/reference/commands/save_map.md`
    */
   saveMap(request: SaveMapRequest, context: Context): Answer<SaveMapResponse>
 
@@ -1045,7 +1081,8 @@ export interface MapRobot {
    * Code 0x0320. Changes the configuration, inferred.
    *
    * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/download_maps.md`
+   * - 文档：`docs-site/reference/commands/download_maps.md`
+   * - Docs: `docs-site/en/reference/commands/download_maps.md`
    */
   downloadMaps(request: DownloadMapsRequest, context: Context): Answer<DownloadMapsResponse>
 
@@ -1061,7 +1098,8 @@ export interface MapRobot {
    * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
    *
    * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/upload_maps.md`
+   * - 文档：`docs-site/reference/commands/upload_maps.md`
+   * - Docs: `docs-site/en/reference/commands/upload_maps.md`
    */
   uploadMaps(request: UploadMapsRequest, context: Context): Answer<UploadMapsResponse>
 
@@ -1076,7 +1114,8 @@ export interface MapRobot {
    * Code 0x0322. Only reads.
    *
    * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+   * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+   * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
    */
   getMapSyncProgress(request: GetMapSyncProgressRequest, context: Context): Answer<GetMapSyncProgressResponse>
 }
@@ -1105,7 +1144,7 @@ export interface MapExamples {
   getMapSyncProgress(): GetMapSyncProgressResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface MapReporter {
   /**
    * 上报地图同步进度
@@ -1117,10 +1156,11 @@ export interface MapReporter {
    *
    * Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-   * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+   * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+   * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
    */
   mapSyncProgress(report: MapSyncProgress, audience?: Audience): Promise<Acknowledgement[]>
 }

@@ -42,7 +42,8 @@ import type {
  * Code 0x0A04. Moves the robot. Since 2023-05.
  *
  * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/start_recharge.md`
+ * - 文档：`docs-site/reference/commands/start_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/start_recharge.md`
  */
 export interface StartRechargeRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -54,7 +55,8 @@ export interface StartRechargeRequest {
  * Start returning to dock: response
  *
  * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/start_recharge.md`
+ * - 文档：`docs-site/reference/commands/start_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/start_recharge.md`
  */
 export interface StartRechargeResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -76,7 +78,8 @@ export interface StartRechargeResponse {
  * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
  *
  * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+ * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
  */
 export interface CancelRechargeRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -92,7 +95,8 @@ export interface CancelRechargeRequest {
  * Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
  *
  * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+ * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
  */
 export interface CancelRechargeResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -110,7 +114,8 @@ export interface CancelRechargeResponse {
  * Code 0x0A06. Only reads, inferred. Since 2023-05.
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 export interface GetRechargeStatusRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -122,7 +127,8 @@ export interface GetRechargeStatusRequest {
  * Get the charging state: response
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 export interface GetRechargeStatusResponse {
   /**
@@ -142,7 +148,8 @@ export interface GetRechargeStatusResponse {
  * `data` of {@link GetRechargeStatusResponse}.
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 export interface GetRechargeStatusResponseData {
   /**
@@ -188,7 +195,8 @@ export interface GetRechargeStatusResponseData {
  * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 export interface RechargeProgress {
   /**
@@ -208,7 +216,8 @@ export interface RechargeProgress {
  * `data` of {@link RechargeProgress}.
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 export interface RechargeProgressData {
   /**
@@ -230,11 +239,12 @@ export interface RechargeProgressData {
 }
 
 /**
- * 主动上报回充过程和结果：确认
+ * 主动上报回充过程和结果：应答
  * Progress and result of charging: acknowledgement
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 export interface RechargeProgressAck {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -250,7 +260,8 @@ export interface RechargeProgressAck {
  * The normal order is 0 → 4 → 1 → 2 → 3. The numbers do not follow it, so do not compare them.
  *
  * - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -295,7 +306,8 @@ export const RechargeStatus = {
  * Whether charging failed
  *
  * - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -317,7 +329,7 @@ export const RechargeError = {
   Failed: 1,
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface RechargeCalls {
   /**
    * 发起一键回充
@@ -332,20 +344,20 @@ export interface RechargeCalls {
    *
    * Code 0x0A04. Moves the robot. Since 2023-05.
    *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link RechargeProgress}。
-   * `.follow()` gives the response, and then each {@link RechargeProgress} that it sets off.
+   * `.follow()`：先返回响应，再逐个返回它引起的 {@link RechargeProgress}。
+   * `.follow()` returns the response, and then each {@link RechargeProgress} that the command sets off.
    *
-   * 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+   * 规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
    *
-   * No state is said to be final: it ends only when `data.errorStatus` says that something failed, or when the app
-   * stops it.
+   * The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when the app stops it.
    *
-   * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+   * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
    *
-   * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+   * No key ties a report to a call: reports of this kind from other calls arrive as well.
    *
    * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/start_recharge.md`
+   * - 文档：`docs-site/reference/commands/start_recharge.md`
+   * - Docs: `docs-site/en/reference/commands/start_recharge.md`
    */
   startRecharge(
     request?: StartRechargeRequest,
@@ -364,7 +376,8 @@ export interface RechargeCalls {
    * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
    *
    * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+   * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+   * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
    */
   cancelRecharge(request?: CancelRechargeRequest, options?: CallOptions): Promise<CancelRechargeResponse>
 
@@ -380,12 +393,13 @@ export interface RechargeCalls {
    * Code 0x0A06. Only reads, inferred. Since 2023-05.
    *
    * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+   * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
    */
   getRechargeStatus(request?: GetRechargeStatusRequest, options?: CallOptions): Promise<GetRechargeStatusResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type RechargeReport =
   /**
    * 主动上报回充过程和结果
@@ -393,7 +407,7 @@ export type RechargeReport =
    */
   Reported<'RechargeProgress', RechargeProgress>
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface RechargeRobot {
   /**
    * 发起一键回充
@@ -409,7 +423,8 @@ export interface RechargeRobot {
    * Code 0x0A04. Moves the robot. Since 2023-05.
    *
    * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/start_recharge.md`
+   * - 文档：`docs-site/reference/commands/start_recharge.md`
+   * - Docs: `docs-site/en/reference/commands/start_recharge.md`
    */
   startRecharge(request: StartRechargeRequest, context: Context): Answer<StartRechargeResponse>
 
@@ -425,7 +440,8 @@ export interface RechargeRobot {
    * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
    *
    * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+   * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+   * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
    */
   cancelRecharge(request: CancelRechargeRequest, context: Context): Answer<CancelRechargeResponse>
 
@@ -441,7 +457,8 @@ export interface RechargeRobot {
    * Code 0x0A06. Only reads, inferred. Since 2023-05.
    *
    * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+   * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
    */
   getRechargeStatus(request: GetRechargeStatusRequest, context: Context): Answer<GetRechargeStatusResponse>
 }
@@ -458,7 +475,7 @@ export interface RechargeExamples {
   getRechargeStatus(): GetRechargeStatusResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface RechargeReporter {
   /**
    * 主动上报回充过程和结果
@@ -479,10 +496,11 @@ export interface RechargeReporter {
    *
    * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-   * - Docs: `docs-site/reference/reports/recharge_progress.md`
+   * - 文档：`docs-site/reference/reports/recharge_progress.md`
+   * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
    */
   rechargeProgress(report: RechargeProgress, audience?: Audience): Promise<Acknowledgement[]>
 }

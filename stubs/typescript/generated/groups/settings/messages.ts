@@ -25,7 +25,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 export interface Switch0a08Request {
   /**
@@ -45,7 +46,8 @@ export interface Switch0a08Request {
  * `data` of {@link Switch0a08Request}.
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 export interface Switch0a08RequestData {
   /**
@@ -63,7 +65,8 @@ export interface Switch0a08RequestData {
  * Read or set a switch (0x0A08, purpose unknown): response
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 export interface Switch0a08Response {
   /**
@@ -83,7 +86,8 @@ export interface Switch0a08Response {
  * `data` of {@link Switch0a08Response}.
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 export interface Switch0a08ResponseData {
   /**
@@ -121,7 +125,8 @@ export interface Switch0a08ResponseData {
  * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  *
  * @deprecated The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.
  */
@@ -143,7 +148,8 @@ export interface SetVoiceReminderRequest {
  * `data` of {@link SetVoiceReminderRequest}.
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 export interface SetVoiceReminderRequestData {
   /**
@@ -161,7 +167,8 @@ export interface SetVoiceReminderRequestData {
  * Voice reminder switch: response
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 export interface SetVoiceReminderResponse {
   /**
@@ -181,7 +188,8 @@ export interface SetVoiceReminderResponse {
  * `data` of {@link SetVoiceReminderResponse}.
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 export interface SetVoiceReminderResponseData {
   /**
@@ -210,7 +218,8 @@ export interface SetVoiceReminderResponseData {
  * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_environment.md`
+ * - 文档：`docs-site/reference/commands/switch_environment.md`
+ * - Docs: `docs-site/en/reference/commands/switch_environment.md`
  */
 export interface SwitchEnvironmentRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -222,7 +231,8 @@ export interface SwitchEnvironmentRequest {
  * Switch the environment: response
  *
  * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_environment.md`
+ * - 文档：`docs-site/reference/commands/switch_environment.md`
+ * - Docs: `docs-site/en/reference/commands/switch_environment.md`
  */
 export interface SwitchEnvironmentResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -234,7 +244,8 @@ export interface SwitchEnvironmentResponse {
  * What to do with a switch
  *
  * - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -267,7 +278,8 @@ export const SwitchUpdate = {
  * State of a switch
  *
  * - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -289,7 +301,7 @@ export const SwitchState = {
   Off: 'off',
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface SettingsCalls {
   /**
    * 读取或设置开关（0x0A08，用途不详）
@@ -303,7 +315,8 @@ export interface SettingsCalls {
    * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/switch_0a08.md`
+   * - 文档：`docs-site/reference/commands/switch_0a08.md`
+   * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
    */
   switch0a08(request: Switch0a08Request, options?: CallOptions): Promise<Switch0a08Response>
 
@@ -323,7 +336,8 @@ export interface SettingsCalls {
    * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+   * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+   * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
    *
    * @deprecated The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.
    */
@@ -340,12 +354,13 @@ export interface SettingsCalls {
    * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/switch_environment.md`
+   * - 文档：`docs-site/reference/commands/switch_environment.md`
+   * - Docs: `docs-site/en/reference/commands/switch_environment.md`
    */
   switchEnvironment(request?: SwitchEnvironmentRequest, options?: CallOptions): Promise<SwitchEnvironmentResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface SettingsRobot {
   /**
    * 读取或设置开关（0x0A08，用途不详）
@@ -359,7 +374,8 @@ export interface SettingsRobot {
    * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/switch_0a08.md`
+   * - 文档：`docs-site/reference/commands/switch_0a08.md`
+   * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
    */
   switch0a08(request: Switch0a08Request, context: Context): Answer<Switch0a08Response>
 
@@ -379,7 +395,8 @@ export interface SettingsRobot {
    * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+   * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+   * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
    *
    * @deprecated The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.
    */
@@ -396,7 +413,8 @@ export interface SettingsRobot {
    * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
    *
    * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-   * - Docs: `docs-site/reference/commands/switch_environment.md`
+   * - 文档：`docs-site/reference/commands/switch_environment.md`
+   * - Docs: `docs-site/en/reference/commands/switch_environment.md`
    */
   switchEnvironment(request: SwitchEnvironmentRequest, context: Context): Answer<SwitchEnvironmentResponse>
 }

@@ -27,7 +27,8 @@ import type { StationType } from '../types/messages.ts'
  * Code 0x0311. Changes the configuration. Since 2024-01-02.
  *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_standby_position.md`
+ * - 文档：`docs-site/reference/commands/set_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
  */
 export interface SetStandbyPositionRequest {
   /**
@@ -45,7 +46,8 @@ export interface SetStandbyPositionRequest {
  * Set the standby position: response
  *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_standby_position.md`
+ * - 文档：`docs-site/reference/commands/set_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
  */
 export interface SetStandbyPositionResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -64,7 +66,8 @@ export interface SetStandbyPositionResponse {
  * Code 0x0312. Only reads. Since 2024-01-02.
  *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_standby_position.md`
+ * - 文档：`docs-site/reference/commands/get_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
  */
 export interface GetStandbyPositionRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -81,7 +84,8 @@ export interface GetStandbyPositionRequest {
  * nothing says so.
  *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_standby_position.md`
+ * - 文档：`docs-site/reference/commands/get_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
  */
 export interface GetStandbyPositionResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -95,7 +99,8 @@ export interface GetStandbyPositionResponse {
  * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+ * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+ * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
  */
 export interface SetPositions0313Request {
   /**
@@ -117,7 +122,8 @@ export interface SetPositions0313Request {
  * Open: The response is lost; its label runs straight into section 48.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+ * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+ * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
  */
 export interface SetPositions0313Response {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -136,7 +142,8 @@ export interface SetPositions0313Response {
  * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+ * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+ * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
  */
 export interface GetPositions0314Request {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -148,7 +155,8 @@ export interface GetPositions0314Request {
  * Get points (0x0314, purpose unknown): response
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+ * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+ * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
  */
 export interface GetPositions0314Response {
   /**
@@ -166,7 +174,8 @@ export interface GetPositions0314Response {
  * A standby position
  *
  * - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface StandbyPosition {
   /**
@@ -202,7 +211,8 @@ export interface StandbyPosition {
  * A point, given by map ID and station ID
  *
  * - Spec: `types.StationRef` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface StationRef {
   /**
@@ -225,7 +235,7 @@ export interface StationRef {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface StandbyCalls {
   /**
    * 设置机器人待命时的位置
@@ -239,7 +249,8 @@ export interface StandbyCalls {
    * Code 0x0311. Changes the configuration. Since 2024-01-02.
    *
    * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/set_standby_position.md`
+   * - 文档：`docs-site/reference/commands/set_standby_position.md`
+   * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
    */
   setStandbyPosition(request: SetStandbyPositionRequest, options?: CallOptions): Promise<SetStandbyPositionResponse>
 
@@ -250,7 +261,8 @@ export interface StandbyCalls {
    * Code 0x0312. Only reads. Since 2024-01-02.
    *
    * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/get_standby_position.md`
+   * - 文档：`docs-site/reference/commands/get_standby_position.md`
+   * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
    */
   getStandbyPosition(request?: GetStandbyPositionRequest, options?: CallOptions): Promise<GetStandbyPositionResponse>
 
@@ -261,7 +273,8 @@ export interface StandbyCalls {
    * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
    *
    * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+   * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+   * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
    */
   setPositions0313(request: SetPositions0313Request, options?: CallOptions): Promise<SetPositions0313Response>
 
@@ -277,12 +290,13 @@ export interface StandbyCalls {
    * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
    *
    * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+   * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+   * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
    */
   getPositions0314(request?: GetPositions0314Request, options?: CallOptions): Promise<GetPositions0314Response>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface StandbyRobot {
   /**
    * 设置机器人待命时的位置
@@ -296,7 +310,8 @@ export interface StandbyRobot {
    * Code 0x0311. Changes the configuration. Since 2024-01-02.
    *
    * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/set_standby_position.md`
+   * - 文档：`docs-site/reference/commands/set_standby_position.md`
+   * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
    */
   setStandbyPosition(request: SetStandbyPositionRequest, context: Context): Answer<SetStandbyPositionResponse>
 
@@ -307,7 +322,8 @@ export interface StandbyRobot {
    * Code 0x0312. Only reads. Since 2024-01-02.
    *
    * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/get_standby_position.md`
+   * - 文档：`docs-site/reference/commands/get_standby_position.md`
+   * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
    */
   getStandbyPosition(request: GetStandbyPositionRequest, context: Context): Answer<GetStandbyPositionResponse>
 
@@ -318,7 +334,8 @@ export interface StandbyRobot {
    * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
    *
    * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+   * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+   * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
    */
   setPositions0313(request: SetPositions0313Request, context: Context): Answer<SetPositions0313Response>
 
@@ -334,7 +351,8 @@ export interface StandbyRobot {
    * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
    *
    * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-   * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+   * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+   * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
    */
   getPositions0314(request: GetPositions0314Request, context: Context): Answer<GetPositions0314Response>
 }

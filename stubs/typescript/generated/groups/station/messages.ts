@@ -26,7 +26,8 @@ import type { StationType } from '../types/messages.ts'
  * Code 0x0A03. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 export interface GetStationRequest {
   /**
@@ -46,7 +47,8 @@ export interface GetStationRequest {
  * `data` of {@link GetStationRequest}.
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 export interface GetStationRequestData {
   /**
@@ -66,7 +68,8 @@ export interface GetStationRequestData {
  * Get a station by its ID: response
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 export interface GetStationResponse {
   /**
@@ -86,7 +89,8 @@ export interface GetStationResponse {
  * `data` of {@link GetStationResponse}.
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 export interface GetStationResponseData {
   /**
@@ -159,7 +163,8 @@ export interface GetStationResponseData {
  * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+ * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+ * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
  */
 export interface UploadMapStationsRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -175,7 +180,8 @@ export interface UploadMapStationsRequest {
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+ * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+ * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
  */
 export interface UploadMapStationsResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -193,7 +199,8 @@ export interface UploadMapStationsResponse {
  * Code 0x0302. Changes the configuration. Since 2023-07-17.
  *
  * - Spec: `commands.add_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/add_station.md`
+ * - 文档：`docs-site/reference/commands/add_station.md`
+ * - Docs: `docs-site/en/reference/commands/add_station.md`
  */
 export interface AddStationRequest {
   /**
@@ -253,7 +260,8 @@ export interface AddStationRequest {
  * Add a station: response
  *
  * - Spec: `commands.add_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/add_station.md`
+ * - 文档：`docs-site/reference/commands/add_station.md`
+ * - Docs: `docs-site/en/reference/commands/add_station.md`
  */
 export interface AddStationResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -271,7 +279,8 @@ export interface AddStationResponse {
  * Code 0x0304. Changes the configuration. Since 2023-10-13.
  *
  * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/delete_station.md`
+ * - 文档：`docs-site/reference/commands/delete_station.md`
+ * - Docs: `docs-site/en/reference/commands/delete_station.md`
  */
 export interface DeleteStationRequest {
   /**
@@ -309,7 +318,8 @@ export interface DeleteStationRequest {
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/delete_station.md`
+ * - 文档：`docs-site/reference/commands/delete_station.md`
+ * - Docs: `docs-site/en/reference/commands/delete_station.md`
  */
 export interface DeleteStationResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -323,7 +333,8 @@ export interface DeleteStationResponse {
  * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/rename_station.md`
+ * - 文档：`docs-site/reference/commands/rename_station.md`
+ * - Docs: `docs-site/en/reference/commands/rename_station.md`
  */
 export interface RenameStationRequest {
   /**
@@ -369,7 +380,8 @@ export interface RenameStationRequest {
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/rename_station.md`
+ * - 文档：`docs-site/reference/commands/rename_station.md`
+ * - Docs: `docs-site/en/reference/commands/rename_station.md`
  */
 export interface RenameStationResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -383,7 +395,8 @@ export interface RenameStationResponse {
  * No code yet: types only. Only reads, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.list_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/list_stations.md`
+ * - 文档：`docs-site/reference/commands/list_stations.md`
+ * - Docs: `docs-site/en/reference/commands/list_stations.md`
  */
 export interface ListStationsRequest {
   /**
@@ -417,7 +430,8 @@ export interface ListStationsRequest {
  * List the stations of a map: response
  *
  * - Spec: `commands.list_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/list_stations.md`
+ * - 文档：`docs-site/reference/commands/list_stations.md`
+ * - Docs: `docs-site/en/reference/commands/list_stations.md`
  */
 export interface ListStationsResponse {
   /**
@@ -445,7 +459,8 @@ export interface ListStationsResponse {
  * No code yet: types only. Only reads. Since 2024-01-29.
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 export interface GetCurrentStationRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -457,7 +472,8 @@ export interface GetCurrentStationRequest {
  * Get the station the robot is at: response
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 export interface GetCurrentStationResponse {
   /**
@@ -479,7 +495,8 @@ export interface GetCurrentStationResponse {
  * `data` of {@link GetCurrentStationResponse}.
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 export interface GetCurrentStationResponseData {
   /**
@@ -528,7 +545,8 @@ export interface GetCurrentStationResponseData {
  * No code yet: types only. Since 2024-01-29.
  *
  * - Spec: `reports.station_reached` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/reports/station_reached.md`
+ * - 文档：`docs-site/reference/reports/station_reached.md`
+ * - Docs: `docs-site/en/reference/reports/station_reached.md`
  */
 export interface StationReached {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -536,11 +554,12 @@ export interface StationReached {
 }
 
 /**
- * 主动上报机器人抵达站点：确认
+ * 主动上报机器人抵达站点：应答
  * Station reached: acknowledgement
  *
  * - Spec: `reports.station_reached` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/reports/station_reached.md`
+ * - 文档：`docs-site/reference/reports/station_reached.md`
+ * - Docs: `docs-site/en/reference/reports/station_reached.md`
  */
 export interface StationReachedAck {
   /**
@@ -560,7 +579,8 @@ export interface StationReachedAck {
  * Position of a station relative to the elevator
  *
  * - Spec: `types.StationPos` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -605,7 +625,8 @@ export const StationPos = {
  * A station in the list
  *
  * - Spec: `types.ListedStation` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface ListedStation {
   /**
@@ -674,7 +695,7 @@ export interface ListedStation {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface StationCalls {
   /**
    * 根据站点 ID 获取站点信息
@@ -683,7 +704,8 @@ export interface StationCalls {
    * Code 0x0A03. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/get_station.md`
+   * - 文档：`docs-site/reference/commands/get_station.md`
+   * - Docs: `docs-site/en/reference/commands/get_station.md`
    */
   getStation(request: GetStationRequest, options?: CallOptions): Promise<GetStationResponse>
 
@@ -699,7 +721,8 @@ export interface StationCalls {
    * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+   * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+   * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
    */
   uploadMapStations(request?: UploadMapStationsRequest, options?: CallOptions): Promise<UploadMapStationsResponse>
 
@@ -714,7 +737,8 @@ export interface StationCalls {
    * Code 0x0302. Changes the configuration. Since 2023-07-17.
    *
    * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/add_station.md`
+   * - 文档：`docs-site/reference/commands/add_station.md`
+   * - Docs: `docs-site/en/reference/commands/add_station.md`
    */
   addStation(request: AddStationRequest, options?: CallOptions): Promise<AddStationResponse>
 
@@ -725,7 +749,8 @@ export interface StationCalls {
    * Code 0x0304. Changes the configuration. Since 2023-10-13.
    *
    * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/delete_station.md`
+   * - 文档：`docs-site/reference/commands/delete_station.md`
+   * - Docs: `docs-site/en/reference/commands/delete_station.md`
    */
   deleteStation(request: DeleteStationRequest, options?: CallOptions): Promise<DeleteStationResponse>
 
@@ -736,12 +761,13 @@ export interface StationCalls {
    * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
    *
    * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/rename_station.md`
+   * - 文档：`docs-site/reference/commands/rename_station.md`
+   * - Docs: `docs-site/en/reference/commands/rename_station.md`
    */
   renameStation(request: RenameStationRequest, options?: CallOptions): Promise<RenameStationResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface StationRobot {
   /**
    * 根据站点 ID 获取站点信息
@@ -750,7 +776,8 @@ export interface StationRobot {
    * Code 0x0A03. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/get_station.md`
+   * - 文档：`docs-site/reference/commands/get_station.md`
+   * - Docs: `docs-site/en/reference/commands/get_station.md`
    */
   getStation(request: GetStationRequest, context: Context): Answer<GetStationResponse>
 
@@ -766,7 +793,8 @@ export interface StationRobot {
    * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+   * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+   * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
    */
   uploadMapStations(request: UploadMapStationsRequest, context: Context): Answer<UploadMapStationsResponse>
 
@@ -781,7 +809,8 @@ export interface StationRobot {
    * Code 0x0302. Changes the configuration. Since 2023-07-17.
    *
    * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/add_station.md`
+   * - 文档：`docs-site/reference/commands/add_station.md`
+   * - Docs: `docs-site/en/reference/commands/add_station.md`
    */
   addStation(request: AddStationRequest, context: Context): Answer<AddStationResponse>
 
@@ -792,7 +821,8 @@ export interface StationRobot {
    * Code 0x0304. Changes the configuration. Since 2023-10-13.
    *
    * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/delete_station.md`
+   * - 文档：`docs-site/reference/commands/delete_station.md`
+   * - Docs: `docs-site/en/reference/commands/delete_station.md`
    */
   deleteStation(request: DeleteStationRequest, context: Context): Answer<DeleteStationResponse>
 
@@ -803,7 +833,8 @@ export interface StationRobot {
    * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
    *
    * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-   * - Docs: `docs-site/reference/commands/rename_station.md`
+   * - 文档：`docs-site/reference/commands/rename_station.md`
+   * - Docs: `docs-site/en/reference/commands/rename_station.md`
    */
   renameStation(request: RenameStationRequest, context: Context): Answer<RenameStationResponse>
 }

@@ -24,7 +24,8 @@ import type { Acknowledgement, Answer, Audience, CallOptions, Context, Extra, Re
  * Code 0x0A0C. Only reads, inferred.
  *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/list_faults.md`
+ * - 文档：`docs-site/reference/commands/list_faults.md`
+ * - Docs: `docs-site/en/reference/commands/list_faults.md`
  */
 export interface ListFaultsRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -36,7 +37,8 @@ export interface ListFaultsRequest {
  * List the faults: response
  *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/list_faults.md`
+ * - 文档：`docs-site/reference/commands/list_faults.md`
+ * - Docs: `docs-site/en/reference/commands/list_faults.md`
  */
 export interface ListFaultsResponse {
   /**
@@ -61,7 +63,8 @@ export interface ListFaultsResponse {
  * Code 0x0A0D. Only reads, inferred.
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/get_self_check.md`
+ * - 文档：`docs-site/reference/commands/get_self_check.md`
+ * - Docs: `docs-site/en/reference/commands/get_self_check.md`
  */
 export interface GetSelfCheckRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -73,7 +76,8 @@ export interface GetSelfCheckRequest {
  * Get the result of the self-check: response
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/get_self_check.md`
+ * - 文档：`docs-site/reference/commands/get_self_check.md`
+ * - Docs: `docs-site/en/reference/commands/get_self_check.md`
  */
 export interface GetSelfCheckResponse {
   /**
@@ -97,7 +101,8 @@ export interface GetSelfCheckResponse {
  * Code 0x0342. Since 2023-05.
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 export interface RobotStatus {
   /**
@@ -117,7 +122,8 @@ export interface RobotStatus {
  * `data` of {@link RobotStatus}.
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 export interface RobotStatusData {
   /**
@@ -154,11 +160,12 @@ export interface RobotStatusData {
 }
 
 /**
- * 主动上报机器人状态：确认
+ * 主动上报机器人状态：应答
  * Status of the robot: acknowledgement
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 export interface RobotStatusAck {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -176,7 +183,8 @@ export interface RobotStatusAck {
  * MAPPING, IDLE, RECHARGE, TASK, PARKING, RECOVER and BROKEN. Any other value is kept as it is.
  *
  * - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -243,7 +251,8 @@ export const UpperStatus = {
  * The constants in the source: NO_LOWER_STATUS, MOVING, ARRIVED, ENTER_ELEV and EXIT_ELEV.
  *
  * - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -288,7 +297,8 @@ export const LowerStatus = {
  * A fault
  *
  * - Spec: `types.Fault` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface Fault {
   /**
@@ -366,7 +376,8 @@ export interface Fault {
  * Level of a fault
  *
  * - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -399,7 +410,8 @@ export const FaultLevel = {
  * Result of one item of the self-check
  *
  * - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface SelfCheckItem {
   /**
@@ -437,7 +449,8 @@ export interface SelfCheckItem {
  * Item of the self-check
  *
  * - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -482,7 +495,8 @@ export const SelfCheckName = {
  * State of an item of the self-check
  *
  * - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -510,7 +524,7 @@ export const SelfCheckStatus = {
   Abnormal: 'status_abnormal',
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface StatusCalls {
   /**
    * 获取异常列表
@@ -523,7 +537,8 @@ export interface StatusCalls {
    * Code 0x0A0C. Only reads, inferred.
    *
    * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-   * - Docs: `docs-site/reference/commands/list_faults.md`
+   * - 文档：`docs-site/reference/commands/list_faults.md`
+   * - Docs: `docs-site/en/reference/commands/list_faults.md`
    */
   listFaults(request?: ListFaultsRequest, options?: CallOptions): Promise<ListFaultsResponse>
 
@@ -539,12 +554,13 @@ export interface StatusCalls {
    * Code 0x0A0D. Only reads, inferred.
    *
    * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-   * - Docs: `docs-site/reference/commands/get_self_check.md`
+   * - 文档：`docs-site/reference/commands/get_self_check.md`
+   * - Docs: `docs-site/en/reference/commands/get_self_check.md`
    */
   getSelfCheck(request?: GetSelfCheckRequest, options?: CallOptions): Promise<GetSelfCheckResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type StatusReport =
   /**
    * 主动上报机器人状态
@@ -552,7 +568,7 @@ export type StatusReport =
    */
   Reported<'RobotStatus', RobotStatus>
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface StatusRobot {
   /**
    * 获取异常列表
@@ -565,7 +581,8 @@ export interface StatusRobot {
    * Code 0x0A0C. Only reads, inferred.
    *
    * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-   * - Docs: `docs-site/reference/commands/list_faults.md`
+   * - 文档：`docs-site/reference/commands/list_faults.md`
+   * - Docs: `docs-site/en/reference/commands/list_faults.md`
    */
   listFaults(request: ListFaultsRequest, context: Context): Answer<ListFaultsResponse>
 
@@ -581,7 +598,8 @@ export interface StatusRobot {
    * Code 0x0A0D. Only reads, inferred.
    *
    * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-   * - Docs: `docs-site/reference/commands/get_self_check.md`
+   * - 文档：`docs-site/reference/commands/get_self_check.md`
+   * - Docs: `docs-site/en/reference/commands/get_self_check.md`
    */
   getSelfCheck(request: GetSelfCheckRequest, context: Context): Answer<GetSelfCheckResponse>
 }
@@ -595,7 +613,7 @@ export interface StatusExamples {
   getSelfCheck(): GetSelfCheckResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface StatusReporter {
   /**
    * 主动上报机器人状态
@@ -607,10 +625,11 @@ export interface StatusReporter {
    *
    * Code 0x0342. Since 2023-05.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-   * - Docs: `docs-site/reference/reports/robot_status.md`
+   * - 文档：`docs-site/reference/reports/robot_status.md`
+   * - Docs: `docs-site/en/reference/reports/robot_status.md`
    */
   robotStatus(report: RobotStatus, audience?: Audience): Promise<Acknowledgement[]>
 }

@@ -3,7 +3,7 @@
 /**
  * 消息类型的描述，运行库据此读写；编译器检查它与类型一致。
  *
- * What reader and writer know of the message types; the compiler holds each to its type.
+ * Schemas of the message types for the reader and the writer. The compiler checks each against its type.
  *
  * @module
  */

@@ -32,7 +32,8 @@ import type { Acknowledgement, Answer, Audience, CallOptions, Context, Extra, Re
  * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
  *
  * - Spec: `commands.create_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/create_task.md`
+ * - 文档：`docs-site/reference/commands/create_task.md`
+ * - Docs: `docs-site/en/reference/commands/create_task.md`
  */
 export interface CreateTaskRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -44,7 +45,8 @@ export interface CreateTaskRequest {
  * Create a patrol or delivery task: response
  *
  * - Spec: `commands.create_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/create_task.md`
+ * - 文档：`docs-site/reference/commands/create_task.md`
+ * - Docs: `docs-site/en/reference/commands/create_task.md`
  */
 export interface CreateTaskResponse {
   /**
@@ -84,7 +86,8 @@ export interface CreateTaskResponse {
  * No code yet: types only. Moves the robot. Since 2023-10.
  *
  * - Spec: `commands.execute_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/execute_task.md`
+ * - 文档：`docs-site/reference/commands/execute_task.md`
+ * - Docs: `docs-site/en/reference/commands/execute_task.md`
  */
 export interface ExecuteTaskRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -96,7 +99,8 @@ export interface ExecuteTaskRequest {
  * Execute a task: response
  *
  * - Spec: `commands.execute_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/execute_task.md`
+ * - 文档：`docs-site/reference/commands/execute_task.md`
+ * - Docs: `docs-site/en/reference/commands/execute_task.md`
  */
 export interface ExecuteTaskResponse {
   /**
@@ -130,7 +134,8 @@ export interface ExecuteTaskResponse {
  * Code 0x0353. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_status.md`
+ * - 文档：`docs-site/reference/commands/get_task_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_status.md`
  */
 export interface GetTaskStatusRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -146,7 +151,8 @@ export interface GetTaskStatusRequest {
  * Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
  *
  * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_status.md`
+ * - 文档：`docs-site/reference/commands/get_task_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_status.md`
  */
 export interface GetTaskStatusResponse {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -166,7 +172,8 @@ export interface GetTaskStatusResponse {
  * No code yet: types only. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_history.md`
+ * - 文档：`docs-site/reference/commands/get_task_history.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_history.md`
  */
 export interface GetTaskHistoryRequest {
   /**
@@ -186,7 +193,8 @@ export interface GetTaskHistoryRequest {
  * Get a task's execution history: response
  *
  * - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_history.md`
+ * - 文档：`docs-site/reference/commands/get_task_history.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_history.md`
  */
 export interface GetTaskHistoryResponse {
   /**
@@ -249,7 +257,8 @@ export interface GetTaskHistoryResponse {
  * Code 0x0341. Since 2023-05.
  *
  * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+ * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+ * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
  */
 export interface ObstacleAnnouncement {
   /**
@@ -265,11 +274,12 @@ export interface ObstacleAnnouncement {
 }
 
 /**
- * 遇障语音播报：确认
+ * 遇障语音播报：应答
  * Voice announcement of an obstacle: acknowledgement
  *
  * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+ * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+ * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
  */
 export interface ObstacleAnnouncementAck {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -292,7 +302,8 @@ export interface ObstacleAnnouncementAck {
  * Code 0x0340, inferred. Since 2023-05.
  *
  * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/target_reached.md`
+ * - 文档：`docs-site/reference/reports/target_reached.md`
+ * - Docs: `docs-site/en/reference/reports/target_reached.md`
  */
 export interface TargetReached {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -300,11 +311,12 @@ export interface TargetReached {
 }
 
 /**
- * 到达目标点通知上报：确认
+ * 到达目标点通知上报：应答
  * Target reached: acknowledgement
  *
  * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/target_reached.md`
+ * - 文档：`docs-site/reference/reports/target_reached.md`
+ * - Docs: `docs-site/en/reference/reports/target_reached.md`
  */
 export interface TargetReachedAck {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -323,7 +335,8 @@ export interface TargetReachedAck {
  * Code 0x0345. Since 2024-01-29.
  *
  * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/task_progress.md`
+ * - 文档：`docs-site/reference/reports/task_progress.md`
+ * - Docs: `docs-site/en/reference/reports/task_progress.md`
  */
 export interface TaskProgress {
   /**
@@ -339,7 +352,7 @@ export interface TaskProgress {
 }
 
 /**
- * 上报机器人任务进度：确认
+ * 上报机器人任务进度：应答
  * Task progress: acknowledgement
  *
  * 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -348,7 +361,8 @@ export interface TaskProgress {
  * taken to be the envelope alone.
  *
  * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/task_progress.md`
+ * - 文档：`docs-site/reference/reports/task_progress.md`
+ * - Docs: `docs-site/en/reference/reports/task_progress.md`
  */
 export interface TaskProgressAck {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -360,7 +374,8 @@ export interface TaskProgressAck {
  * Status of a task or of one of its stations
  *
  * - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -393,7 +408,8 @@ export const TaskStatus = {
  * Record of one station of a task
  *
  * - Spec: `types.TaskStation` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface TaskStation {
   /**
@@ -464,7 +480,8 @@ export interface TaskStation {
  * entering (6), riding (4), leaving (7).
  *
  * - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -522,7 +539,7 @@ export const TaskProcess = {
   LeavingElevator: 7,
 } as const
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface TaskCalls {
   /**
    * 创建巡游/送物任务
@@ -537,7 +554,8 @@ export interface TaskCalls {
    * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
    *
    * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/commands/create_task.md`
+   * - 文档：`docs-site/reference/commands/create_task.md`
+   * - Docs: `docs-site/en/reference/commands/create_task.md`
    */
   createTask(request?: CreateTaskRequest, options?: CallOptions): Promise<CreateTaskResponse>
 
@@ -548,12 +566,13 @@ export interface TaskCalls {
    * Code 0x0353. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/commands/get_task_status.md`
+   * - 文档：`docs-site/reference/commands/get_task_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_task_status.md`
    */
   getTaskStatus(request?: GetTaskStatusRequest, options?: CallOptions): Promise<GetTaskStatusResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type TaskReport =
   /**
    * 遇障语音播报
@@ -571,7 +590,7 @@ export type TaskReport =
    */
   | Reported<'TaskProgress', TaskProgress>
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface TaskRobot {
   /**
    * 创建巡游/送物任务
@@ -586,7 +605,8 @@ export interface TaskRobot {
    * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
    *
    * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/commands/create_task.md`
+   * - 文档：`docs-site/reference/commands/create_task.md`
+   * - Docs: `docs-site/en/reference/commands/create_task.md`
    */
   createTask(request: CreateTaskRequest, context: Context): Answer<CreateTaskResponse>
 
@@ -597,7 +617,8 @@ export interface TaskRobot {
    * Code 0x0353. Only reads. Since 2023-05.
    *
    * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/commands/get_task_status.md`
+   * - 文档：`docs-site/reference/commands/get_task_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_task_status.md`
    */
   getTaskStatus(request: GetTaskStatusRequest, context: Context): Answer<GetTaskStatusResponse>
 }
@@ -611,7 +632,7 @@ export interface TaskExamples {
   getTaskStatus(): GetTaskStatusResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface TaskReporter {
   /**
    * 遇障语音播报
@@ -624,10 +645,11 @@ export interface TaskReporter {
    *
    * Code 0x0341. Since 2023-05.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+   * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+   * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
    */
   obstacleAnnouncement(report: ObstacleAnnouncement, audience?: Audience): Promise<Acknowledgement[]>
 
@@ -641,10 +663,11 @@ export interface TaskReporter {
    *
    * Code 0x0340, inferred. Since 2023-05.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/reports/target_reached.md`
+   * - 文档：`docs-site/reference/reports/target_reached.md`
+   * - Docs: `docs-site/en/reference/reports/target_reached.md`
    */
   targetReached(report: TargetReached, audience?: Audience): Promise<Acknowledgement[]>
 
@@ -659,10 +682,11 @@ export interface TaskReporter {
    *
    * Code 0x0345. Since 2024-01-29.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-   * - Docs: `docs-site/reference/reports/task_progress.md`
+   * - 文档：`docs-site/reference/reports/task_progress.md`
+   * - Docs: `docs-site/en/reference/reports/task_progress.md`
    */
   taskProgress(report: TaskProgress, audience?: Audience): Promise<Acknowledgement[]>
 }

@@ -26,7 +26,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
  */
 export interface Unnamed0309Request {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -42,7 +43,8 @@ export interface Unnamed0309Request {
  * Open: The response is lost; its label runs straight into section 9.
  *
  * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
  */
 export interface Unnamed0309Response {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -61,7 +63,8 @@ export interface Unnamed0309Response {
  * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
  */
 export interface Unnamed0460Request {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -73,14 +76,15 @@ export interface Unnamed0460Request {
  * Unnamed command (0x0460): response
  *
  * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
  */
 export interface Unnamed0460Response {
   /** 其他键，原样保留。Other keys, kept unchanged. */
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface UnnamedCalls {
   /**
    * 未命名指令（0x0309）
@@ -95,7 +99,8 @@ export interface UnnamedCalls {
    * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-   * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+   * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+   * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
    */
   unnamed0309(request?: Unnamed0309Request, options?: CallOptions): Promise<Unnamed0309Response>
 
@@ -111,12 +116,13 @@ export interface UnnamedCalls {
    * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-   * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+   * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+   * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
    */
   unnamed0460(request?: Unnamed0460Request, options?: CallOptions): Promise<Unnamed0460Response>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface UnnamedRobot {
   /**
    * 未命名指令（0x0309）
@@ -131,7 +137,8 @@ export interface UnnamedRobot {
    * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-   * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+   * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+   * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
    */
   unnamed0309(request: Unnamed0309Request, context: Context): Answer<Unnamed0309Response>
 
@@ -147,7 +154,8 @@ export interface UnnamedRobot {
    * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
    *
    * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-   * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+   * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+   * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
    */
   unnamed0460(request: Unnamed0460Request, context: Context): Answer<Unnamed0460Response>
 }

@@ -27,7 +27,8 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * Code 0x0204. Only reads.
  *
  * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+ * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
  */
 export interface GetUpperBodyStatusRequest {
   /** 其他键，原样保留。Other keys, kept unchanged. */
@@ -39,7 +40,8 @@ export interface GetUpperBodyStatusRequest {
  * Get the upper body's status: response
  *
  * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+ * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
  */
 export interface GetUpperBodyStatusResponse {
   /**
@@ -75,7 +77,8 @@ export interface GetUpperBodyStatusResponse {
  * Status of the push rod
  *
  * - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -102,7 +105,8 @@ export const PushRodStatus = {
  * Status of a door lock
  *
  * - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  *
  * 其他值原样保留。
  * Any other value is kept unchanged.
@@ -129,7 +133,8 @@ export const DoorLockStatus = {
  * Status of one door lock
  *
  * - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 export interface DoorLockInfo {
   /**
@@ -152,7 +157,7 @@ export interface DoorLockInfo {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface UpperBodyCalls {
   /**
    * 查询上装
@@ -167,12 +172,13 @@ export interface UpperBodyCalls {
    * Code 0x0204. Only reads.
    *
    * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-   * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+   * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
    */
   getUpperBodyStatus(request?: GetUpperBodyStatusRequest, options?: CallOptions): Promise<GetUpperBodyStatusResponse>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface UpperBodyRobot {
   /**
    * 查询上装
@@ -187,7 +193,8 @@ export interface UpperBodyRobot {
    * Code 0x0204. Only reads.
    *
    * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-   * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+   * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+   * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
    */
   getUpperBodyStatus(request: GetUpperBodyStatusRequest, context: Context): Answer<GetUpperBodyStatusResponse>
 }

@@ -149,7 +149,7 @@ export interface Seen {
 }
 
 /**
- * 看到：确认
+ * 看到：应答
  * Somebody was seen: acknowledgement
  *
  * Spec: `reports.seen` in `spec/commands/place.yaml`.
@@ -159,7 +159,7 @@ export interface SeenAck {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface PlaceCalls {
   /**
    * 定位
@@ -177,7 +177,7 @@ export interface PlaceCalls {
    *
    * Code 0x0002. Changes the configuration. May be refused with `5`.
    *
-   * `CallError.declared` says which {@link BlinkError} it was.
+   * `CallError.declared` returns the {@link BlinkError} of a refused call.
    *
    * Spec: `commands.blink` in `spec/commands/place.yaml`.
    */
@@ -194,7 +194,7 @@ export interface PlaceCalls {
   sound(request?: SoundRequest, options?: CallOptions): Promise<SoundResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type PlaceReport =
   /**
    * 看到
@@ -202,7 +202,7 @@ export type PlaceReport =
    */
   Reported<'Seen', Seen>
 
-/** 本组的数据流，从 app 一侧看：`Streams` 的方法。The streams of the group on the app's side: methods of `Streams`. */
+/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */
 export interface PlaceStreams {
   /**
    * 画面
@@ -215,7 +215,7 @@ export interface PlaceStreams {
   subscribeSight(): Subscription<Uint8Array>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface PlaceRobot {
   /**
    * 定位
@@ -262,7 +262,7 @@ export interface PlaceExamples {
   sound(request: SoundRequest, context: Context): SoundResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface PlaceReporter {
   /**
    * 看到
@@ -270,14 +270,14 @@ export interface PlaceReporter {
    *
    * Code 0x0100.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.seen` in `spec/commands/place.yaml`.
    */
   seen(report: Seen, audience?: Audience): Promise<Acknowledgement[]>
 }
 
-/** 本组由机器人发送的数据流：`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */
+/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */
 export interface PlaceStreamer {
   /**
    * 画面

@@ -197,8 +197,8 @@ export interface SetTariffResponse {
  * 合闸：请求
  * Close the switch: request
  *
- * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. To be sent first: `read_power`.
- * May be refused with `20`. Only for `installer_app`.
+ * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. Send first: `read_power`. May be
+ * refused with `20`. Only for `installer_app`.
  *
  * 先看有没有电压。
  *
@@ -332,7 +332,7 @@ export interface PowerLost {
 }
 
 /**
- * 停电：确认
+ * 停电：应答
  * The power is gone: acknowledgement
  *
  * Spec: `reports.power_lost` in `spec/commands/power.yaml`.
@@ -424,7 +424,7 @@ export interface SwitchMoved {
 }
 
 /**
- * 开关动作：确认
+ * 开关动作：应答
  * The switch has moved: acknowledgement
  *
  * Spec: `reports.switch_moved` in `spec/commands/power.yaml`.
@@ -454,7 +454,7 @@ export interface PowerRead {
 }
 
 /**
- * 电能读数：确认
+ * 电能读数：应答
  * Reading of the power: acknowledgement
  *
  * Spec: `reports.power_read` in `spec/commands/power.yaml`.
@@ -505,7 +505,7 @@ export interface PriceMovedData {
 }
 
 /**
- * 价格变动：确认
+ * 价格变动：应答
  * The price has moved: acknowledgement
  *
  * Spec: `reports.price_moved` in `spec/commands/power.yaml`.
@@ -535,7 +535,7 @@ export interface TariffSet {
 }
 
 /**
- * 费率已生效：确认
+ * 费率已生效：应答
  * The tariff is in force: acknowledgement
  *
  * Spec: `reports.tariff_set` in `spec/commands/power.yaml`.
@@ -734,7 +734,7 @@ export interface Phase {
   extra?: Extra | undefined
 }
 
-/** 本组的指令，从 app 一侧调用：`Client` 的方法。The commands of the group as an app calls them: methods of `Client`. */
+/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */
 export interface PowerCalls {
   /**
    * 读取电能
@@ -756,18 +756,18 @@ export interface PowerCalls {
    *
    * `18`: The band does not have this price
    *
-   * `CallError.declared` says which {@link SetTariffError} it was.
+   * `CallError.declared` returns the {@link SetTariffError} of a refused call.
    *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link TariffSet}。
-   * `.follow()` gives the response, and then each {@link TariffSet} that it sets off.
+   * `.follow()`：先返回响应，再逐个返回它引起的 {@link TariffSet}。
+   * `.follow()` returns the response, and then each {@link TariffSet} that the command sets off.
    *
-   * 没有写明哪个状态是终态：要由 app 停止。
+   * 规范没有写明终态：由 app 停止。
    *
-   * No state is said to be final: the app has to stop it.
+   * The spec marks no state as final. The app stops it.
    *
-   * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+   * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
    *
-   * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+   * No key ties a report to a call: reports of this kind from other calls arrive as well.
    *
    * Spec: `commands.set_tariff` in `spec/commands/power.yaml`.
    */
@@ -777,8 +777,8 @@ export interface PowerCalls {
    * 合闸
    * Close the switch
    *
-   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. To be sent first: `read_power`.
-   * May be refused with `20`. Only for `installer_app`.
+   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. Send first: `read_power`. May
+   * be refused with `20`. Only for `installer_app`.
    *
    * 先看有没有电压。
    *
@@ -788,18 +788,18 @@ export interface PowerCalls {
    *
    * `20`: Somebody has locked the switch on site
    *
-   * `CallError.declared` says which {@link CloseSwitchError} it was.
+   * `CallError.declared` returns the {@link CloseSwitchError} of a refused call.
    *
-   * `.follow()`：先取得响应，再逐个取得它引起的 {@link SwitchMoved}。
-   * `.follow()` gives the response, and then each {@link SwitchMoved} that it sets off.
+   * `.follow()`：先返回响应，再逐个返回它引起的 {@link SwitchMoved}。
+   * `.follow()` returns the response, and then each {@link SwitchMoved} that the command sets off.
    *
    * `switch` 到达终态，或 `switch` 表示失败时结束。
    *
-   * It ends with a final state in `switch`, or when `switch` says that something failed.
+   * It ends at a final state in `switch`, or when `switch` reports a failure.
    *
    * 只收到属于这次调用的上报：`response.job` = `job`。
    *
-   * Only reports that belong to the call come: `response.job` = `job`.
+   * Only reports of this call arrive: `response.job` = `job`.
    *
    * Spec: `commands.close_switch` in `spec/commands/power.yaml`.
    */
@@ -816,7 +816,7 @@ export interface PowerCalls {
   watchLoad(request: WatchLoadRequest, options?: CallOptions): Promise<WatchLoadResponse>
 }
 
-/** 本组的任意一个上报，`case` 说明是哪一种。Any report of the group: `case` tells which. */
+/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */
 export type PowerReport =
   /**
    * 停电
@@ -844,7 +844,7 @@ export type PowerReport =
    */
   | Reported<'TariffSet', TariffSet>
 
-/** 本组的数据流，从 app 一侧看：`Streams` 的方法。The streams of the group on the app's side: methods of `Streams`. */
+/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */
 export interface PowerStreams {
   /**
    * 波形
@@ -887,7 +887,7 @@ export interface PowerStreams {
   sendReadings(id: number, content: Readings): Promise<void>
 }
 
-/** 本组的指令，在机器人一侧处理：`Robot` 的方法。The commands of the group as a robot handles them: methods of `Robot`. */
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
 export interface PowerRobot {
   /**
    * 读取电能
@@ -919,8 +919,8 @@ export interface PowerRobot {
    * 合闸
    * Close the switch
    *
-   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. To be sent first: `read_power`.
-   * May be refused with `20`. Only for `installer_app`.
+   * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. Send first: `read_power`. May
+   * be refused with `20`. Only for `installer_app`.
    *
    * 先看有没有电压。
    *
@@ -962,7 +962,7 @@ export interface PowerExamples {
   watchLoad(): WatchLoadResponse
 }
 
-/** 本组的上报，由机器人发出：`Reporter` 的方法。The reports of the group as a robot pushes them: methods of `Reporter`. */
+/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */
 export interface PowerReporter {
   /**
    * 停电
@@ -970,7 +970,7 @@ export interface PowerReporter {
    *
    * Code 0x2001.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.power_lost` in `spec/commands/power.yaml`.
    */
@@ -982,7 +982,7 @@ export interface PowerReporter {
    *
    * Code 0x2002. Sent at each change of `switch`.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.switch_moved` in `spec/commands/power.yaml`.
    */
@@ -994,7 +994,7 @@ export interface PowerReporter {
    *
    * Code 0x2003. Sent every 1000 ms.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.power_read` in `spec/commands/power.yaml`.
    */
@@ -1006,7 +1006,7 @@ export interface PowerReporter {
    *
    * Code 0x2004. Sent at each step of 0.5 of `data.price`.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.price_moved` in `spec/commands/power.yaml`.
    */
@@ -1018,14 +1018,14 @@ export interface PowerReporter {
    *
    * Code 0x2005. Sent within 500 ms of a command that sets it off.
    *
-   * Resolves to what became of it at each app.
+   * Resolves to the outcome at each app.
    *
    * Spec: `reports.tariff_set` in `spec/commands/power.yaml`.
    */
   tariffSet(report: TariffSet, audience?: Audience): Promise<Acknowledgement[]>
 }
 
-/** 本组由机器人发送的数据流：`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */
+/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */
 export interface PowerStreamer {
   /**
    * 波形

@@ -29,7 +29,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class IotDeviceType {
  public:
   /// 规范中的值。The values of the spec.
@@ -57,9 +58,9 @@ class IotDeviceType {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit IotDeviceType(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const IotDeviceType& left, const IotDeviceType& right) {
@@ -73,7 +74,7 @@ class IotDeviceType {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const IotDeviceType& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const IotDeviceType& value);
 
@@ -83,7 +84,8 @@ std::ostream& operator<<(std::ostream& out, const IotDeviceType& value);
 /// `data` of `ListIotDevicesRequest`.
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 struct ListIotDevicesRequestData {
   /// 设备类型
   /// Type of the devices
@@ -104,7 +106,8 @@ std::ostream& operator<<(std::ostream& out, const ListIotDevicesRequestData& mes
 /// An IoT device
 ///
 /// - Spec: `types.IotDevice` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct IotDevice {
   /// 设备地址；源文档没有注释，格式未知
   /// Address of the device; not explained in the source, its format is unknown
@@ -133,7 +136,8 @@ std::ostream& operator<<(std::ostream& out, const IotDevice& message);
 /// List the IoT devices of a type: response
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 struct ListIotDevicesResponse {
   /// 该类型的设备
   /// The devices of that type
@@ -157,7 +161,8 @@ std::ostream& operator<<(std::ostream& out, const ListIotDevicesResponse& messag
 /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+/// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+/// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
 struct ListIotDevicesRequest {
   /// 业务数据
   /// Payload
@@ -174,7 +179,8 @@ std::ostream& operator<<(std::ostream& out, const ListIotDevicesRequest& message
 /// Get the floors: response
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/get_floors.md`
+/// - 文档：`docs-site/reference/commands/get_floors.md`
+/// - Docs: `docs-site/en/reference/commands/get_floors.md`
 struct GetFloorsResponse {
   /// 楼层的数量
   /// Number of floors
@@ -211,7 +217,8 @@ std::ostream& operator<<(std::ostream& out, const GetFloorsResponse& message);
 /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-/// - Docs: `docs-site/reference/commands/get_floors.md`
+/// - 文档：`docs-site/reference/commands/get_floors.md`
+/// - Docs: `docs-site/en/reference/commands/get_floors.md`
 struct GetFloorsRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -253,8 +260,8 @@ extern template struct Codec<fc::GetFloorsRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class BuildingCalls {
  public:
@@ -269,7 +276,8 @@ class BuildingCalls {
   /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
   ///
   /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+  /// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+  /// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
   fc_runtime::Called<ListIotDevicesResponse> list_iot_devices(
       const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -284,12 +292,13 @@ class BuildingCalls {
   /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/get_floors.md`
+  /// - 文档：`docs-site/reference/commands/get_floors.md`
+  /// - Docs: `docs-site/en/reference/commands/get_floors.md`
   fc_runtime::Called<GetFloorsResponse> get_floors(
       const GetFloorsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<ListIotDevicesResponse> BuildingCalls<Self>::list_iot_devices(const ListIotDevicesRequest& request, const fc_runtime::CallOptions& options) const {
@@ -316,7 +325,8 @@ class BuildingRobot {
   /// Code 0x0A07. Only reads, inferred. Since 2023-10-13.
   ///
   /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/list_iot_devices.md`
+  /// - 文档：`docs-site/reference/commands/list_iot_devices.md`
+  /// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
   virtual fc_runtime::Replied<ListIotDevicesResponse> list_iot_devices(
       const fc_runtime::Context& context, const ListIotDevicesRequest& request) = 0;
 
@@ -331,17 +341,18 @@ class BuildingRobot {
   /// Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-  /// - Docs: `docs-site/reference/commands/get_floors.md`
+  /// - 文档：`docs-site/reference/commands/get_floors.md`
+  /// - Docs: `docs-site/en/reference/commands/get_floors.md`
   virtual fc_runtime::Replied<GetFloorsResponse> get_floors(const fc_runtime::Context& context,
                                                             const GetFloorsRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~BuildingRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class BuildingDefaults : public Base {
  public:

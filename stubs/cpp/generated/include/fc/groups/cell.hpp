@@ -26,7 +26,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class CellLocation {
  public:
   /// 规范中的值。The values of the spec.
@@ -66,9 +67,9 @@ class CellLocation {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit CellLocation(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const CellLocation& left, const CellLocation& right) {
@@ -82,7 +83,7 @@ class CellLocation {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const CellLocation& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const CellLocation& value);
 
@@ -99,7 +100,8 @@ std::ostream& operator<<(std::ostream& out, const CellLocation& value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.CellType` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class CellType : std::uint8_t {
   /// 小格口
   /// Small
@@ -112,7 +114,7 @@ enum class CellType : std::uint8_t {
   Large = 3,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(CellType value) noexcept;
 std::ostream& operator<<(std::ostream& out, CellType value);
 
@@ -120,7 +122,8 @@ std::ostream& operator<<(std::ostream& out, CellType value);
 /// A compartment of the current configuration
 ///
 /// - Spec: `types.Cell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct Cell {
   /// 格口的物理位置；源文档印出的响应中没有
   /// Physical location of the compartment; missing from the printed response
@@ -161,7 +164,8 @@ std::ostream& operator<<(std::ostream& out, const Cell& message);
 /// `data` of `GetCellConfigResponse`.
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 struct GetCellConfigResponseData {
   /// 格口数量
   /// Number of compartments
@@ -183,7 +187,8 @@ std::ostream& operator<<(std::ostream& out, const GetCellConfigResponseData& mes
 /// Get the compartment configuration: response
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 struct GetCellConfigResponse {
   /// 业务数据
   /// Payload
@@ -207,7 +212,8 @@ std::ostream& operator<<(std::ostream& out, const GetCellConfigResponse& message
 /// Code 0x0A02. Only reads.
 ///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/get_cell_config.md`
+/// - 文档：`docs-site/reference/commands/get_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
 struct GetCellConfigRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -223,7 +229,8 @@ std::ostream& operator<<(std::ostream& out, const GetCellConfigRequest& message)
 /// `data` of `SetCellConfigRequest`.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 struct SetCellConfigRequestDataActiveIndex {
   /// 要生效的类型序号，见分格表
   /// Index of the layout to activate, see the table of layouts
@@ -244,7 +251,8 @@ std::ostream& operator<<(std::ostream& out, const SetCellConfigRequestDataActive
 /// A compartment of the old form
 ///
 /// - Spec: `types.OldCell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct OldCell {
   /// 格口编号
   /// Number of the compartment
@@ -275,7 +283,8 @@ std::ostream& operator<<(std::ostream& out, const OldCell& message);
 /// `data` of `SetCellConfigRequest`.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 struct SetCellConfigRequestDataOldLayout {
   /// 格口数量
   /// Number of compartments
@@ -303,7 +312,8 @@ std::ostream& operator<<(std::ostream& out, const SetCellConfigRequestDataOldLay
 /// `data` of `SetCellConfigRequest`.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 ///
 /// - `SetCellConfigRequestDataActiveIndex`：新版：选用一种已存储的配置 New form: select a stored
 ///   layout
@@ -321,7 +331,8 @@ using SetCellConfigRequestData =
 /// Set the compartment configuration: response
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 struct SetCellConfigResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -352,7 +363,8 @@ std::ostream& operator<<(std::ostream& out, const SetCellConfigResponse& message
 /// Code 0x0A0B. Changes the configuration.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/commands/set_cell_config.md`
+/// - 文档：`docs-site/reference/commands/set_cell_config.md`
+/// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
 struct SetCellConfigRequest {
   /// 要生效的配置：类型序号，或旧版的完整配置
   /// The layout to activate, by index or, in the old form, in full
@@ -369,7 +381,8 @@ std::ostream& operator<<(std::ostream& out, const SetCellConfigRequest& message)
 /// A compartment of a layout
 ///
 /// - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct LayoutCell {
   /// 格口的物理位置
   /// Physical location of the compartment
@@ -403,7 +416,8 @@ std::ostream& operator<<(std::ostream& out, const LayoutCell& message);
 /// A layout of compartments
 ///
 /// - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct CellLayout {
   /// 类型序号，set_cell_config 用它选用这种配置
   /// Index by which set_cell_config selects this layout
@@ -464,8 +478,8 @@ extern template struct Codec<fc::CellLayout>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class CellCalls {
  public:
@@ -480,7 +494,8 @@ class CellCalls {
   /// Code 0x0A02. Only reads.
   ///
   /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+  /// - 文档：`docs-site/reference/commands/get_cell_config.md`
+  /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
   fc_runtime::Called<GetCellConfigResponse> get_cell_config(
       const GetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -505,12 +520,13 @@ class CellCalls {
   /// Code 0x0A0B. Changes the configuration.
   ///
   /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+  /// - 文档：`docs-site/reference/commands/set_cell_config.md`
+  /// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
   fc_runtime::Called<SetCellConfigResponse> set_cell_config(
       const SetCellConfigRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetCellConfigResponse> CellCalls<Self>::get_cell_config(const GetCellConfigRequest& request, const fc_runtime::CallOptions& options) const {
@@ -537,7 +553,8 @@ class CellRobot {
   /// Code 0x0A02. Only reads.
   ///
   /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/get_cell_config.md`
+  /// - 文档：`docs-site/reference/commands/get_cell_config.md`
+  /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
   virtual fc_runtime::Replied<GetCellConfigResponse> get_cell_config(
       const fc_runtime::Context& context, const GetCellConfigRequest& request) = 0;
 
@@ -562,17 +579,18 @@ class CellRobot {
   /// Code 0x0A0B. Changes the configuration.
   ///
   /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-  /// - Docs: `docs-site/reference/commands/set_cell_config.md`
+  /// - 文档：`docs-site/reference/commands/set_cell_config.md`
+  /// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
   virtual fc_runtime::Replied<SetCellConfigResponse> set_cell_config(
       const fc_runtime::Context& context, const SetCellConfigRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~CellRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class CellDefaults : public Base {
  public:

@@ -32,7 +32,8 @@ namespace fc {
 /// 2024-01-29.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+/// - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+/// - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
 struct UploadContendedResourcesRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -52,7 +53,8 @@ std::ostream& operator<<(std::ostream& out, const UploadContendedResourcesReques
 /// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+/// - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+/// - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
 struct UploadContendedResourcesResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -70,7 +72,8 @@ std::ostream& operator<<(std::ostream& out, const UploadContendedResourcesRespon
 /// `data` of `CheckCondition0333Response`.
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 struct CheckCondition0333ResponseData {
   /// 条件是否满足
   /// Whether the condition is met
@@ -92,7 +95,8 @@ std::ostream& operator<<(std::ostream& out, const CheckCondition0333ResponseData
 /// Check a condition (0x0333, purpose unknown): response
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 struct CheckCondition0333Response {
   /// 业务数据
   /// Payload
@@ -116,7 +120,8 @@ std::ostream& operator<<(std::ostream& out, const CheckCondition0333Response& me
 /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
 ///
 /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-/// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+/// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+/// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
 struct CheckCondition0333Request {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -148,8 +153,8 @@ extern template struct Codec<fc::CheckCondition0333Request>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class DispatchCalls {
  public:
@@ -164,12 +169,13 @@ class DispatchCalls {
   /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
   ///
   /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-  /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+  /// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+  /// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
   fc_runtime::Called<CheckCondition0333Response> check_condition_0333(
       const CheckCondition0333Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<CheckCondition0333Response> DispatchCalls<Self>::check_condition_0333(const CheckCondition0333Request& request, const fc_runtime::CallOptions& options) const {
@@ -192,17 +198,18 @@ class DispatchRobot {
   /// Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
   ///
   /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-  /// - Docs: `docs-site/reference/commands/check_condition_0333.md`
+  /// - 文档：`docs-site/reference/commands/check_condition_0333.md`
+  /// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
   virtual fc_runtime::Replied<CheckCondition0333Response> check_condition_0333(
       const fc_runtime::Context& context, const CheckCondition0333Request& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~DispatchRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class DispatchDefaults : public Base {
  public:

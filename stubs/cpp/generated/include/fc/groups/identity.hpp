@@ -24,7 +24,8 @@ namespace fc {
 /// `data` of `GetRobotSnResponse`.
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 struct GetRobotSnResponseData {
   /// 15 位资产编码，后 7 位流水号，根据供应商区分
   /// Asset number of 15 characters; the last 7 are a serial number; "distinguished by supplier"
@@ -48,7 +49,8 @@ std::ostream& operator<<(std::ostream& out, const GetRobotSnResponseData& messag
 /// Get the serial number: response
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 struct GetRobotSnResponse {
   /// 业务数据
   /// Payload
@@ -72,7 +74,8 @@ std::ostream& operator<<(std::ostream& out, const GetRobotSnResponse& message);
 /// Code 0x0A01. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+/// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+/// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
 struct GetRobotSnRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -91,7 +94,8 @@ std::ostream& operator<<(std::ostream& out, const GetRobotSnRequest& message);
 /// kept.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+/// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+/// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
 struct GetFirmwareVersionsResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -119,7 +123,8 @@ std::ostream& operator<<(std::ostream& out, const GetFirmwareVersionsResponse& m
 /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-/// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+/// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+/// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
 struct GetFirmwareVersionsRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -159,8 +164,8 @@ extern template struct Codec<fc::GetFirmwareVersionsRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class IdentityCalls {
  public:
@@ -175,7 +180,8 @@ class IdentityCalls {
   /// Code 0x0A01. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+  /// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+  /// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
   fc_runtime::Called<GetRobotSnResponse> get_robot_sn(
       const GetRobotSnRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -192,12 +198,13 @@ class IdentityCalls {
   /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+  /// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+  /// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
   fc_runtime::Called<GetFirmwareVersionsResponse> get_firmware_versions(
       const GetFirmwareVersionsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetRobotSnResponse> IdentityCalls<Self>::get_robot_sn(const GetRobotSnRequest& request, const fc_runtime::CallOptions& options) const {
@@ -224,7 +231,8 @@ class IdentityRobot {
   /// Code 0x0A01. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_robot_sn.md`
+  /// - 文档：`docs-site/reference/commands/get_robot_sn.md`
+  /// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
   virtual fc_runtime::Replied<GetRobotSnResponse> get_robot_sn(
       const fc_runtime::Context& context, const GetRobotSnRequest& request) = 0;
 
@@ -241,17 +249,18 @@ class IdentityRobot {
   /// Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-  /// - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+  /// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+  /// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
   virtual fc_runtime::Replied<GetFirmwareVersionsResponse> get_firmware_versions(
       const fc_runtime::Context& context, const GetFirmwareVersionsRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~IdentityRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class IdentityDefaults : public Base {
  public:

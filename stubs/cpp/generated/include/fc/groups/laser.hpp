@@ -26,7 +26,8 @@ namespace fc {
 /// kept.
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-/// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+/// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+/// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
 struct GetLaserScanResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -46,7 +47,8 @@ std::ostream& operator<<(std::ostream& out, const GetLaserScanResponse& message)
 /// Code 0x0001. Only reads. Since 2023-08-10.
 ///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-/// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+/// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+/// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
 struct GetLaserScanRequest {
   /// 使用的目标地图 ID
   /// ID of the target map in use
@@ -80,8 +82,8 @@ extern template struct Codec<fc::GetLaserScanRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class LaserCalls {
  public:
@@ -95,12 +97,13 @@ class LaserCalls {
   /// Code 0x0001. Only reads. Since 2023-08-10.
   ///
   /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-  /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+  /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+  /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
   fc_runtime::Called<GetLaserScanResponse> get_laser_scan(
       const GetLaserScanRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetLaserScanResponse> LaserCalls<Self>::get_laser_scan(const GetLaserScanRequest& request, const fc_runtime::CallOptions& options) const {
@@ -122,17 +125,18 @@ class LaserRobot {
   /// Code 0x0001. Only reads. Since 2023-08-10.
   ///
   /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-  /// - Docs: `docs-site/reference/commands/get_laser_scan.md`
+  /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
+  /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
   virtual fc_runtime::Replied<GetLaserScanResponse> get_laser_scan(
       const fc_runtime::Context& context, const GetLaserScanRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~LaserRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class LaserDefaults : public Base {
  public:

@@ -35,7 +35,8 @@ namespace fc {
 /// `2002`: The target map could not be set
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 struct SetTargetMapRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -49,7 +50,8 @@ std::ostream& operator<<(std::ostream& out, const SetTargetMapRequest& message);
 /// Set the target map: its declared errors
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 enum class SetTargetMapError : std::int64_t {
   /// 设置目标地图失败
   /// The target map could not be set
@@ -63,7 +65,8 @@ enum class SetTargetMapError : std::int64_t {
 /// Set the target map: response
 ///
 /// - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/set_target_map.md`
+/// - 文档：`docs-site/reference/commands/set_target_map.md`
+/// - Docs: `docs-site/en/reference/commands/set_target_map.md`
 struct SetTargetMapResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -79,7 +82,8 @@ std::ostream& operator<<(std::ostream& out, const SetTargetMapResponse& message)
 /// `origin` of `GetMapImageResponse`.
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 struct GetMapImageResponseOrigin {
   /// x 轴坐标
   /// x coordinate
@@ -108,7 +112,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapImageResponseOrigin& mes
 /// Get the picture of a map: response
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 struct GetMapImageResponse {
   /// 名称
   /// Name
@@ -176,7 +181,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapImageResponse& message);
 /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
 ///
 /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_image.md`
+/// - 文档：`docs-site/reference/commands/get_map_image.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_image.md`
 struct GetMapImageRequest {
   /// 使用的目标地图 ID
   /// ID of the target map in use
@@ -195,7 +201,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapImageRequest& message);
 /// Information about a map
 ///
 /// - Spec: `types.MapInfo` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct MapInfo {
   /// 地图 ID
   /// ID of the map
@@ -274,7 +281,8 @@ std::ostream& operator<<(std::ostream& out, const MapInfo& message);
 /// List the maps: response
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/list_maps.md`
+/// - 文档：`docs-site/reference/commands/list_maps.md`
+/// - Docs: `docs-site/en/reference/commands/list_maps.md`
 struct ListMapsResponse {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -302,7 +310,8 @@ std::ostream& operator<<(std::ostream& out, const ListMapsResponse& message);
 /// Code 0x0103. Only reads.
 ///
 /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/list_maps.md`
+/// - 文档：`docs-site/reference/commands/list_maps.md`
+/// - Docs: `docs-site/en/reference/commands/list_maps.md`
 struct ListMapsRequest {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -325,7 +334,8 @@ std::ostream& operator<<(std::ostream& out, const ListMapsRequest& message);
 /// Open: No response is printed; every key received is kept.
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_info.md`
+/// - 文档：`docs-site/reference/commands/get_map_info.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_info.md`
 struct GetMapInfoResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -345,7 +355,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapInfoResponse& message);
 /// Code 0x010C. Only reads.
 ///
 /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_info.md`
+/// - 文档：`docs-site/reference/commands/get_map_info.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_info.md`
 struct GetMapInfoRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -364,7 +375,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapInfoRequest& message);
 /// kept.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/save_map.md`
+/// - 文档：`docs-site/reference/commands/save_map.md`
+/// - Docs: `docs-site/en/reference/commands/save_map.md`
 struct SaveMapResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -384,7 +396,8 @@ std::ostream& operator<<(std::ostream& out, const SaveMapResponse& message);
 /// Code 0x0109. Changes the configuration.
 ///
 /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/save_map.md`
+/// - 文档：`docs-site/reference/commands/save_map.md`
+/// - Docs: `docs-site/en/reference/commands/save_map.md`
 struct SaveMapRequest {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -424,10 +437,10 @@ struct SaveMapRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 
-  /// `tower`，没有时为规范的默认值。`tower`, or what its absence means.
+  /// `tower`，没有时为规范的默认值。`tower`, or its default.
   [[nodiscard]] std::string tower_or_default() const { return tower.value_or("未知"); }
 
-  /// `level`，没有时为规范的默认值。`level`, or what its absence means.
+  /// `level`，没有时为规范的默认值。`level`, or its default.
   [[nodiscard]] std::string level_or_default() const { return level.value_or("1"); }
 };
 
@@ -439,7 +452,8 @@ std::ostream& operator<<(std::ostream& out, const SaveMapRequest& message);
 /// A map to download
 ///
 /// - Spec: `types.MapDownload` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct MapDownload {
   /// 地图 ID
   /// ID of the map
@@ -468,7 +482,8 @@ std::ostream& operator<<(std::ostream& out, const MapDownload& message);
 /// Download maps: response
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/download_maps.md`
+/// - 文档：`docs-site/reference/commands/download_maps.md`
+/// - Docs: `docs-site/en/reference/commands/download_maps.md`
 struct DownloadMapsResponse {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -489,7 +504,8 @@ std::ostream& operator<<(std::ostream& out, const DownloadMapsResponse& message)
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class MapSyncDirection : std::uint8_t {
   /// 上传
   /// Upload
@@ -499,7 +515,7 @@ enum class MapSyncDirection : std::uint8_t {
   Download = 0,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(MapSyncDirection value) noexcept;
 std::ostream& operator<<(std::ostream& out, MapSyncDirection value);
 
@@ -509,7 +525,8 @@ std::ostream& operator<<(std::ostream& out, MapSyncDirection value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class MapSyncResult : std::int8_t {
   /// 正在上传或等待上传
   /// Uploading or waiting to upload
@@ -522,7 +539,7 @@ enum class MapSyncResult : std::int8_t {
   Failed = -1,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(MapSyncResult value) noexcept;
 std::ostream& operator<<(std::ostream& out, MapSyncResult value);
 
@@ -530,7 +547,8 @@ std::ostream& operator<<(std::ostream& out, MapSyncResult value);
 /// Progress of the synchronisation of a map
 ///
 /// - Spec: `types.MapSync` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct MapSync {
   /// 地图名称
   /// Name of the map
@@ -561,11 +579,12 @@ bool operator==(const MapSync& left, const MapSync& right);
 bool operator!=(const MapSync& left, const MapSync& right);
 std::ostream& operator<<(std::ostream& out, const MapSync& message);
 
-/// 上报地图同步进度：确认
+/// 上报地图同步进度：应答
 /// Progress of map synchronisation: acknowledgement
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+/// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
 struct MapSyncProgressAck {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -590,7 +609,8 @@ std::ostream& operator<<(std::ostream& out, const MapSyncProgressAck& message);
 /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
 ///
 /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+/// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
 struct MapSyncProgress {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -622,7 +642,8 @@ std::ostream& operator<<(std::ostream& out, const MapSyncProgress& message);
 /// Code 0x0320. Changes the configuration, inferred.
 ///
 /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/download_maps.md`
+/// - 文档：`docs-site/reference/commands/download_maps.md`
+/// - Docs: `docs-site/en/reference/commands/download_maps.md`
 struct DownloadMapsRequest {
   /// 正文中的指令 id
   /// Command ID inside the body
@@ -648,7 +669,8 @@ std::ostream& operator<<(std::ostream& out, const DownloadMapsRequest& message);
 /// Open: The response is lost; nothing is known beyond the envelope.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/upload_maps.md`
+/// - 文档：`docs-site/reference/commands/upload_maps.md`
+/// - Docs: `docs-site/en/reference/commands/upload_maps.md`
 struct UploadMapsResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -674,7 +696,8 @@ std::ostream& operator<<(std::ostream& out, const UploadMapsResponse& message);
 /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 ///
 /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/upload_maps.md`
+/// - 文档：`docs-site/reference/commands/upload_maps.md`
+/// - Docs: `docs-site/en/reference/commands/upload_maps.md`
 struct UploadMapsRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -693,7 +716,8 @@ std::ostream& operator<<(std::ostream& out, const UploadMapsRequest& message);
 /// so.
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+/// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
 struct GetMapSyncProgressResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -718,7 +742,8 @@ std::ostream& operator<<(std::ostream& out, const GetMapSyncProgressResponse& me
 /// Code 0x0322. Only reads.
 ///
 /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-/// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+/// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+/// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
 struct GetMapSyncProgressRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -839,8 +864,8 @@ extern template struct Codec<fc::GetMapSyncProgressRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class MapCalls {
  public:
@@ -855,7 +880,8 @@ class MapCalls {
   /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
   ///
   /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_image.md`
+  /// - 文档：`docs-site/reference/commands/get_map_image.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_image.md`
   fc_runtime::Called<GetMapImageResponse> get_map_image(
       const GetMapImageRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -869,7 +895,8 @@ class MapCalls {
   /// Code 0x0103. Only reads.
   ///
   /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/list_maps.md`
+  /// - 文档：`docs-site/reference/commands/list_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/list_maps.md`
   fc_runtime::Called<ListMapsResponse> list_maps(const ListMapsRequest& request,
                                                  const fc_runtime::CallOptions& options = {}) const;
 
@@ -879,7 +906,8 @@ class MapCalls {
   /// Code 0x010C. Only reads.
   ///
   /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_info.md`
+  /// - 文档：`docs-site/reference/commands/get_map_info.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_info.md`
   fc_runtime::Called<GetMapInfoResponse> get_map_info(
       const GetMapInfoRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -893,7 +921,8 @@ class MapCalls {
   /// Code 0x0109. Changes the configuration.
   ///
   /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/save_map.md`
+  /// - 文档：`docs-site/reference/commands/save_map.md`
+  /// - Docs: `docs-site/en/reference/commands/save_map.md`
   fc_runtime::Called<SaveMapResponse> save_map(const SaveMapRequest& request,
                                                const fc_runtime::CallOptions& options = {}) const;
 
@@ -910,20 +939,20 @@ class MapCalls {
   ///
   /// Code 0x0320. Changes the configuration, inferred.
   ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-  /// `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
+  /// `.follow()`：先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+  /// `.follow()` returns the response, and then each `MapSyncProgress` that the command sets off.
   ///
-  /// 没有写明哪个状态是终态：要由 app 停止。
+  /// 规范没有写明终态：由 app 停止。
   ///
-  /// No state is said to be final: the app has to stop it.
+  /// The spec marks no state as final. The app stops it.
   ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+  /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
   ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
+  /// No key ties a report to a call: reports of this kind from other calls arrive as well.
   ///
   /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/download_maps.md`
+  /// - 文档：`docs-site/reference/commands/download_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/download_maps.md`
   fc_runtime::Called<DownloadMapsResponse> download_maps(
       const DownloadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -938,20 +967,20 @@ class MapCalls {
   ///
   /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
   ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `MapSyncProgress`。
-  /// `.follow()` gives the response, and then each `MapSyncProgress` that it sets off.
+  /// `.follow()`：先返回响应，再逐个返回它引起的 `MapSyncProgress`。
+  /// `.follow()` returns the response, and then each `MapSyncProgress` that the command sets off.
   ///
-  /// 没有写明哪个状态是终态：要由 app 停止。
+  /// 规范没有写明终态：由 app 停止。
   ///
-  /// No state is said to be final: the app has to stop it.
+  /// The spec marks no state as final. The app stops it.
   ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+  /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
   ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
+  /// No key ties a report to a call: reports of this kind from other calls arrive as well.
   ///
   /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_maps.md`
+  /// - 文档：`docs-site/reference/commands/upload_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/upload_maps.md`
   fc_runtime::Called<UploadMapsResponse> upload_maps(
       const UploadMapsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -966,12 +995,13 @@ class MapCalls {
   /// Code 0x0322. Only reads.
   ///
   /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+  /// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
   fc_runtime::Called<GetMapSyncProgressResponse> get_map_sync_progress(
       const GetMapSyncProgressRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetMapImageResponse> MapCalls<Self>::get_map_image(const GetMapImageRequest& request, const fc_runtime::CallOptions& options) const {
@@ -1018,7 +1048,8 @@ class MapRobot {
   /// Code 0x0111. Only reads, inferred. Since 2023-08-10.
   ///
   /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_image.md`
+  /// - 文档：`docs-site/reference/commands/get_map_image.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_image.md`
   virtual fc_runtime::Replied<GetMapImageResponse> get_map_image(
       const fc_runtime::Context& context, const GetMapImageRequest& request) = 0;
 
@@ -1032,7 +1063,8 @@ class MapRobot {
   /// Code 0x0103. Only reads.
   ///
   /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/list_maps.md`
+  /// - 文档：`docs-site/reference/commands/list_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/list_maps.md`
   virtual fc_runtime::Replied<ListMapsResponse> list_maps(const fc_runtime::Context& context,
                                                           const ListMapsRequest& request) = 0;
 
@@ -1042,7 +1074,8 @@ class MapRobot {
   /// Code 0x010C. Only reads.
   ///
   /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_info.md`
+  /// - 文档：`docs-site/reference/commands/get_map_info.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_info.md`
   virtual fc_runtime::Replied<GetMapInfoResponse> get_map_info(
       const fc_runtime::Context& context, const GetMapInfoRequest& request) = 0;
 
@@ -1056,7 +1089,8 @@ class MapRobot {
   /// Code 0x0109. Changes the configuration.
   ///
   /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/save_map.md`
+  /// - 文档：`docs-site/reference/commands/save_map.md`
+  /// - Docs: `docs-site/en/reference/commands/save_map.md`
   virtual fc_runtime::Replied<SaveMapResponse> save_map(const fc_runtime::Context& context,
                                                         const SaveMapRequest& request) = 0;
 
@@ -1074,7 +1108,8 @@ class MapRobot {
   /// Code 0x0320. Changes the configuration, inferred.
   ///
   /// - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/download_maps.md`
+  /// - 文档：`docs-site/reference/commands/download_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/download_maps.md`
   virtual fc_runtime::Replied<DownloadMapsResponse> download_maps(
       const fc_runtime::Context& context, const DownloadMapsRequest& request) = 0;
 
@@ -1090,7 +1125,8 @@ class MapRobot {
   /// Code 0x0321. Unknown effect: treat it as a command that moves the robot.
   ///
   /// - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_maps.md`
+  /// - 文档：`docs-site/reference/commands/upload_maps.md`
+  /// - Docs: `docs-site/en/reference/commands/upload_maps.md`
   virtual fc_runtime::Replied<UploadMapsResponse> upload_maps(const fc_runtime::Context& context,
                                                               const UploadMapsRequest& request) = 0;
 
@@ -1105,17 +1141,18 @@ class MapRobot {
   /// Code 0x0322. Only reads.
   ///
   /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+  /// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+  /// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
   virtual fc_runtime::Replied<GetMapSyncProgressResponse> get_map_sync_progress(
       const fc_runtime::Context& context, const GetMapSyncProgressRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~MapRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class MapDefaults : public Base {
  public:
@@ -1157,7 +1194,7 @@ class MapDefaults : public Base {
 };
 
 /// 一组主动上报，是 `Reporter` 的方法；`Self` 就是它。
-/// The reports of a group as methods of `Reporter`, which is `Self`.
+/// The reports of a group as methods of `Reporter` (`Self`).
 template <class Self>
 class MapReporter {
  public:
@@ -1171,7 +1208,8 @@ class MapReporter {
   /// Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
   ///
   /// - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-  /// - Docs: `docs-site/reference/reports/map_sync_progress.md`
+  /// - 文档：`docs-site/reference/reports/map_sync_progress.md`
+  /// - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
   fc_runtime::Acknowledged map_sync_progress(
       const MapSyncProgress& report,
       std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
@@ -1197,7 +1235,7 @@ using MapCommands = fc_runtime::Types<
     GetMapSyncProgressRequest,
     // No more.
     fc_runtime::End>;
-/// 这一组的主动上报。The reports of the group.
+/// 这一组的上报。The reports of the group.
 using MapReports = fc_runtime::Types<
     // 0x0343
     MapSyncProgress,

@@ -22,7 +22,8 @@ namespace fc {
 /// Start returning to dock: response
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/start_recharge.md`
+/// - 文档：`docs-site/reference/commands/start_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/start_recharge.md`
 struct StartRechargeResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -42,7 +43,8 @@ std::ostream& operator<<(std::ostream& out, const StartRechargeResponse& message
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class RechargeStatus : std::uint8_t {
   /// 未开始回充（其他：空闲、下桩）
   /// Not started; otherwise idle or off the dock
@@ -61,17 +63,17 @@ enum class RechargeStatus : std::uint8_t {
   Charging = 3,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(RechargeStatus value) noexcept;
-/// 是否为终态。Whether nothing follows it.
+/// 是否为终态。Returns `true` for a final state.
 [[nodiscard]] bool is_final(RechargeStatus value) noexcept;
-/// 是否表示失败。Whether it says that something failed.
+/// 是否表示失败。Returns `true` for a failure.
 [[nodiscard]] bool is_error(RechargeStatus value) noexcept;
-/// 正常顺序中是否跟在 `previous` 之后；也会有其他变化。
-/// Whether it follows `previous` in the normal order. Other changes occur as well.
+/// 正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。
+/// Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.
 [[nodiscard]] bool normally_follows(RechargeStatus value, RechargeStatus previous) noexcept;
-/// 跟在 `previous` 之后是否合乎规范所说的顺序。
-/// Whether nothing that is said of the order speaks against it after `previous`.
+/// 规范是否允许 `previous` 之后出现此状态。
+/// Returns `true` if the spec allows this state after `previous`.
 [[nodiscard]] bool is_in_order(RechargeStatus value, RechargeStatus previous) noexcept;
 std::ostream& operator<<(std::ostream& out, RechargeStatus value);
 
@@ -81,7 +83,8 @@ std::ostream& operator<<(std::ostream& out, RechargeStatus value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class RechargeError : std::uint8_t {
   /// 成功
   /// Success
@@ -91,14 +94,14 @@ enum class RechargeError : std::uint8_t {
   Failed = 1,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(RechargeError value) noexcept;
-/// 是否为终态。Whether nothing follows it.
+/// 是否为终态。Returns `true` for a final state.
 [[nodiscard]] bool is_final(RechargeError value) noexcept;
-/// 是否表示失败。Whether it says that something failed.
+/// 是否表示失败。Returns `true` for a failure.
 [[nodiscard]] bool is_error(RechargeError value) noexcept;
-/// 跟在 `previous` 之后是否合乎规范所说的顺序。
-/// Whether nothing that is said of the order speaks against it after `previous`.
+/// 规范是否允许 `previous` 之后出现此状态。
+/// Returns `true` if the spec allows this state after `previous`.
 [[nodiscard]] bool is_in_order(RechargeError value, RechargeError previous) noexcept;
 std::ostream& operator<<(std::ostream& out, RechargeError value);
 
@@ -108,7 +111,8 @@ std::ostream& operator<<(std::ostream& out, RechargeError value);
 /// `data` of `RechargeProgress`.
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 struct RechargeProgressData {
   /// 回充状态；errorStatus 为 1 时是前一个状态，可不关注
   /// Charging state; the previous one when errorStatus is 1, which can be ignored
@@ -126,11 +130,12 @@ bool operator==(const RechargeProgressData& left, const RechargeProgressData& ri
 bool operator!=(const RechargeProgressData& left, const RechargeProgressData& right);
 std::ostream& operator<<(std::ostream& out, const RechargeProgressData& message);
 
-/// 主动上报回充过程和结果：确认
+/// 主动上报回充过程和结果：应答
 /// Progress and result of charging: acknowledgement
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 struct RechargeProgressAck {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -159,7 +164,8 @@ std::ostream& operator<<(std::ostream& out, const RechargeProgressAck& message);
 /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
 ///
 /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/reports/recharge_progress.md`
+/// - 文档：`docs-site/reference/reports/recharge_progress.md`
+/// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
 struct RechargeProgress {
   /// 业务数据
   /// Payload
@@ -191,7 +197,8 @@ std::ostream& operator<<(std::ostream& out, const RechargeProgress& message);
 /// Code 0x0A04. Moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/start_recharge.md`
+/// - 文档：`docs-site/reference/commands/start_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/start_recharge.md`
 struct StartRechargeRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -210,7 +217,8 @@ std::ostream& operator<<(std::ostream& out, const StartRechargeRequest& message)
 /// kept.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+/// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
 struct CancelRechargeResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -236,7 +244,8 @@ std::ostream& operator<<(std::ostream& out, const CancelRechargeResponse& messag
 /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
 ///
 /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+/// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+/// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
 struct CancelRechargeRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -252,7 +261,8 @@ std::ostream& operator<<(std::ostream& out, const CancelRechargeRequest& message
 /// `data` of `GetRechargeStatusResponse`.
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 struct GetRechargeStatusResponseData {
   /// 回充状态
   /// Charging state
@@ -281,7 +291,8 @@ std::ostream& operator<<(std::ostream& out, const GetRechargeStatusResponseData&
 /// Get the charging state: response
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 struct GetRechargeStatusResponse {
   /// 业务数据
   /// Payload
@@ -305,7 +316,8 @@ std::ostream& operator<<(std::ostream& out, const GetRechargeStatusResponse& mes
 /// Code 0x0A06. Only reads, inferred. Since 2023-05.
 ///
 /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-/// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+/// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
 struct GetRechargeStatusRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -376,8 +388,8 @@ extern template struct Codec<fc::GetRechargeStatusRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class RechargeCalls {
  public:
@@ -394,21 +406,21 @@ class RechargeCalls {
   ///
   /// Code 0x0A04. Moves the robot. Since 2023-05.
   ///
-  /// `.follow()`：先取得响应，再逐个取得它引起的 `RechargeProgress`。
-  /// `.follow()` gives the response, and then each `RechargeProgress` that it sets off.
+  /// `.follow()`：先返回响应，再逐个返回它引起的 `RechargeProgress`。
+  /// `.follow()` returns the response, and then each `RechargeProgress` that the command sets off.
   ///
-  /// 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+  /// 规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
   ///
-  /// No state is said to be final: it ends only when `data.errorStatus` says that something failed,
-  /// or when the app stops it.
+  /// The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when
+  /// the app stops it.
   ///
-  /// 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+  /// 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
   ///
-  /// Nothing in the messages ties a report to a call: reports of this kind that others have set off
-  /// come as well.
+  /// No key ties a report to a call: reports of this kind from other calls arrive as well.
   ///
   /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/start_recharge.md`
+  /// - 文档：`docs-site/reference/commands/start_recharge.md`
+  /// - Docs: `docs-site/en/reference/commands/start_recharge.md`
   fc_runtime::Called<StartRechargeResponse> start_recharge(
       const StartRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -423,7 +435,8 @@ class RechargeCalls {
   /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
   ///
   /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+  /// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+  /// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
   fc_runtime::Called<CancelRechargeResponse> cancel_recharge(
       const CancelRechargeRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -438,12 +451,13 @@ class RechargeCalls {
   /// Code 0x0A06. Only reads, inferred. Since 2023-05.
   ///
   /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+  /// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
   fc_runtime::Called<GetRechargeStatusResponse> get_recharge_status(
       const GetRechargeStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<StartRechargeResponse> RechargeCalls<Self>::start_recharge(const StartRechargeRequest& request, const fc_runtime::CallOptions& options) const {
@@ -477,7 +491,8 @@ class RechargeRobot {
   /// Code 0x0A04. Moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/start_recharge.md`
+  /// - 文档：`docs-site/reference/commands/start_recharge.md`
+  /// - Docs: `docs-site/en/reference/commands/start_recharge.md`
   virtual fc_runtime::Replied<StartRechargeResponse> start_recharge(
       const fc_runtime::Context& context, const StartRechargeRequest& request) = 0;
 
@@ -492,7 +507,8 @@ class RechargeRobot {
   /// Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
   ///
   /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/cancel_recharge.md`
+  /// - 文档：`docs-site/reference/commands/cancel_recharge.md`
+  /// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
   virtual fc_runtime::Replied<CancelRechargeResponse> cancel_recharge(
       const fc_runtime::Context& context, const CancelRechargeRequest& request) = 0;
 
@@ -507,17 +523,18 @@ class RechargeRobot {
   /// Code 0x0A06. Only reads, inferred. Since 2023-05.
   ///
   /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/commands/get_recharge_status.md`
+  /// - 文档：`docs-site/reference/commands/get_recharge_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
   virtual fc_runtime::Replied<GetRechargeStatusResponse> get_recharge_status(
       const fc_runtime::Context& context, const GetRechargeStatusRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~RechargeRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class RechargeDefaults : public Base {
  public:
@@ -539,7 +556,7 @@ class RechargeDefaults : public Base {
 };
 
 /// 一组主动上报，是 `Reporter` 的方法；`Self` 就是它。
-/// The reports of a group as methods of `Reporter`, which is `Self`.
+/// The reports of a group as methods of `Reporter` (`Self`).
 template <class Self>
 class RechargeReporter {
  public:
@@ -562,7 +579,8 @@ class RechargeReporter {
   /// Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
   ///
   /// - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-  /// - Docs: `docs-site/reference/reports/recharge_progress.md`
+  /// - 文档：`docs-site/reference/reports/recharge_progress.md`
+  /// - Docs: `docs-site/en/reference/reports/recharge_progress.md`
   fc_runtime::Acknowledged recharge_progress(
       const RechargeProgress& report,
       std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
@@ -580,7 +598,7 @@ using RechargeCommands = fc_runtime::Types<
     GetRechargeStatusRequest,
     // No more.
     fc_runtime::End>;
-/// 这一组的主动上报。The reports of the group.
+/// 这一组的上报。The reports of the group.
 using RechargeReports = fc_runtime::Types<
     // 0x0B01
     RechargeProgress,

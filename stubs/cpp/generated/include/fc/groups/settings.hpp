@@ -25,7 +25,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class SwitchUpdate {
  public:
   /// 规范中的值。The values of the spec.
@@ -47,9 +48,9 @@ class SwitchUpdate {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit SwitchUpdate(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const SwitchUpdate& left, const SwitchUpdate& right) {
@@ -63,7 +64,7 @@ class SwitchUpdate {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const SwitchUpdate& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const SwitchUpdate& value);
 
@@ -73,7 +74,8 @@ std::ostream& operator<<(std::ostream& out, const SwitchUpdate& value);
 /// `data` of `Switch0a08Request`.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 struct Switch0a08RequestData {
   /// 读取还是设置
   /// Whether to read or to set
@@ -92,7 +94,8 @@ std::ostream& operator<<(std::ostream& out, const Switch0a08RequestData& message
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class SwitchState {
  public:
   /// 规范中的值。The values of the spec.
@@ -111,9 +114,9 @@ class SwitchState {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit SwitchState(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const SwitchState& left, const SwitchState& right) {
@@ -127,7 +130,7 @@ class SwitchState {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const SwitchState& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const SwitchState& value);
 
@@ -137,7 +140,8 @@ std::ostream& operator<<(std::ostream& out, const SwitchState& value);
 /// `data` of `Switch0a08Response`.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 struct Switch0a08ResponseData {
   /// 开关的状态
   /// State of the switch
@@ -159,7 +163,8 @@ std::ostream& operator<<(std::ostream& out, const Switch0a08ResponseData& messag
 /// Read or set a switch (0x0A08, purpose unknown): response
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 struct Switch0a08Response {
   /// 业务数据
   /// Payload
@@ -184,7 +189,8 @@ std::ostream& operator<<(std::ostream& out, const Switch0a08Response& message);
 /// `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_0a08.md`
+/// - 文档：`docs-site/reference/commands/switch_0a08.md`
+/// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
 struct Switch0a08Request {
   /// 业务数据
   /// Payload
@@ -203,7 +209,8 @@ std::ostream& operator<<(std::ostream& out, const Switch0a08Request& message);
 /// `data` of `SetVoiceReminderRequest`.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 struct SetVoiceReminderRequestData {
   /// 读取还是设置
   /// Whether to read or to set
@@ -222,7 +229,8 @@ std::ostream& operator<<(std::ostream& out, const SetVoiceReminderRequestData& m
 /// `data` of `SetVoiceReminderResponse`.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 struct SetVoiceReminderResponseData {
   /// 语音提醒开关的状态
   /// State of the voice reminder switch
@@ -241,7 +249,8 @@ std::ostream& operator<<(std::ostream& out, const SetVoiceReminderResponseData& 
 /// Voice reminder switch: response
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 struct SetVoiceReminderResponse {
   /// 业务数据
   /// Payload
@@ -274,7 +283,8 @@ std::ostream& operator<<(std::ostream& out, const SetVoiceReminderResponse& mess
 /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+/// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+/// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
 struct SetVoiceReminderRequest {
   /// 业务数据
   /// Payload
@@ -291,7 +301,8 @@ std::ostream& operator<<(std::ostream& out, const SetVoiceReminderRequest& messa
 /// Switch the environment: response
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_environment.md`
+/// - 文档：`docs-site/reference/commands/switch_environment.md`
+/// - Docs: `docs-site/en/reference/commands/switch_environment.md`
 struct SwitchEnvironmentResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -316,7 +327,8 @@ std::ostream& operator<<(std::ostream& out, const SwitchEnvironmentResponse& mes
 /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
 ///
 /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-/// - Docs: `docs-site/reference/commands/switch_environment.md`
+/// - 文档：`docs-site/reference/commands/switch_environment.md`
+/// - Docs: `docs-site/en/reference/commands/switch_environment.md`
 struct SwitchEnvironmentRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -371,8 +383,8 @@ extern template struct Codec<fc::SwitchEnvironmentRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class SettingsCalls {
  public:
@@ -388,7 +400,8 @@ class SettingsCalls {
   /// in `adp` from 3.8.
   ///
   /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+  /// - 文档：`docs-site/reference/commands/switch_0a08.md`
+  /// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
   fc_runtime::Called<Switch0a08Response> switch_0a08(
       const Switch0a08Request& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -407,7 +420,8 @@ class SettingsCalls {
   /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+  /// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+  /// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
   // clang-format off
   [[deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")]]
   fc_runtime::Called<SetVoiceReminderResponse> set_voice_reminder(
@@ -424,12 +438,13 @@ class SettingsCalls {
   /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_environment.md`
+  /// - 文档：`docs-site/reference/commands/switch_environment.md`
+  /// - Docs: `docs-site/en/reference/commands/switch_environment.md`
   fc_runtime::Called<SwitchEnvironmentResponse> switch_environment(
       const SwitchEnvironmentRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<Switch0a08Response> SettingsCalls<Self>::switch_0a08(const Switch0a08Request& request, const fc_runtime::CallOptions& options) const {
@@ -461,7 +476,8 @@ class SettingsRobot {
   /// in `adp` from 3.8.
   ///
   /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_0a08.md`
+  /// - 文档：`docs-site/reference/commands/switch_0a08.md`
+  /// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
   virtual fc_runtime::Replied<Switch0a08Response> switch_0a08(const fc_runtime::Context& context,
                                                               const Switch0a08Request& request) = 0;
 
@@ -480,7 +496,8 @@ class SettingsRobot {
   /// Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+  /// - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+  /// - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
   virtual fc_runtime::Replied<SetVoiceReminderResponse> set_voice_reminder(
       const fc_runtime::Context& context, const SetVoiceReminderRequest& request) = 0;
 
@@ -494,17 +511,18 @@ class SettingsRobot {
   /// Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
   ///
   /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-  /// - Docs: `docs-site/reference/commands/switch_environment.md`
+  /// - 文档：`docs-site/reference/commands/switch_environment.md`
+  /// - Docs: `docs-site/en/reference/commands/switch_environment.md`
   virtual fc_runtime::Replied<SwitchEnvironmentResponse> switch_environment(
       const fc_runtime::Context& context, const SwitchEnvironmentRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~SettingsRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class SettingsDefaults : public Base {
  public:

@@ -22,7 +22,8 @@ namespace fc {
 /// A standby position
 ///
 /// - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct StandbyPosition {
   /// 点位所在地图的 ID
   /// ID of the map the point is on
@@ -51,7 +52,8 @@ std::ostream& operator<<(std::ostream& out, const StandbyPosition& message);
 /// Set the standby position: response
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_standby_position.md`
+/// - 文档：`docs-site/reference/commands/set_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
 struct SetStandbyPositionResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -72,7 +74,8 @@ std::ostream& operator<<(std::ostream& out, const SetStandbyPositionResponse& me
 /// Code 0x0311. Changes the configuration. Since 2024-01-02.
 ///
 /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_standby_position.md`
+/// - 文档：`docs-site/reference/commands/set_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
 struct SetStandbyPositionRequest {
   /// 待命位置，目前只有一个
   /// The standby positions, currently one
@@ -95,7 +98,8 @@ std::ostream& operator<<(std::ostream& out, const SetStandbyPositionRequest& mes
 /// that of 0x0313, but nothing says so.
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_standby_position.md`
+/// - 文档：`docs-site/reference/commands/get_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
 struct GetStandbyPositionResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -116,7 +120,8 @@ std::ostream& operator<<(std::ostream& out, const GetStandbyPositionResponse& me
 /// Code 0x0312. Only reads. Since 2024-01-02.
 ///
 /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_standby_position.md`
+/// - 文档：`docs-site/reference/commands/get_standby_position.md`
+/// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
 struct GetStandbyPositionRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -130,7 +135,8 @@ std::ostream& operator<<(std::ostream& out, const GetStandbyPositionRequest& mes
 /// A point, given by map ID and station ID
 ///
 /// - Spec: `types.StationRef` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct StationRef {
   /// 点位所在地图的 ID
   /// ID of the map the point is on
@@ -158,7 +164,8 @@ std::ostream& operator<<(std::ostream& out, const StationRef& message);
 /// Open: The response is lost; its label runs straight into section 48.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+/// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+/// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
 struct SetPositions0313Response {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -174,7 +181,8 @@ std::ostream& operator<<(std::ostream& out, const SetPositions0313Response& mess
 /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+/// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+/// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
 struct SetPositions0313Request {
   /// 要设置的点位
   /// The points to set
@@ -191,7 +199,8 @@ std::ostream& operator<<(std::ostream& out, const SetPositions0313Request& messa
 /// Get points (0x0314, purpose unknown): response
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+/// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+/// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
 struct GetPositions0314Response {
   /// 点位
   /// The points
@@ -215,7 +224,8 @@ std::ostream& operator<<(std::ostream& out, const GetPositions0314Response& mess
 /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
 ///
 /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-/// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+/// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+/// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
 struct GetPositions0314Request {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -276,8 +286,8 @@ extern template struct Codec<fc::GetPositions0314Request>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class StandbyCalls {
  public:
@@ -292,7 +302,8 @@ class StandbyCalls {
   /// Code 0x0311. Changes the configuration. Since 2024-01-02.
   ///
   /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_standby_position.md`
+  /// - 文档：`docs-site/reference/commands/set_standby_position.md`
+  /// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
   fc_runtime::Called<SetStandbyPositionResponse> set_standby_position(
       const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -302,7 +313,8 @@ class StandbyCalls {
   /// Code 0x0312. Only reads. Since 2024-01-02.
   ///
   /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_standby_position.md`
+  /// - 文档：`docs-site/reference/commands/get_standby_position.md`
+  /// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
   fc_runtime::Called<GetStandbyPositionResponse> get_standby_position(
       const GetStandbyPositionRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -312,7 +324,8 @@ class StandbyCalls {
   /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
   ///
   /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+  /// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+  /// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
   fc_runtime::Called<SetPositions0313Response> set_positions_0313(
       const SetPositions0313Request& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -327,12 +340,13 @@ class StandbyCalls {
   /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
   ///
   /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+  /// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+  /// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
   fc_runtime::Called<GetPositions0314Response> get_positions_0314(
       const GetPositions0314Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<SetStandbyPositionResponse> StandbyCalls<Self>::set_standby_position(const SetStandbyPositionRequest& request, const fc_runtime::CallOptions& options) const {
@@ -367,7 +381,8 @@ class StandbyRobot {
   /// Code 0x0311. Changes the configuration. Since 2024-01-02.
   ///
   /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_standby_position.md`
+  /// - 文档：`docs-site/reference/commands/set_standby_position.md`
+  /// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
   virtual fc_runtime::Replied<SetStandbyPositionResponse> set_standby_position(
       const fc_runtime::Context& context, const SetStandbyPositionRequest& request) = 0;
 
@@ -377,7 +392,8 @@ class StandbyRobot {
   /// Code 0x0312. Only reads. Since 2024-01-02.
   ///
   /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_standby_position.md`
+  /// - 文档：`docs-site/reference/commands/get_standby_position.md`
+  /// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
   virtual fc_runtime::Replied<GetStandbyPositionResponse> get_standby_position(
       const fc_runtime::Context& context, const GetStandbyPositionRequest& request) = 0;
 
@@ -387,7 +403,8 @@ class StandbyRobot {
   /// Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
   ///
   /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/set_positions_0313.md`
+  /// - 文档：`docs-site/reference/commands/set_positions_0313.md`
+  /// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
   virtual fc_runtime::Replied<SetPositions0313Response> set_positions_0313(
       const fc_runtime::Context& context, const SetPositions0313Request& request) = 0;
 
@@ -402,17 +419,18 @@ class StandbyRobot {
   /// Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
   ///
   /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-  /// - Docs: `docs-site/reference/commands/get_positions_0314.md`
+  /// - 文档：`docs-site/reference/commands/get_positions_0314.md`
+  /// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
   virtual fc_runtime::Replied<GetPositions0314Response> get_positions_0314(
       const fc_runtime::Context& context, const GetPositions0314Request& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~StandbyRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class StandbyDefaults : public Base {
  public:

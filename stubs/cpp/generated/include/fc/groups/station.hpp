@@ -26,7 +26,8 @@ namespace fc {
 /// `data` of `GetStationRequest`.
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 struct GetStationRequestData {
   /// 要查询的站点的 ID
   /// ID of the station to look up
@@ -47,7 +48,8 @@ std::ostream& operator<<(std::ostream& out, const GetStationRequestData& message
 /// `data` of `GetStationResponse`.
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 struct GetStationResponseData {
   /// 站点名称
   /// Name of the station
@@ -93,7 +95,8 @@ std::ostream& operator<<(std::ostream& out, const GetStationResponseData& messag
 /// Get a station by its ID: response
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 struct GetStationResponse {
   /// 业务数据
   /// Payload
@@ -117,7 +120,8 @@ std::ostream& operator<<(std::ostream& out, const GetStationResponse& message);
 /// Code 0x0A03. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_station.md`
+/// - 文档：`docs-site/reference/commands/get_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_station.md`
 struct GetStationRequest {
   /// 业务数据
   /// Payload
@@ -138,7 +142,8 @@ std::ostream& operator<<(std::ostream& out, const GetStationRequest& message);
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+/// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+/// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
 struct UploadMapStationsResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -164,7 +169,8 @@ std::ostream& operator<<(std::ostream& out, const UploadMapStationsResponse& mes
 /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+/// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+/// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
 struct UploadMapStationsRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -180,7 +186,8 @@ std::ostream& operator<<(std::ostream& out, const UploadMapStationsRequest& mess
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.StationPos` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class StationPos {
  public:
   /// 规范中的值。The values of the spec.
@@ -208,9 +215,9 @@ class StationPos {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit StationPos(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const StationPos& left, const StationPos& right) {
@@ -224,7 +231,7 @@ class StationPos {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const StationPos& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const StationPos& value);
 
@@ -232,7 +239,8 @@ std::ostream& operator<<(std::ostream& out, const StationPos& value);
 /// Add a station: response
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/add_station.md`
+/// - 文档：`docs-site/reference/commands/add_station.md`
+/// - Docs: `docs-site/en/reference/commands/add_station.md`
 struct AddStationResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -252,7 +260,8 @@ std::ostream& operator<<(std::ostream& out, const AddStationResponse& message);
 /// Code 0x0302. Changes the configuration. Since 2023-07-17.
 ///
 /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/add_station.md`
+/// - 文档：`docs-site/reference/commands/add_station.md`
+/// - Docs: `docs-site/en/reference/commands/add_station.md`
 struct AddStationRequest {
   /// 站点所在地图的 ID
   /// ID of the station's map
@@ -300,7 +309,8 @@ std::ostream& operator<<(std::ostream& out, const AddStationRequest& message);
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/delete_station.md`
+/// - 文档：`docs-site/reference/commands/delete_station.md`
+/// - Docs: `docs-site/en/reference/commands/delete_station.md`
 struct DeleteStationResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -320,7 +330,8 @@ std::ostream& operator<<(std::ostream& out, const DeleteStationResponse& message
 /// Code 0x0304. Changes the configuration. Since 2023-10-13.
 ///
 /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/delete_station.md`
+/// - 文档：`docs-site/reference/commands/delete_station.md`
+/// - Docs: `docs-site/en/reference/commands/delete_station.md`
 struct DeleteStationRequest {
   /// 站点所在地图的 ID
   /// ID of the station's map
@@ -351,7 +362,8 @@ std::ostream& operator<<(std::ostream& out, const DeleteStationRequest& message)
 /// Open: The response is lost; beyond the envelope nothing is known.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/rename_station.md`
+/// - 文档：`docs-site/reference/commands/rename_station.md`
+/// - Docs: `docs-site/en/reference/commands/rename_station.md`
 struct RenameStationResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -367,7 +379,8 @@ std::ostream& operator<<(std::ostream& out, const RenameStationResponse& message
 /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/rename_station.md`
+/// - 文档：`docs-site/reference/commands/rename_station.md`
+/// - Docs: `docs-site/en/reference/commands/rename_station.md`
 struct RenameStationRequest {
   /// 站点所在地图的 ID
   /// ID of the station's map
@@ -401,7 +414,8 @@ std::ostream& operator<<(std::ostream& out, const RenameStationRequest& message)
 /// No code yet: types only. Only reads, inferred. Since 2023-10-13.
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/list_stations.md`
+/// - 文档：`docs-site/reference/commands/list_stations.md`
+/// - Docs: `docs-site/en/reference/commands/list_stations.md`
 struct ListStationsRequest {
   /// 地图 ID
   /// ID of the map
@@ -428,7 +442,8 @@ std::ostream& operator<<(std::ostream& out, const ListStationsRequest& message);
 /// A station in the list
 ///
 /// - Spec: `types.ListedStation` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct ListedStation {
   /// 站点对应设备的 ID；第 15 节说导航站点没有
   /// ID of the station's device; according to section 15, navigation stations have none
@@ -480,7 +495,8 @@ std::ostream& operator<<(std::ostream& out, const ListedStation& message);
 /// List the stations of a map: response
 ///
 /// - Spec: `commands.list_stations` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/list_stations.md`
+/// - 文档：`docs-site/reference/commands/list_stations.md`
+/// - Docs: `docs-site/en/reference/commands/list_stations.md`
 struct ListStationsResponse {
   /// 站点列表
   /// The stations
@@ -508,7 +524,8 @@ std::ostream& operator<<(std::ostream& out, const ListStationsResponse& message)
 /// No code yet: types only. Only reads. Since 2024-01-29.
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 struct GetCurrentStationRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -524,7 +541,8 @@ std::ostream& operator<<(std::ostream& out, const GetCurrentStationRequest& mess
 /// `data` of `GetCurrentStationResponse`.
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 struct GetCurrentStationResponseData {
   /// 站点所在地图的 ID
   /// ID of the station's map
@@ -558,7 +576,8 @@ std::ostream& operator<<(std::ostream& out, const GetCurrentStationResponseData&
 /// Get the station the robot is at: response
 ///
 /// - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/commands/get_current_station.md`
+/// - 文档：`docs-site/reference/commands/get_current_station.md`
+/// - Docs: `docs-site/en/reference/commands/get_current_station.md`
 struct GetCurrentStationResponse {
   /// 机器人所在的站点；不在任何站点时为空
   /// The station the robot is at; empty if it is at none
@@ -584,7 +603,8 @@ std::ostream& operator<<(std::ostream& out, const GetCurrentStationResponse& mes
 /// No code yet: types only. Since 2024-01-29.
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/reports/station_reached.md`
+/// - 文档：`docs-site/reference/reports/station_reached.md`
+/// - Docs: `docs-site/en/reference/reports/station_reached.md`
 struct StationReached {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -594,11 +614,12 @@ bool operator==(const StationReached& left, const StationReached& right);
 bool operator!=(const StationReached& left, const StationReached& right);
 std::ostream& operator<<(std::ostream& out, const StationReached& message);
 
-/// 主动上报机器人抵达站点：确认
+/// 主动上报机器人抵达站点：应答
 /// Station reached: acknowledgement
 ///
 /// - Spec: `reports.station_reached` in `spec/commands/station.yaml`
-/// - Docs: `docs-site/reference/reports/station_reached.md`
+/// - 文档：`docs-site/reference/reports/station_reached.md`
+/// - Docs: `docs-site/en/reference/reports/station_reached.md`
 struct StationReachedAck {
   /// 正文中的指令 id，与包头的 msgId 关系不明，原样传递
   /// Command ID inside the body; its relation to the header's msgId is unknown, so it is passed on
@@ -684,8 +705,8 @@ extern template struct Codec<fc::StationReachedAck>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class StationCalls {
  public:
@@ -695,7 +716,8 @@ class StationCalls {
   /// Code 0x0A03. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/get_station.md`
+  /// - 文档：`docs-site/reference/commands/get_station.md`
+  /// - Docs: `docs-site/en/reference/commands/get_station.md`
   fc_runtime::Called<GetStationResponse> get_station(
       const GetStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -711,7 +733,8 @@ class StationCalls {
   /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+  /// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+  /// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
   fc_runtime::Called<UploadMapStationsResponse> upload_map_stations(
       const UploadMapStationsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -725,7 +748,8 @@ class StationCalls {
   /// Code 0x0302. Changes the configuration. Since 2023-07-17.
   ///
   /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/add_station.md`
+  /// - 文档：`docs-site/reference/commands/add_station.md`
+  /// - Docs: `docs-site/en/reference/commands/add_station.md`
   fc_runtime::Called<AddStationResponse> add_station(
       const AddStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -735,7 +759,8 @@ class StationCalls {
   /// Code 0x0304. Changes the configuration. Since 2023-10-13.
   ///
   /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/delete_station.md`
+  /// - 文档：`docs-site/reference/commands/delete_station.md`
+  /// - Docs: `docs-site/en/reference/commands/delete_station.md`
   fc_runtime::Called<DeleteStationResponse> delete_station(
       const DeleteStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -745,12 +770,13 @@ class StationCalls {
   /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
   ///
   /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/rename_station.md`
+  /// - 文档：`docs-site/reference/commands/rename_station.md`
+  /// - Docs: `docs-site/en/reference/commands/rename_station.md`
   fc_runtime::Called<RenameStationResponse> rename_station(
       const RenameStationRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetStationResponse> StationCalls<Self>::get_station(const GetStationRequest& request, const fc_runtime::CallOptions& options) const {
@@ -784,7 +810,8 @@ class StationRobot {
   /// Code 0x0A03. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/get_station.md`
+  /// - 文档：`docs-site/reference/commands/get_station.md`
+  /// - Docs: `docs-site/en/reference/commands/get_station.md`
   virtual fc_runtime::Replied<GetStationResponse> get_station(const fc_runtime::Context& context,
                                                               const GetStationRequest& request) = 0;
 
@@ -800,7 +827,8 @@ class StationRobot {
   /// Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/upload_map_stations.md`
+  /// - 文档：`docs-site/reference/commands/upload_map_stations.md`
+  /// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
   virtual fc_runtime::Replied<UploadMapStationsResponse> upload_map_stations(
       const fc_runtime::Context& context, const UploadMapStationsRequest& request) = 0;
 
@@ -814,7 +842,8 @@ class StationRobot {
   /// Code 0x0302. Changes the configuration. Since 2023-07-17.
   ///
   /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/add_station.md`
+  /// - 文档：`docs-site/reference/commands/add_station.md`
+  /// - Docs: `docs-site/en/reference/commands/add_station.md`
   virtual fc_runtime::Replied<AddStationResponse> add_station(const fc_runtime::Context& context,
                                                               const AddStationRequest& request) = 0;
 
@@ -824,7 +853,8 @@ class StationRobot {
   /// Code 0x0304. Changes the configuration. Since 2023-10-13.
   ///
   /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/delete_station.md`
+  /// - 文档：`docs-site/reference/commands/delete_station.md`
+  /// - Docs: `docs-site/en/reference/commands/delete_station.md`
   virtual fc_runtime::Replied<DeleteStationResponse> delete_station(
       const fc_runtime::Context& context, const DeleteStationRequest& request) = 0;
 
@@ -834,17 +864,18 @@ class StationRobot {
   /// Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
   ///
   /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-  /// - Docs: `docs-site/reference/commands/rename_station.md`
+  /// - 文档：`docs-site/reference/commands/rename_station.md`
+  /// - Docs: `docs-site/en/reference/commands/rename_station.md`
   virtual fc_runtime::Replied<RenameStationResponse> rename_station(
       const fc_runtime::Context& context, const RenameStationRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~StationRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class StationDefaults : public Base {
  public:

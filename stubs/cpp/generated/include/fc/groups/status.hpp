@@ -26,7 +26,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class FaultLevel {
  public:
   /// 规范中的值。The values of the spec.
@@ -48,9 +49,9 @@ class FaultLevel {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit FaultLevel(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const FaultLevel& left, const FaultLevel& right) {
@@ -64,7 +65,7 @@ class FaultLevel {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const FaultLevel& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const FaultLevel& value);
 
@@ -72,7 +73,8 @@ std::ostream& operator<<(std::ostream& out, const FaultLevel& value);
 /// A fault
 ///
 /// - Spec: `types.Fault` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct Fault {
   /// 异常码
   /// Fault code
@@ -129,7 +131,8 @@ std::ostream& operator<<(std::ostream& out, const Fault& message);
 /// List the faults: response
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/list_faults.md`
+/// - 文档：`docs-site/reference/commands/list_faults.md`
+/// - Docs: `docs-site/en/reference/commands/list_faults.md`
 struct ListFaultsResponse {
   /// 异常
   /// The faults
@@ -152,7 +155,8 @@ std::ostream& operator<<(std::ostream& out, const ListFaultsResponse& message);
 /// Code 0x0A0C. Only reads, inferred.
 ///
 /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/list_faults.md`
+/// - 文档：`docs-site/reference/commands/list_faults.md`
+/// - Docs: `docs-site/en/reference/commands/list_faults.md`
 struct ListFaultsRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -168,7 +172,8 @@ std::ostream& operator<<(std::ostream& out, const ListFaultsRequest& message);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class SelfCheckName {
  public:
   /// 规范中的值。The values of the spec.
@@ -196,9 +201,9 @@ class SelfCheckName {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit SelfCheckName(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const SelfCheckName& left, const SelfCheckName& right) {
@@ -212,7 +217,7 @@ class SelfCheckName {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const SelfCheckName& value) noexcept;
 std::ostream& operator<<(std::ostream& out, const SelfCheckName& value);
 
@@ -222,7 +227,8 @@ std::ostream& operator<<(std::ostream& out, const SelfCheckName& value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 class SelfCheckStatus {
  public:
   /// 规范中的值。The values of the spec.
@@ -244,9 +250,9 @@ class SelfCheckStatus {
   /// 其他文字，原样保留。Any text, kept unchanged.
   explicit SelfCheckStatus(std::string wire) : wire_(std::move(wire)) {}
 
-  /// 规范中的值；其他文字没有。The value of the spec; none of any other text.
+  /// 规范中的值；其他文字没有。The value of the spec; empty for any other text.
   [[nodiscard]] std::optional<Value> value() const;
-  /// 报文中的文字。What travels.
+  /// 报文中的文字。The text that is sent.
   [[nodiscard]] const std::string& wire() const noexcept { return wire_; }
 
   friend bool operator==(const SelfCheckStatus& left, const SelfCheckStatus& right) {
@@ -260,18 +266,18 @@ class SelfCheckStatus {
   std::string wire_;
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(const SelfCheckStatus& value) noexcept;
-/// 是否为终态。Whether nothing follows it.
+/// 是否为终态。Returns `true` for a final state.
 [[nodiscard]] bool is_final(const SelfCheckStatus& value) noexcept;
-/// 是否表示失败。Whether it says that something failed.
+/// 是否表示失败。Returns `true` for a failure.
 [[nodiscard]] bool is_error(const SelfCheckStatus& value) noexcept;
-/// 正常顺序中是否跟在 `previous` 之后；也会有其他变化。
-/// Whether it follows `previous` in the normal order. Other changes occur as well.
+/// 正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。
+/// Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.
 [[nodiscard]] bool normally_follows(const SelfCheckStatus& value,
                                     const SelfCheckStatus& previous) noexcept;
-/// 跟在 `previous` 之后是否合乎规范所说的顺序。
-/// Whether nothing that is said of the order speaks against it after `previous`.
+/// 规范是否允许 `previous` 之后出现此状态。
+/// Returns `true` if the spec allows this state after `previous`.
 [[nodiscard]] bool is_in_order(const SelfCheckStatus& value,
                                const SelfCheckStatus& previous) noexcept;
 std::ostream& operator<<(std::ostream& out, const SelfCheckStatus& value);
@@ -280,7 +286,8 @@ std::ostream& operator<<(std::ostream& out, const SelfCheckStatus& value);
 /// Result of one item of the self-check
 ///
 /// - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct SelfCheckItem {
   /// 自检项目
   /// What is checked
@@ -311,7 +318,8 @@ std::ostream& operator<<(std::ostream& out, const SelfCheckItem& message);
 /// Get the result of the self-check: response
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/get_self_check.md`
+/// - 文档：`docs-site/reference/commands/get_self_check.md`
+/// - Docs: `docs-site/en/reference/commands/get_self_check.md`
 struct GetSelfCheckResponse {
   /// 各自检项目的结果
   /// The result of each item
@@ -335,7 +343,8 @@ std::ostream& operator<<(std::ostream& out, const GetSelfCheckResponse& message)
 /// Code 0x0A0D. Only reads, inferred.
 ///
 /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/commands/get_self_check.md`
+/// - 文档：`docs-site/reference/commands/get_self_check.md`
+/// - Docs: `docs-site/en/reference/commands/get_self_check.md`
 struct GetSelfCheckRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -358,7 +367,8 @@ std::ostream& operator<<(std::ostream& out, const GetSelfCheckRequest& message);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class UpperStatus : std::uint16_t {
   /// 未初始化，默认状态
   /// Not initialised, the default
@@ -386,7 +396,7 @@ enum class UpperStatus : std::uint16_t {
   Broken = 99,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(UpperStatus value) noexcept;
 std::ostream& operator<<(std::ostream& out, UpperStatus value);
 
@@ -400,7 +410,8 @@ std::ostream& operator<<(std::ostream& out, UpperStatus value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class LowerStatus : std::uint16_t {
   /// 无子状态
   /// No sub-state
@@ -419,7 +430,7 @@ enum class LowerStatus : std::uint16_t {
   LeavingElevator = 1403,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(LowerStatus value) noexcept;
 std::ostream& operator<<(std::ostream& out, LowerStatus value);
 
@@ -429,7 +440,8 @@ std::ostream& operator<<(std::ostream& out, LowerStatus value);
 /// `data` of `RobotStatus`.
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 struct RobotStatusData {
   /// 机器人运行的状态
   /// State of the robot
@@ -459,11 +471,12 @@ bool operator==(const RobotStatusData& left, const RobotStatusData& right);
 bool operator!=(const RobotStatusData& left, const RobotStatusData& right);
 std::ostream& operator<<(std::ostream& out, const RobotStatusData& message);
 
-/// 主动上报机器人状态：确认
+/// 主动上报机器人状态：应答
 /// Status of the robot: acknowledgement
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 struct RobotStatusAck {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -484,7 +497,8 @@ std::ostream& operator<<(std::ostream& out, const RobotStatusAck& message);
 /// Code 0x0342. Since 2023-05.
 ///
 /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-/// - Docs: `docs-site/reference/reports/robot_status.md`
+/// - 文档：`docs-site/reference/reports/robot_status.md`
+/// - Docs: `docs-site/en/reference/reports/robot_status.md`
 struct RobotStatus {
   /// 业务数据
   /// Payload
@@ -546,8 +560,8 @@ extern template struct Codec<fc::RobotStatus>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class StatusCalls {
  public:
@@ -561,7 +575,8 @@ class StatusCalls {
   /// Code 0x0A0C. Only reads, inferred.
   ///
   /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/list_faults.md`
+  /// - 文档：`docs-site/reference/commands/list_faults.md`
+  /// - Docs: `docs-site/en/reference/commands/list_faults.md`
   fc_runtime::Called<ListFaultsResponse> list_faults(
       const ListFaultsRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -576,12 +591,13 @@ class StatusCalls {
   /// Code 0x0A0D. Only reads, inferred.
   ///
   /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/get_self_check.md`
+  /// - 文档：`docs-site/reference/commands/get_self_check.md`
+  /// - Docs: `docs-site/en/reference/commands/get_self_check.md`
   fc_runtime::Called<GetSelfCheckResponse> get_self_check(
       const GetSelfCheckRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<ListFaultsResponse> StatusCalls<Self>::list_faults(const ListFaultsRequest& request, const fc_runtime::CallOptions& options) const {
@@ -607,7 +623,8 @@ class StatusRobot {
   /// Code 0x0A0C. Only reads, inferred.
   ///
   /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/list_faults.md`
+  /// - 文档：`docs-site/reference/commands/list_faults.md`
+  /// - Docs: `docs-site/en/reference/commands/list_faults.md`
   virtual fc_runtime::Replied<ListFaultsResponse> list_faults(const fc_runtime::Context& context,
                                                               const ListFaultsRequest& request) = 0;
 
@@ -622,17 +639,18 @@ class StatusRobot {
   /// Code 0x0A0D. Only reads, inferred.
   ///
   /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/commands/get_self_check.md`
+  /// - 文档：`docs-site/reference/commands/get_self_check.md`
+  /// - Docs: `docs-site/en/reference/commands/get_self_check.md`
   virtual fc_runtime::Replied<GetSelfCheckResponse> get_self_check(
       const fc_runtime::Context& context, const GetSelfCheckRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~StatusRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class StatusDefaults : public Base {
  public:
@@ -649,7 +667,7 @@ class StatusDefaults : public Base {
 };
 
 /// 一组主动上报，是 `Reporter` 的方法；`Self` 就是它。
-/// The reports of a group as methods of `Reporter`, which is `Self`.
+/// The reports of a group as methods of `Reporter` (`Self`).
 template <class Self>
 class StatusReporter {
  public:
@@ -664,7 +682,8 @@ class StatusReporter {
   /// Code 0x0342. Since 2023-05.
   ///
   /// - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-  /// - Docs: `docs-site/reference/reports/robot_status.md`
+  /// - 文档：`docs-site/reference/reports/robot_status.md`
+  /// - Docs: `docs-site/en/reference/reports/robot_status.md`
   fc_runtime::Acknowledged robot_status(
       const RobotStatus& report, std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
     return static_cast<const Self*>(this)->server().push(report, to);
@@ -679,7 +698,7 @@ using StatusCommands = fc_runtime::Types<
     GetSelfCheckRequest,
     // No more.
     fc_runtime::End>;
-/// 这一组的主动上报。The reports of the group.
+/// 这一组的上报。The reports of the group.
 using StatusReports = fc_runtime::Types<
     // 0x0342
     RobotStatus,

@@ -23,7 +23,8 @@ namespace fc {
 /// Create a patrol or delivery task: response
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/create_task.md`
+/// - 文档：`docs-site/reference/commands/create_task.md`
+/// - Docs: `docs-site/en/reference/commands/create_task.md`
 struct CreateTaskResponse {
   /// 任务名称
   /// Name of the task
@@ -63,7 +64,8 @@ std::ostream& operator<<(std::ostream& out, const CreateTaskResponse& message);
 /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/create_task.md`
+/// - 文档：`docs-site/reference/commands/create_task.md`
+/// - Docs: `docs-site/en/reference/commands/create_task.md`
 struct CreateTaskRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -89,7 +91,8 @@ std::ostream& operator<<(std::ostream& out, const CreateTaskRequest& message);
 /// No code yet: types only. Moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/execute_task.md`
+/// - 文档：`docs-site/reference/commands/execute_task.md`
+/// - Docs: `docs-site/en/reference/commands/execute_task.md`
 struct ExecuteTaskRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -103,7 +106,8 @@ std::ostream& operator<<(std::ostream& out, const ExecuteTaskRequest& message);
 /// Execute a task: response
 ///
 /// - Spec: `commands.execute_task` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/execute_task.md`
+/// - 文档：`docs-site/reference/commands/execute_task.md`
+/// - Docs: `docs-site/en/reference/commands/execute_task.md`
 struct ExecuteTaskResponse {
   /// 任务名称
   /// Name of the task
@@ -131,7 +135,8 @@ std::ostream& operator<<(std::ostream& out, const ExecuteTaskResponse& message);
 /// Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_status.md`
+/// - 文档：`docs-site/reference/commands/get_task_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_status.md`
 struct GetTaskStatusResponse {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -151,7 +156,8 @@ std::ostream& operator<<(std::ostream& out, const GetTaskStatusResponse& message
 /// Code 0x0353. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_status.md`
+/// - 文档：`docs-site/reference/commands/get_task_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_status.md`
 struct GetTaskStatusRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -174,7 +180,8 @@ std::ostream& operator<<(std::ostream& out, const GetTaskStatusRequest& message)
 /// No code yet: types only. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_history.md`
+/// - 文档：`docs-site/reference/commands/get_task_history.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_history.md`
 struct GetTaskHistoryRequest {
   /// 要查询的任务的 ID
   /// ID of the task to look up
@@ -195,7 +202,8 @@ std::ostream& operator<<(std::ostream& out, const GetTaskHistoryRequest& message
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class TaskStatus : std::uint8_t {
   /// 执行中
   /// In progress
@@ -208,7 +216,7 @@ enum class TaskStatus : std::uint8_t {
   Failed = 2,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(TaskStatus value) noexcept;
 std::ostream& operator<<(std::ostream& out, TaskStatus value);
 
@@ -216,7 +224,8 @@ std::ostream& operator<<(std::ostream& out, TaskStatus value);
 /// Record of one station of a task
 ///
 /// - Spec: `types.TaskStation` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct TaskStation {
   /// 站点 ID
   /// ID of the station
@@ -263,7 +272,8 @@ std::ostream& operator<<(std::ostream& out, const TaskStation& message);
 /// Get a task's execution history: response
 ///
 /// - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/commands/get_task_history.md`
+/// - 文档：`docs-site/reference/commands/get_task_history.md`
+/// - Docs: `docs-site/en/reference/commands/get_task_history.md`
 struct GetTaskHistoryResponse {
   /// 任务 ID
   /// ID of the task
@@ -299,11 +309,12 @@ bool operator==(const GetTaskHistoryResponse& left, const GetTaskHistoryResponse
 bool operator!=(const GetTaskHistoryResponse& left, const GetTaskHistoryResponse& right);
 std::ostream& operator<<(std::ostream& out, const GetTaskHistoryResponse& message);
 
-/// 遇障语音播报：确认
+/// 遇障语音播报：应答
 /// Voice announcement of an obstacle: acknowledgement
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+/// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+/// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
 struct ObstacleAnnouncementAck {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -326,7 +337,8 @@ std::ostream& operator<<(std::ostream& out, const ObstacleAnnouncementAck& messa
 /// Code 0x0341. Since 2023-05.
 ///
 /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+/// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+/// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
 struct ObstacleAnnouncement {
   /// 任务 ID；源文档没有注释
   /// ID of the task; not explained in the source
@@ -341,11 +353,12 @@ bool operator==(const ObstacleAnnouncement& left, const ObstacleAnnouncement& ri
 bool operator!=(const ObstacleAnnouncement& left, const ObstacleAnnouncement& right);
 std::ostream& operator<<(std::ostream& out, const ObstacleAnnouncement& message);
 
-/// 到达目标点通知上报：确认
+/// 到达目标点通知上报：应答
 /// Target reached: acknowledgement
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/target_reached.md`
+/// - 文档：`docs-site/reference/reports/target_reached.md`
+/// - Docs: `docs-site/en/reference/reports/target_reached.md`
 struct TargetReachedAck {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -370,7 +383,8 @@ std::ostream& operator<<(std::ostream& out, const TargetReachedAck& message);
 /// Code 0x0340, inferred. Since 2023-05.
 ///
 /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/target_reached.md`
+/// - 文档：`docs-site/reference/reports/target_reached.md`
+/// - Docs: `docs-site/en/reference/reports/target_reached.md`
 struct TargetReached {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -391,7 +405,8 @@ std::ostream& operator<<(std::ostream& out, const TargetReached& message);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class TaskProcess : std::uint8_t {
   /// 非特殊进度（一般进度）
   /// Nothing special (general progress)
@@ -419,11 +434,11 @@ enum class TaskProcess : std::uint8_t {
   LeavingElevator = 7,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(TaskProcess value) noexcept;
 std::ostream& operator<<(std::ostream& out, TaskProcess value);
 
-/// 上报机器人任务进度：确认
+/// 上报机器人任务进度：应答
 /// Task progress: acknowledgement
 ///
 /// 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -432,7 +447,8 @@ std::ostream& operator<<(std::ostream& out, TaskProcess value);
 /// msgId, so this one is taken to be the envelope alone.
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/task_progress.md`
+/// - 文档：`docs-site/reference/reports/task_progress.md`
+/// - Docs: `docs-site/en/reference/reports/task_progress.md`
 struct TaskProgressAck {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -453,7 +469,8 @@ std::ostream& operator<<(std::ostream& out, const TaskProgressAck& message);
 /// Code 0x0345. Since 2024-01-29.
 ///
 /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-/// - Docs: `docs-site/reference/reports/task_progress.md`
+/// - 文档：`docs-site/reference/reports/task_progress.md`
+/// - Docs: `docs-site/en/reference/reports/task_progress.md`
 struct TaskProgress {
   /// 任务进度
   /// Progress of the task
@@ -541,8 +558,8 @@ extern template struct Codec<fc::TaskProgress>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class TaskCalls {
  public:
@@ -559,7 +576,8 @@ class TaskCalls {
   /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
   ///
   /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/create_task.md`
+  /// - 文档：`docs-site/reference/commands/create_task.md`
+  /// - Docs: `docs-site/en/reference/commands/create_task.md`
   fc_runtime::Called<CreateTaskResponse> create_task(
       const CreateTaskRequest& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -569,12 +587,13 @@ class TaskCalls {
   /// Code 0x0353. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/get_task_status.md`
+  /// - 文档：`docs-site/reference/commands/get_task_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_task_status.md`
   fc_runtime::Called<GetTaskStatusResponse> get_task_status(
       const GetTaskStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<CreateTaskResponse> TaskCalls<Self>::create_task(const CreateTaskRequest& request, const fc_runtime::CallOptions& options) const {
@@ -603,7 +622,8 @@ class TaskRobot {
   /// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
   ///
   /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/create_task.md`
+  /// - 文档：`docs-site/reference/commands/create_task.md`
+  /// - Docs: `docs-site/en/reference/commands/create_task.md`
   virtual fc_runtime::Replied<CreateTaskResponse> create_task(const fc_runtime::Context& context,
                                                               const CreateTaskRequest& request) = 0;
 
@@ -613,17 +633,18 @@ class TaskRobot {
   /// Code 0x0353. Only reads. Since 2023-05.
   ///
   /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/commands/get_task_status.md`
+  /// - 文档：`docs-site/reference/commands/get_task_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_task_status.md`
   virtual fc_runtime::Replied<GetTaskStatusResponse> get_task_status(
       const fc_runtime::Context& context, const GetTaskStatusRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~TaskRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class TaskDefaults : public Base {
  public:
@@ -640,7 +661,7 @@ class TaskDefaults : public Base {
 };
 
 /// 一组主动上报，是 `Reporter` 的方法；`Self` 就是它。
-/// The reports of a group as methods of `Reporter`, which is `Self`.
+/// The reports of a group as methods of `Reporter` (`Self`).
 template <class Self>
 class TaskReporter {
  public:
@@ -657,7 +678,8 @@ class TaskReporter {
   /// Code 0x0341. Since 2023-05.
   ///
   /// - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+  /// - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+  /// - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
   fc_runtime::Acknowledged obstacle_announcement(
       const ObstacleAnnouncement& report,
       std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
@@ -674,7 +696,8 @@ class TaskReporter {
   /// Code 0x0340, inferred. Since 2023-05.
   ///
   /// - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/target_reached.md`
+  /// - 文档：`docs-site/reference/reports/target_reached.md`
+  /// - Docs: `docs-site/en/reference/reports/target_reached.md`
   fc_runtime::Acknowledged target_reached(
       const TargetReached& report,
       std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
@@ -692,7 +715,8 @@ class TaskReporter {
   /// Code 0x0345. Since 2024-01-29.
   ///
   /// - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-  /// - Docs: `docs-site/reference/reports/task_progress.md`
+  /// - 文档：`docs-site/reference/reports/task_progress.md`
+  /// - Docs: `docs-site/en/reference/reports/task_progress.md`
   fc_runtime::Acknowledged task_progress(
       const TaskProgress& report, std::optional<fc_runtime::ConnectionId> to = std::nullopt) const {
     return static_cast<const Self*>(this)->server().push(report, to);
@@ -707,7 +731,7 @@ using TaskCommands = fc_runtime::Types<
     GetTaskStatusRequest,
     // No more.
     fc_runtime::End>;
-/// 这一组的主动上报。The reports of the group.
+/// 这一组的上报。The reports of the group.
 using TaskReports = fc_runtime::Types<
     // 0x0341
     ObstacleAnnouncement,

@@ -20,7 +20,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.StationType` in `spec/types.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class StationType : std::uint8_t {
   /// 导航站点
   /// Navigation station
@@ -45,7 +46,7 @@ enum class StationType : std::uint8_t {
   Standby = 6,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(StationType value) noexcept;
 std::ostream& operator<<(std::ostream& out, StationType value);
 

@@ -25,7 +25,8 @@ namespace fc {
 /// Open: The response is lost; its label runs straight into section 9.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
 struct Unnamed0309Response {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -48,7 +49,8 @@ std::ostream& operator<<(std::ostream& out, const Unnamed0309Response& message);
 /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
 struct Unnamed0309Request {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -62,7 +64,8 @@ std::ostream& operator<<(std::ostream& out, const Unnamed0309Request& message);
 /// Unnamed command (0x0460): response
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
 struct Unnamed0460Response {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -83,7 +86,8 @@ std::ostream& operator<<(std::ostream& out, const Unnamed0460Response& message);
 /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 ///
 /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-/// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+/// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+/// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
 struct Unnamed0460Request {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -122,8 +126,8 @@ extern template struct Codec<fc::Unnamed0460Request>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class UnnamedCalls {
  public:
@@ -140,7 +144,8 @@ class UnnamedCalls {
   /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+  /// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+  /// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
   fc_runtime::Called<Unnamed0309Response> unnamed_0309(
       const Unnamed0309Request& request, const fc_runtime::CallOptions& options = {}) const;
 
@@ -155,12 +160,13 @@ class UnnamedCalls {
   /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+  /// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+  /// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
   fc_runtime::Called<Unnamed0460Response> unnamed_0460(
       const Unnamed0460Request& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<Unnamed0309Response> UnnamedCalls<Self>::unnamed_0309(const Unnamed0309Request& request, const fc_runtime::CallOptions& options) const {
@@ -189,7 +195,8 @@ class UnnamedRobot {
   /// Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0309.md`
+  /// - 文档：`docs-site/reference/commands/unnamed_0309.md`
+  /// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
   virtual fc_runtime::Replied<Unnamed0309Response> unnamed_0309(
       const fc_runtime::Context& context, const Unnamed0309Request& request) = 0;
 
@@ -204,17 +211,18 @@ class UnnamedRobot {
   /// Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
   ///
   /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-  /// - Docs: `docs-site/reference/commands/unnamed_0460.md`
+  /// - 文档：`docs-site/reference/commands/unnamed_0460.md`
+  /// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
   virtual fc_runtime::Replied<Unnamed0460Response> unnamed_0460(
       const fc_runtime::Context& context, const Unnamed0460Request& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~UnnamedRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class UnnamedDefaults : public Base {
  public:

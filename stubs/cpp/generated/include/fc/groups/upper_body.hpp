@@ -23,7 +23,8 @@ namespace fc {
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class PushRodStatus : std::int32_t {
   /// 收回到原始位置
   /// Retracted to its original position
@@ -33,7 +34,7 @@ enum class PushRodStatus : std::int32_t {
   Extended = 4,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(PushRodStatus value) noexcept;
 std::ostream& operator<<(std::ostream& out, PushRodStatus value);
 
@@ -43,7 +44,8 @@ std::ostream& operator<<(std::ostream& out, PushRodStatus value);
 /// 其他值原样保留。Any other value is kept unchanged.
 ///
 /// - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 enum class DoorLockStatus : std::int32_t {
   /// 打开到位
   /// Fully open
@@ -53,7 +55,7 @@ enum class DoorLockStatus : std::int32_t {
   Closed = 7,
 };
 
-/// 是否为规范中的值。Whether it is one of the values above.
+/// 是否为规范中的值。Returns `true` for a value of the spec.
 [[nodiscard]] bool is_known(DoorLockStatus value) noexcept;
 std::ostream& operator<<(std::ostream& out, DoorLockStatus value);
 
@@ -61,7 +63,8 @@ std::ostream& operator<<(std::ostream& out, DoorLockStatus value);
 /// Status of one door lock
 ///
 /// - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/types.md`
+/// - 文档：`docs-site/reference/types.md`
+/// - Docs: `docs-site/en/reference/types.md`
 struct DoorLockInfo {
   /// 门锁 ID
   /// ID of the door lock
@@ -85,7 +88,8 @@ std::ostream& operator<<(std::ostream& out, const DoorLockInfo& message);
 /// Get the upper body's status: response
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+/// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
 struct GetUpperBodyStatusResponse {
   /// 推杆状态
   /// Status of the push rod
@@ -122,7 +126,8 @@ std::ostream& operator<<(std::ostream& out, const GetUpperBodyStatusResponse& me
 /// Code 0x0204. Only reads.
 ///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-/// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+/// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+/// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
 struct GetUpperBodyStatusRequest {
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
@@ -154,8 +159,8 @@ extern template struct Codec<fc::GetUpperBodyStatusRequest>;
 
 namespace fc::groups {
 
-/// 一组指令，是 `Client` 的方法；`Self` 就是它。
-/// The commands of a group as methods of `Client`, which is `Self`.
+/// 一组指令，是 `Client`（`Self`）的方法。
+/// The commands of a group as methods of `Client` (`Self`).
 template <class Self>
 class UpperBodyCalls {
  public:
@@ -171,12 +176,13 @@ class UpperBodyCalls {
   /// Code 0x0204. Only reads.
   ///
   /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-  /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+  /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
   fc_runtime::Called<GetUpperBodyStatusResponse> get_upper_body_status(
       const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options = {}) const;
 };
 
-// Not in the class, where they would be inline: programs would compile them in spite of `extern template`.
+// Not in the class: inline functions would be compiled in spite of `extern template`.
 // clang-format off
 template <class Self>
 fc_runtime::Called<GetUpperBodyStatusResponse> UpperBodyCalls<Self>::get_upper_body_status(const GetUpperBodyStatusRequest& request, const fc_runtime::CallOptions& options) const {
@@ -200,17 +206,18 @@ class UpperBodyRobot {
   /// Code 0x0204. Only reads.
   ///
   /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-  /// - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+  /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+  /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
   virtual fc_runtime::Replied<GetUpperBodyStatusResponse> get_upper_body_status(
       const fc_runtime::Context& context, const GetUpperBodyStatusRequest& request) = 0;
 
  protected:
-  // Nobody has a part of a robot alone.
+  // Only `Robot` derives from a part.
   ~UpperBodyRobot() = default;
 };
 
-/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 应答。
-/// The commands of a group in `PartialRobot` and `ExampleRobot`, whose answers `Base` has.
+/// 一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。
+/// The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.
 template <class Base>
 class UpperBodyDefaults : public Base {
  public:

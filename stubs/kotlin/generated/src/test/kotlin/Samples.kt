@@ -14,8 +14,8 @@ import kotlinx.coroutines.flow.map
 import kotlinx.coroutines.launch
 
 /**
- * 用文档中的示例应答全部指令。
- * Responds to every command as the samples of the documentation do.
+ * 用文档中的示例响应全部指令。
+ * Responds to every command with the samples of the documentation.
  */
 internal class SampleRobot : Robot {
     override suspend fun listIotDevices(context: Context, request: ListIotDevicesRequest): ListIotDevicesResponse {
@@ -793,7 +793,7 @@ private suspend fun pushTaskProgress(reporter: Reporter) {
 
 /**
  * 运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。
- * Runs all samples, and closes `client` at the end; `server` is the robot that it is connected to.
+ * Runs all samples, and closes `client` at the end. `server` is the robot of the connection.
  */
 internal suspend fun runSamples(client: Client, server: Server): Unit = coroutineScope {
     callListIotDevices(client)

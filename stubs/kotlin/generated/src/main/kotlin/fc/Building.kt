@@ -35,7 +35,8 @@ public interface BuildingOperations {
      * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+     * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+     * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
      */
     public val listIotDevices: Command<ListIotDevicesRequest, ListIotDevicesResponse> get() = Companion.listIotDevices
 
@@ -51,7 +52,8 @@ public interface BuildingOperations {
      * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/get_floors.md`
+     * - 文档：`docs-site/reference/commands/get_floors.md`
+     * - Docs: `docs-site/en/reference/commands/get_floors.md`
      */
     public val getFloors: Command<GetFloorsRequest, GetFloorsResponse> get() = Companion.getFloors
 
@@ -62,7 +64,8 @@ public interface BuildingOperations {
          * List the IoT devices of a type
          *
          * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-         * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+         * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+         * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
          */
         @JvmField
         public val listIotDevices: Command<ListIotDevicesRequest, ListIotDevicesResponse> =
@@ -74,7 +77,8 @@ public interface BuildingOperations {
          * Get the floors
          *
          * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-         * - Docs: `docs-site/reference/commands/get_floors.md`
+         * - 文档：`docs-site/reference/commands/get_floors.md`
+         * - Docs: `docs-site/en/reference/commands/get_floors.md`
          */
         @JvmField
         public val getFloors: Command<GetFloorsRequest, GetFloorsResponse> =
@@ -109,9 +113,10 @@ public interface BuildingClient {
      * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+     * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+     * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun listIotDevices(request: ListIotDevicesRequest): ListIotDevicesResponse =
@@ -133,9 +138,10 @@ public interface BuildingClient {
      * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/get_floors.md`
+     * - 文档：`docs-site/reference/commands/get_floors.md`
+     * - Docs: `docs-site/en/reference/commands/get_floors.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getFloors(request: GetFloorsRequest = GetFloorsRequest {}): GetFloorsResponse =
@@ -166,9 +172,10 @@ public interface BuildingHandlers {
      * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+     * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+     * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun listIotDevices(context: Context, request: ListIotDevicesRequest): ListIotDevicesResponse
 
@@ -184,9 +191,10 @@ public interface BuildingHandlers {
      * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
-     * - Docs: `docs-site/reference/commands/get_floors.md`
+     * - 文档：`docs-site/reference/commands/get_floors.md`
+     * - Docs: `docs-site/en/reference/commands/get_floors.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getFloors(context: Context, request: GetFloorsRequest): GetFloorsResponse
 }
@@ -231,7 +239,8 @@ internal class BuildingExample(pretendMotion: Boolean) :
  * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 public class ListIotDevicesRequest private constructor(content: Content) : Message(content) {
     /**
@@ -242,7 +251,7 @@ public class ListIotDevicesRequest private constructor(content: Content) : Messa
 
     override val messageType: MessageType<ListIotDevicesRequest> get() = ListIotDevicesRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListIotDevicesRequest] 的字段。Collects the fields of a [ListIotDevicesRequest]. */
@@ -263,7 +272,7 @@ public class ListIotDevicesRequest private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListIotDevicesRequest =
             builder().apply(build).build()
@@ -279,7 +288,8 @@ public class ListIotDevicesRequest private constructor(content: Content) : Messa
  * `data` of [ListIotDevicesRequest].
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 public class ListIotDevicesRequestData private constructor(content: Content) : Message(content) {
     /**
@@ -294,7 +304,7 @@ public class ListIotDevicesRequestData private constructor(content: Content) : M
 
     override val messageType: MessageType<ListIotDevicesRequestData> get() = ListIotDevicesRequestData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListIotDevicesRequestData] 的字段。Collects the fields of a [ListIotDevicesRequestData]. */
@@ -315,7 +325,7 @@ public class ListIotDevicesRequestData private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListIotDevicesRequestData =
             builder().apply(build).build()
@@ -329,7 +339,8 @@ public class ListIotDevicesRequestData private constructor(content: Content) : M
  * List the IoT devices of a type: response
  *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/list_iot_devices.md`
+ * - 文档：`docs-site/reference/commands/list_iot_devices.md`
+ * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
  */
 public class ListIotDevicesResponse private constructor(content: Content) : Message(content) {
     /**
@@ -340,7 +351,7 @@ public class ListIotDevicesResponse private constructor(content: Content) : Mess
 
     override val messageType: MessageType<ListIotDevicesResponse> get() = ListIotDevicesResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListIotDevicesResponse] 的字段。Collects the fields of a [ListIotDevicesResponse]. */
@@ -361,7 +372,7 @@ public class ListIotDevicesResponse private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListIotDevicesResponse =
             builder().apply(build).build()
@@ -382,12 +393,13 @@ public class ListIotDevicesResponse private constructor(content: Content) : Mess
  * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/get_floors.md`
+ * - 文档：`docs-site/reference/commands/get_floors.md`
+ * - Docs: `docs-site/en/reference/commands/get_floors.md`
  */
 public class GetFloorsRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetFloorsRequest> get() = GetFloorsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetFloorsRequest] 的字段。Collects the fields of a [GetFloorsRequest]. */
@@ -400,7 +412,7 @@ public class GetFloorsRequest private constructor(content: Content) : Message(co
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetFloorsRequest =
             builder().apply(build).build()
@@ -414,7 +426,8 @@ public class GetFloorsRequest private constructor(content: Content) : Message(co
  * Get the floors: response
  *
  * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/commands/get_floors.md`
+ * - 文档：`docs-site/reference/commands/get_floors.md`
+ * - Docs: `docs-site/en/reference/commands/get_floors.md`
  */
 public class GetFloorsResponse private constructor(content: Content) : Message(content) {
     /**
@@ -443,7 +456,7 @@ public class GetFloorsResponse private constructor(content: Content) : Message(c
 
     override val messageType: MessageType<GetFloorsResponse> get() = GetFloorsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetFloorsResponse] 的字段。Collects the fields of a [GetFloorsResponse]. */
@@ -472,7 +485,7 @@ public class GetFloorsResponse private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetFloorsResponse =
             builder().apply(build).build()
@@ -490,7 +503,8 @@ public class GetFloorsResponse private constructor(content: Content) : Message(c
  * The list changes as device types are added; an unknown type is kept as the string it is.
  *
  * - Spec: `types.IotDeviceType` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class IotDeviceType private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<IotDeviceType> get() = IotDeviceType
@@ -533,8 +547,8 @@ public class IotDeviceType private constructor(wire: String) : TextValue(wire) {
         public val FIRE_DOOR: IotDeviceType = named("fireDoor", "FIRE_DOOR")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): IotDeviceType = super.of(wire)
@@ -548,7 +562,8 @@ public class IotDeviceType private constructor(wire: String) : TextValue(wire) {
  * An IoT device
  *
  * - Spec: `types.IotDevice` in `spec/commands/building.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class IotDevice private constructor(content: Content) : Message(content) {
     /**
@@ -577,7 +592,7 @@ public class IotDevice private constructor(content: Content) : Message(content) 
 
     override val messageType: MessageType<IotDevice> get() = IotDevice
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [IotDevice] 的字段。Collects the fields of a [IotDevice]. */
@@ -602,7 +617,7 @@ public class IotDevice private constructor(content: Content) : Message(content) 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): IotDevice =
             builder().apply(build).build()

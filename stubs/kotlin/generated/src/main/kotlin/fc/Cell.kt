@@ -38,7 +38,8 @@ public interface CellOperations {
      * Code 0x0A02. Only reads.
      *
      * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/get_cell_config.md`
+     * - 文档：`docs-site/reference/commands/get_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
      */
     public val getCellConfig: Command<GetCellConfigRequest, GetCellConfigResponse> get() = Companion.getCellConfig
 
@@ -63,7 +64,8 @@ public interface CellOperations {
      * Code 0x0A0B. Changes the configuration.
      *
      * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/set_cell_config.md`
+     * - 文档：`docs-site/reference/commands/set_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
      */
     public val setCellConfig: Command<SetCellConfigRequest, SetCellConfigResponse> get() = Companion.setCellConfig
 
@@ -74,7 +76,8 @@ public interface CellOperations {
          * Get the compartment configuration
          *
          * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-         * - Docs: `docs-site/reference/commands/get_cell_config.md`
+         * - 文档：`docs-site/reference/commands/get_cell_config.md`
+         * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
          */
         @JvmField
         public val getCellConfig: Command<GetCellConfigRequest, GetCellConfigResponse> =
@@ -86,7 +89,8 @@ public interface CellOperations {
          * Set the compartment configuration
          *
          * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-         * - Docs: `docs-site/reference/commands/set_cell_config.md`
+         * - 文档：`docs-site/reference/commands/set_cell_config.md`
+         * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
          */
         @JvmField
         public val setCellConfig: Command<SetCellConfigRequest, SetCellConfigResponse> =
@@ -121,9 +125,10 @@ public interface CellClient {
      * Code 0x0A02. Only reads.
      *
      * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/get_cell_config.md`
+     * - 文档：`docs-site/reference/commands/get_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getCellConfig(request: GetCellConfigRequest = GetCellConfigRequest {}): GetCellConfigResponse =
@@ -158,9 +163,10 @@ public interface CellClient {
      * Code 0x0A0B. Changes the configuration.
      *
      * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/set_cell_config.md`
+     * - 文档：`docs-site/reference/commands/set_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun setCellConfig(request: SetCellConfigRequest): SetCellConfigResponse =
@@ -188,9 +194,10 @@ public interface CellHandlers {
      * Code 0x0A02. Only reads.
      *
      * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/get_cell_config.md`
+     * - 文档：`docs-site/reference/commands/get_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getCellConfig(context: Context, request: GetCellConfigRequest): GetCellConfigResponse
 
@@ -215,9 +222,10 @@ public interface CellHandlers {
      * Code 0x0A0B. Changes the configuration.
      *
      * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/commands/set_cell_config.md`
+     * - 文档：`docs-site/reference/commands/set_cell_config.md`
+     * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun setCellConfig(context: Context, request: SetCellConfigRequest): SetCellConfigResponse
 }
@@ -262,12 +270,13 @@ internal class CellExample(pretendMotion: Boolean) :
  * Code 0x0A02. Only reads.
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 public class GetCellConfigRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetCellConfigRequest> get() = GetCellConfigRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCellConfigRequest] 的字段。Collects the fields of a [GetCellConfigRequest]. */
@@ -280,7 +289,7 @@ public class GetCellConfigRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCellConfigRequest =
             builder().apply(build).build()
@@ -294,7 +303,8 @@ public class GetCellConfigRequest private constructor(content: Content) : Messag
  * Get the compartment configuration: response
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 public class GetCellConfigResponse private constructor(content: Content) : Message(content) {
     /**
@@ -305,7 +315,7 @@ public class GetCellConfigResponse private constructor(content: Content) : Messa
 
     override val messageType: MessageType<GetCellConfigResponse> get() = GetCellConfigResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCellConfigResponse] 的字段。Collects the fields of a [GetCellConfigResponse]. */
@@ -326,7 +336,7 @@ public class GetCellConfigResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCellConfigResponse =
             builder().apply(build).build()
@@ -342,7 +352,8 @@ public class GetCellConfigResponse private constructor(content: Content) : Messa
  * `data` of [GetCellConfigResponse].
  *
  * - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/get_cell_config.md`
+ * - 文档：`docs-site/reference/commands/get_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
  */
 public class GetCellConfigResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -361,7 +372,7 @@ public class GetCellConfigResponseData private constructor(content: Content) : M
 
     override val messageType: MessageType<GetCellConfigResponseData> get() = GetCellConfigResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCellConfigResponseData] 的字段。Collects the fields of a [GetCellConfigResponseData]. */
@@ -386,7 +397,7 @@ public class GetCellConfigResponseData private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCellConfigResponseData =
             builder().apply(build).build()
@@ -415,7 +426,8 @@ public class GetCellConfigResponseData private constructor(content: Content) : M
  * Code 0x0A0B. Changes the configuration.
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 public class SetCellConfigRequest private constructor(content: Content) : Message(content) {
     /**
@@ -426,7 +438,7 @@ public class SetCellConfigRequest private constructor(content: Content) : Messag
 
     override val messageType: MessageType<SetCellConfigRequest> get() = SetCellConfigRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetCellConfigRequest] 的字段。Collects the fields of a [SetCellConfigRequest]. */
@@ -447,7 +459,7 @@ public class SetCellConfigRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetCellConfigRequest =
             builder().apply(build).build()
@@ -463,7 +475,8 @@ public class SetCellConfigRequest private constructor(content: Content) : Messag
  * `data` of [SetCellConfigRequest].
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  *
  * - [SetCellConfigRequestDataActiveIndex]：新版：选用一种已存储的配置
  *   New form: select a stored layout
@@ -492,7 +505,8 @@ public sealed interface SetCellConfigRequestData {
  * `data` of [SetCellConfigRequest].
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 public class SetCellConfigRequestDataActiveIndex private constructor(content: Content) :
     Message(content), SetCellConfigRequestData {
@@ -506,7 +520,7 @@ public class SetCellConfigRequestDataActiveIndex private constructor(content: Co
 
     override val messageType: MessageType<SetCellConfigRequestDataActiveIndex> get() = SetCellConfigRequestDataActiveIndex
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /**
@@ -530,7 +544,7 @@ public class SetCellConfigRequestDataActiveIndex private constructor(content: Co
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetCellConfigRequestDataActiveIndex =
             builder().apply(build).build()
@@ -546,7 +560,8 @@ public class SetCellConfigRequestDataActiveIndex private constructor(content: Co
  * `data` of [SetCellConfigRequest].
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 public class SetCellConfigRequestDataOldLayout private constructor(content: Content) :
     Message(content), SetCellConfigRequestData {
@@ -568,7 +583,7 @@ public class SetCellConfigRequestDataOldLayout private constructor(content: Cont
 
     override val messageType: MessageType<SetCellConfigRequestDataOldLayout> get() = SetCellConfigRequestDataOldLayout
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /**
@@ -595,7 +610,7 @@ public class SetCellConfigRequestDataOldLayout private constructor(content: Cont
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetCellConfigRequestDataOldLayout =
             builder().apply(build).build()
@@ -609,12 +624,13 @@ public class SetCellConfigRequestDataOldLayout private constructor(content: Cont
  * Set the compartment configuration: response
  *
  * - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/commands/set_cell_config.md`
+ * - 文档：`docs-site/reference/commands/set_cell_config.md`
+ * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
  */
 public class SetCellConfigResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SetCellConfigResponse> get() = SetCellConfigResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetCellConfigResponse] 的字段。Collects the fields of a [SetCellConfigResponse]. */
@@ -627,7 +643,7 @@ public class SetCellConfigResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetCellConfigResponse =
             builder().apply(build).build()
@@ -641,7 +657,8 @@ public class SetCellConfigResponse private constructor(content: Content) : Messa
  * A compartment of the current configuration
  *
  * - Spec: `types.Cell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class Cell private constructor(content: Content) : Message(content) {
     /**
@@ -686,7 +703,7 @@ public class Cell private constructor(content: Content) : Message(content) {
 
     override val messageType: MessageType<Cell> get() = Cell
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Cell] 的字段。Collects the fields of a [Cell]. */
@@ -722,7 +739,7 @@ public class Cell private constructor(content: Content) : Message(content) {
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Cell =
             builder().apply(build).build()
@@ -736,7 +753,8 @@ public class Cell private constructor(content: Content) : Message(content) {
  * A compartment of the old form
  *
  * - Spec: `types.OldCell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class OldCell private constructor(content: Content) : Message(content) {
     /**
@@ -765,7 +783,7 @@ public class OldCell private constructor(content: Content) : Message(content) {
 
     override val messageType: MessageType<OldCell> get() = OldCell
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [OldCell] 的字段。Collects the fields of a [OldCell]. */
@@ -790,7 +808,7 @@ public class OldCell private constructor(content: Content) : Message(content) {
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): OldCell =
             builder().apply(build).build()
@@ -804,7 +822,8 @@ public class OldCell private constructor(content: Content) : Message(content) {
  * A layout of compartments
  *
  * - Spec: `types.CellLayout` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class CellLayout private constructor(content: Content) : Message(content) {
     /**
@@ -831,7 +850,7 @@ public class CellLayout private constructor(content: Content) : Message(content)
 
     override val messageType: MessageType<CellLayout> get() = CellLayout
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CellLayout] 的字段。Collects the fields of a [CellLayout]. */
@@ -860,7 +879,7 @@ public class CellLayout private constructor(content: Content) : Message(content)
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CellLayout =
             builder().apply(build).build()
@@ -874,7 +893,8 @@ public class CellLayout private constructor(content: Content) : Message(content)
  * A compartment of a layout
  *
  * - Spec: `types.LayoutCell` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class LayoutCell private constructor(content: Content) : Message(content) {
     /**
@@ -911,7 +931,7 @@ public class LayoutCell private constructor(content: Content) : Message(content)
 
     override val messageType: MessageType<LayoutCell> get() = LayoutCell
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [LayoutCell] 的字段。Collects the fields of a [LayoutCell]. */
@@ -944,7 +964,7 @@ public class LayoutCell private constructor(content: Content) : Message(content)
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): LayoutCell =
             builder().apply(build).build()
@@ -963,7 +983,8 @@ public class LayoutCell private constructor(content: Content) : Message(content)
  * section 43 disagrees (see C138), so do not derive the number of doors from the size.
  *
  * - Spec: `types.CellType` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class CellType private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<CellType> get() = CellType
@@ -992,8 +1013,8 @@ public class CellType private constructor(wire: Long) : IntValue(wire) {
         public val LARGE: CellType = named(3, "LARGE")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): CellType = super.of(wire)
@@ -1007,7 +1028,8 @@ public class CellType private constructor(wire: Long) : IntValue(wire) {
  * Physical location of a compartment
  *
  * - Spec: `types.CellLocation` in `spec/commands/cell.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class CellLocation private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<CellLocation> get() = CellLocation
@@ -1078,8 +1100,8 @@ public class CellLocation private constructor(wire: String) : TextValue(wire) {
         public val ALL: CellLocation = named("all", "ALL")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): CellLocation = super.of(wire)

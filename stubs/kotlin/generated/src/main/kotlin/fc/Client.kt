@@ -13,7 +13,7 @@ import kotlinx.coroutines.flow.Flow
 
 /**
  * 一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。
- * A robot as seen from the app: one method per command; `suspend` for coroutines, `Async` for Java.
+ * A robot as seen from the app: one method per command, `suspend` for coroutines and `Async` for Java.
  */
 public class Client(
     /** 底层连接。The underlying connection: raw commands and options of a call. */
@@ -33,25 +33,25 @@ public class Client(
     TaskClient,
     UnnamedClient,
     UpperBodyClient {
-    /** 此刻的连接状态。Whether there is a connection at this moment, and why not. */
+    /** 此刻的连接状态。The present state of the connection. */
     public val state: ConnectionState get() = connection.state
 
     /** 连接状态的变化，先是此刻的状态。The states of the connection, the present one first. */
     public fun states(): Flow<ConnectionState> = connection.states()
 
-    /** 等到连接永久关闭，返回原因。Waits until the connection has ended for good, and says why. */
+    /** 等到连接永久关闭，返回原因。Waits until the connection is closed for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = connection.closed()
 
     /**
-     * 此后收到的全部主动上报。没有接收端时，上报不会得到应答。
+     * 返回此后全部上报的接收端。没有接收端时，上报不会得到应答。
      *
-     * All reports received from now on. While there is no receiver, no report is acknowledged. The `message` of each is one of the
-     * types of [Operations], to be told apart by `when` and `is`.
+     * Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged. The `message` of a report has
+     * one of the types of [Operations]; distinguish them with `when` and `is`.
      */
     public fun reports(): Reports = connection.reports()
 
-    /** 连接数据端口。A connection to the data port: made in the background, made again after a loss. */
+    /** 连接数据端口。Connects to the data port in the background, and reconnects after a loss. */
     public fun data(): DataConnection = connection.data()
 
     /** 关闭连接。Closes the connection. */
@@ -62,7 +62,7 @@ public class Client(
         /**
          * 连接机器人；`config` 中没有设置的项使用规范的默认值。
          *
-         * Connects to a robot; what `config` does not set has the default of the spec.
+         * Connects to a robot. Settings missing from `config` have the defaults of the spec.
          *
          * @throws fc.runtime.ConnectError if the first attempt fails
          */
@@ -79,7 +79,7 @@ public class Client(
         /**
          * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
          *
-         * Returns at once and connects in the background; calls made meanwhile wait within their timeout.
+         * Returns at once and connects in the background. Calls made before that wait within their timeout.
          */
         @JvmStatic
         @JvmOverloads

@@ -32,7 +32,8 @@ public interface DispatchOperations {
      * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
      *
      * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-     * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+     * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+     * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
      */
     public val checkCondition0333: Command<CheckCondition0333Request, CheckCondition0333Response>
         get() = Companion.checkCondition0333
@@ -44,7 +45,8 @@ public interface DispatchOperations {
          * Check a condition (0x0333, purpose unknown)
          *
          * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-         * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+         * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+         * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
          */
         @JvmField
         public val checkCondition0333: Command<CheckCondition0333Request, CheckCondition0333Response> =
@@ -78,9 +80,10 @@ public interface DispatchClient {
      * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
      *
      * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-     * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+     * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+     * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun checkCondition0333(
@@ -116,9 +119,10 @@ public interface DispatchHandlers {
      * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
      *
      * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
-     * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+     * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+     * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun checkCondition0333(context: Context, request: CheckCondition0333Request): CheckCondition0333Response
 }
@@ -159,12 +163,13 @@ internal class DispatchExample(pretendMotion: Boolean) :
  * No code yet: types only. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
  *
  * - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+ * - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+ * - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
  */
 public class UploadContendedResourcesRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadContendedResourcesRequest> get() = UploadContendedResourcesRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /**
@@ -179,7 +184,7 @@ public class UploadContendedResourcesRequest private constructor(content: Conten
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadContendedResourcesRequest =
             builder().apply(build).build()
@@ -197,12 +202,13 @@ public class UploadContendedResourcesRequest private constructor(content: Conten
  * Open: The response is lost; nothing is known beyond the envelope.
  *
  * - Spec: `commands.upload_contended_resources` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/upload_contended_resources.md`
+ * - 文档：`docs-site/reference/commands/upload_contended_resources.md`
+ * - Docs: `docs-site/en/reference/commands/upload_contended_resources.md`
  */
 public class UploadContendedResourcesResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadContendedResourcesResponse> get() = UploadContendedResourcesResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /**
@@ -217,7 +223,7 @@ public class UploadContendedResourcesResponse private constructor(content: Conte
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadContendedResourcesResponse =
             builder().apply(build).build()
@@ -238,12 +244,13 @@ public class UploadContendedResourcesResponse private constructor(content: Conte
  * Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 public class CheckCondition0333Request private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<CheckCondition0333Request> get() = CheckCondition0333Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CheckCondition0333Request] 的字段。Collects the fields of a [CheckCondition0333Request]. */
@@ -256,7 +263,7 @@ public class CheckCondition0333Request private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CheckCondition0333Request =
             builder().apply(build).build()
@@ -270,7 +277,8 @@ public class CheckCondition0333Request private constructor(content: Content) : M
  * Check a condition (0x0333, purpose unknown): response
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 public class CheckCondition0333Response private constructor(content: Content) : Message(content) {
     /**
@@ -281,7 +289,7 @@ public class CheckCondition0333Response private constructor(content: Content) : 
 
     override val messageType: MessageType<CheckCondition0333Response> get() = CheckCondition0333Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CheckCondition0333Response] 的字段。Collects the fields of a [CheckCondition0333Response]. */
@@ -302,7 +310,7 @@ public class CheckCondition0333Response private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CheckCondition0333Response =
             builder().apply(build).build()
@@ -318,7 +326,8 @@ public class CheckCondition0333Response private constructor(content: Content) : 
  * `data` of [CheckCondition0333Response].
  *
  * - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
- * - Docs: `docs-site/reference/commands/check_condition_0333.md`
+ * - 文档：`docs-site/reference/commands/check_condition_0333.md`
+ * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
  */
 public class CheckCondition0333ResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -331,7 +340,7 @@ public class CheckCondition0333ResponseData private constructor(content: Content
 
     override val messageType: MessageType<CheckCondition0333ResponseData> get() = CheckCondition0333ResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CheckCondition0333ResponseData] 的字段。Collects the fields of a [CheckCondition0333ResponseData]. */
@@ -352,7 +361,7 @@ public class CheckCondition0333ResponseData private constructor(content: Content
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CheckCondition0333ResponseData =
             builder().apply(build).build()

@@ -31,7 +31,8 @@ public interface IdentityOperations {
      * Code 0x0A01. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+     * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+     * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
      */
     public val getRobotSn: Command<GetRobotSnRequest, GetRobotSnResponse> get() = Companion.getRobotSn
 
@@ -49,7 +50,8 @@ public interface IdentityOperations {
      * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+     * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+     * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
      */
     public val getFirmwareVersions: Command<GetFirmwareVersionsRequest, GetFirmwareVersionsResponse>
         get() = Companion.getFirmwareVersions
@@ -61,7 +63,8 @@ public interface IdentityOperations {
          * Get the serial number
          *
          * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-         * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+         * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+         * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
          */
         @JvmField
         public val getRobotSn: Command<GetRobotSnRequest, GetRobotSnResponse> =
@@ -73,7 +76,8 @@ public interface IdentityOperations {
          * Get the firmware versions
          *
          * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-         * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+         * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+         * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
          */
         @JvmField
         public val getFirmwareVersions: Command<GetFirmwareVersionsRequest, GetFirmwareVersionsResponse> =
@@ -107,9 +111,10 @@ public interface IdentityClient {
      * Code 0x0A01. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+     * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+     * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getRobotSn(request: GetRobotSnRequest = GetRobotSnRequest {}): GetRobotSnResponse =
@@ -136,9 +141,10 @@ public interface IdentityClient {
      * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+     * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+     * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getFirmwareVersions(
@@ -173,9 +179,10 @@ public interface IdentityHandlers {
      * Code 0x0A01. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+     * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+     * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getRobotSn(context: Context, request: GetRobotSnRequest): GetRobotSnResponse
 
@@ -193,9 +200,10 @@ public interface IdentityHandlers {
      * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
-     * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+     * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+     * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getFirmwareVersions(context: Context, request: GetFirmwareVersionsRequest): GetFirmwareVersionsResponse
 }
@@ -239,12 +247,13 @@ internal class IdentityExample(pretendMotion: Boolean) :
  * Code 0x0A01. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 public class GetRobotSnRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetRobotSnRequest> get() = GetRobotSnRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRobotSnRequest] 的字段。Collects the fields of a [GetRobotSnRequest]. */
@@ -257,7 +266,7 @@ public class GetRobotSnRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRobotSnRequest =
             builder().apply(build).build()
@@ -271,7 +280,8 @@ public class GetRobotSnRequest private constructor(content: Content) : Message(c
  * Get the serial number: response
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 public class GetRobotSnResponse private constructor(content: Content) : Message(content) {
     /**
@@ -282,7 +292,7 @@ public class GetRobotSnResponse private constructor(content: Content) : Message(
 
     override val messageType: MessageType<GetRobotSnResponse> get() = GetRobotSnResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRobotSnResponse] 的字段。Collects the fields of a [GetRobotSnResponse]. */
@@ -303,7 +313,7 @@ public class GetRobotSnResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRobotSnResponse =
             builder().apply(build).build()
@@ -319,7 +329,8 @@ public class GetRobotSnResponse private constructor(content: Content) : Message(
  * `data` of [GetRobotSnResponse].
  *
  * - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_robot_sn.md`
+ * - 文档：`docs-site/reference/commands/get_robot_sn.md`
+ * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
  */
 public class GetRobotSnResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -340,7 +351,7 @@ public class GetRobotSnResponseData private constructor(content: Content) : Mess
 
     override val messageType: MessageType<GetRobotSnResponseData> get() = GetRobotSnResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRobotSnResponseData] 的字段。Collects the fields of a [GetRobotSnResponseData]. */
@@ -365,7 +376,7 @@ public class GetRobotSnResponseData private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRobotSnResponseData =
             builder().apply(build).build()
@@ -392,12 +403,13 @@ public class GetRobotSnResponseData private constructor(content: Content) : Mess
  * Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+ * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+ * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
  */
 public class GetFirmwareVersionsRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetFirmwareVersionsRequest> get() = GetFirmwareVersionsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetFirmwareVersionsRequest] 的字段。Collects the fields of a [GetFirmwareVersionsRequest]. */
@@ -410,7 +422,7 @@ public class GetFirmwareVersionsRequest private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetFirmwareVersionsRequest =
             builder().apply(build).build()
@@ -428,12 +440,13 @@ public class GetFirmwareVersionsRequest private constructor(content: Content) : 
  * Open: The response is lost, and with it the keys of the three versions; every key received is kept.
  *
  * - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
- * - Docs: `docs-site/reference/commands/get_firmware_versions.md`
+ * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
+ * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
  */
 public class GetFirmwareVersionsResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetFirmwareVersionsResponse> get() = GetFirmwareVersionsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetFirmwareVersionsResponse] 的字段。Collects the fields of a [GetFirmwareVersionsResponse]. */
@@ -446,7 +459,7 @@ public class GetFirmwareVersionsResponse private constructor(content: Content) :
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetFirmwareVersionsResponse =
             builder().apply(build).build()

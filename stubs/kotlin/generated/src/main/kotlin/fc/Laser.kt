@@ -31,7 +31,8 @@ public interface LaserOperations {
      * Code 0x0001. Only reads. Since 2023-08-10.
      *
      * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-     * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+     * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+     * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
      */
     public val getLaserScan: Command<GetLaserScanRequest, GetLaserScanResponse> get() = Companion.getLaserScan
 
@@ -42,7 +43,8 @@ public interface LaserOperations {
          * Get the lidar data
          *
          * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-         * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+         * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+         * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
          */
         @JvmField
         public val getLaserScan: Command<GetLaserScanRequest, GetLaserScanResponse> =
@@ -75,9 +77,10 @@ public interface LaserClient {
      * Code 0x0001. Only reads. Since 2023-08-10.
      *
      * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-     * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+     * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+     * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getLaserScan(request: GetLaserScanRequest): GetLaserScanResponse =
@@ -104,9 +107,10 @@ public interface LaserHandlers {
      * Code 0x0001. Only reads. Since 2023-08-10.
      *
      * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
-     * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+     * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+     * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getLaserScan(context: Context, request: GetLaserScanRequest): GetLaserScanResponse
 }
@@ -143,7 +147,8 @@ internal class LaserExample(pretendMotion: Boolean) :
  * Code 0x0001. Only reads. Since 2023-08-10.
  *
  * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
- * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+ * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+ * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
  */
 public class GetLaserScanRequest private constructor(content: Content) : Message(content) {
     /**
@@ -156,7 +161,7 @@ public class GetLaserScanRequest private constructor(content: Content) : Message
 
     override val messageType: MessageType<GetLaserScanRequest> get() = GetLaserScanRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetLaserScanRequest] 的字段。Collects the fields of a [GetLaserScanRequest]. */
@@ -174,7 +179,7 @@ public class GetLaserScanRequest private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetLaserScanRequest =
             builder().apply(build).build()
@@ -192,12 +197,13 @@ public class GetLaserScanRequest private constructor(content: Content) : Message
  * Open: The response is lost, and with it the structure of the point cloud; every key received is kept.
  *
  * - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
- * - Docs: `docs-site/reference/commands/get_laser_scan.md`
+ * - 文档：`docs-site/reference/commands/get_laser_scan.md`
+ * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
  */
 public class GetLaserScanResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetLaserScanResponse> get() = GetLaserScanResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetLaserScanResponse] 的字段。Collects the fields of a [GetLaserScanResponse]. */
@@ -210,7 +216,7 @@ public class GetLaserScanResponse private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetLaserScanResponse =
             builder().apply(build).build()

@@ -42,7 +42,8 @@ public interface MapOperations {
      * Code 0x0111. Only reads, inferred. Since 2023-08-10.
      *
      * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_image.md`
+     * - 文档：`docs-site/reference/commands/get_map_image.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_image.md`
      */
     public val getMapImage: Command<GetMapImageRequest, GetMapImageResponse> get() = Companion.getMapImage
 
@@ -57,7 +58,8 @@ public interface MapOperations {
      * Code 0x0103. Only reads.
      *
      * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/list_maps.md`
+     * - 文档：`docs-site/reference/commands/list_maps.md`
+     * - Docs: `docs-site/en/reference/commands/list_maps.md`
      */
     public val listMaps: Command<ListMapsRequest, ListMapsResponse> get() = Companion.listMaps
 
@@ -68,7 +70,8 @@ public interface MapOperations {
      * Code 0x010C. Only reads.
      *
      * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_info.md`
+     * - 文档：`docs-site/reference/commands/get_map_info.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_info.md`
      */
     public val getMapInfo: Command<GetMapInfoRequest, GetMapInfoResponse> get() = Companion.getMapInfo
 
@@ -83,7 +86,8 @@ public interface MapOperations {
      * Code 0x0109. Changes the configuration.
      *
      * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/save_map.md`
+     * - 文档：`docs-site/reference/commands/save_map.md`
+     * - Docs: `docs-site/en/reference/commands/save_map.md`
      */
     public val saveMap: Command<SaveMapRequest, SaveMapResponse> get() = Companion.saveMap
 
@@ -101,7 +105,8 @@ public interface MapOperations {
      * Code 0x0320. Changes the configuration, inferred.
      *
      * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/download_maps.md`
+     * - 文档：`docs-site/reference/commands/download_maps.md`
+     * - Docs: `docs-site/en/reference/commands/download_maps.md`
      */
     public val downloadMaps: Command<DownloadMapsRequest, DownloadMapsResponse> get() = Companion.downloadMaps
 
@@ -117,7 +122,8 @@ public interface MapOperations {
      * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
      *
      * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/upload_maps.md`
+     * - 文档：`docs-site/reference/commands/upload_maps.md`
+     * - Docs: `docs-site/en/reference/commands/upload_maps.md`
      */
     public val uploadMaps: Command<UploadMapsRequest, UploadMapsResponse> get() = Companion.uploadMaps
 
@@ -132,7 +138,8 @@ public interface MapOperations {
      * Code 0x0322. Only reads.
      *
      * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+     * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
      */
     public val getMapSyncProgress: Command<GetMapSyncProgressRequest, GetMapSyncProgressResponse>
         get() = Companion.getMapSyncProgress
@@ -148,7 +155,8 @@ public interface MapOperations {
      * Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
      *
      * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+     * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+     * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
      */
     public val mapSyncProgress: Report<MapSyncProgress> get() = Companion.mapSyncProgress
 
@@ -159,7 +167,8 @@ public interface MapOperations {
          * Get the picture of a map
          *
          * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/get_map_image.md`
+         * - 文档：`docs-site/reference/commands/get_map_image.md`
+         * - Docs: `docs-site/en/reference/commands/get_map_image.md`
          */
         @JvmField
         public val getMapImage: Command<GetMapImageRequest, GetMapImageResponse> =
@@ -171,7 +180,8 @@ public interface MapOperations {
          * List the maps
          *
          * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/list_maps.md`
+         * - 文档：`docs-site/reference/commands/list_maps.md`
+         * - Docs: `docs-site/en/reference/commands/list_maps.md`
          */
         @JvmField
         public val listMaps: Command<ListMapsRequest, ListMapsResponse> =
@@ -183,7 +193,8 @@ public interface MapOperations {
          * Get the details of a map
          *
          * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/get_map_info.md`
+         * - 文档：`docs-site/reference/commands/get_map_info.md`
+         * - Docs: `docs-site/en/reference/commands/get_map_info.md`
          */
         @JvmField
         public val getMapInfo: Command<GetMapInfoRequest, GetMapInfoResponse> =
@@ -195,7 +206,8 @@ public interface MapOperations {
          * Save the map
          *
          * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/save_map.md`
+         * - 文档：`docs-site/reference/commands/save_map.md`
+         * - Docs: `docs-site/en/reference/commands/save_map.md`
          */
         @JvmField
         public val saveMap: Command<SaveMapRequest, SaveMapResponse> =
@@ -207,7 +219,8 @@ public interface MapOperations {
          * Download maps
          *
          * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/download_maps.md`
+         * - 文档：`docs-site/reference/commands/download_maps.md`
+         * - Docs: `docs-site/en/reference/commands/download_maps.md`
          */
         @JvmField
         public val downloadMaps: Command<DownloadMapsRequest, DownloadMapsResponse> =
@@ -219,7 +232,8 @@ public interface MapOperations {
          * Upload maps
          *
          * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/upload_maps.md`
+         * - 文档：`docs-site/reference/commands/upload_maps.md`
+         * - Docs: `docs-site/en/reference/commands/upload_maps.md`
          */
         @JvmField
         public val uploadMaps: Command<UploadMapsRequest, UploadMapsResponse> =
@@ -231,7 +245,8 @@ public interface MapOperations {
          * Get the progress of map synchronisation
          *
          * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+         * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+         * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
          */
         @JvmField
         public val getMapSyncProgress: Command<GetMapSyncProgressRequest, GetMapSyncProgressResponse> =
@@ -243,7 +258,8 @@ public interface MapOperations {
          * Progress of map synchronisation
          *
          * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-         * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+         * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+         * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
          */
         @JvmField
         public val mapSyncProgress: Report<MapSyncProgress> =
@@ -289,9 +305,10 @@ public interface MapClient {
      * Code 0x0111. Only reads, inferred. Since 2023-08-10.
      *
      * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_image.md`
+     * - 文档：`docs-site/reference/commands/get_map_image.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_image.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getMapImage(request: GetMapImageRequest): GetMapImageResponse =
@@ -312,9 +329,10 @@ public interface MapClient {
      * Code 0x0103. Only reads.
      *
      * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/list_maps.md`
+     * - 文档：`docs-site/reference/commands/list_maps.md`
+     * - Docs: `docs-site/en/reference/commands/list_maps.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun listMaps(request: ListMapsRequest = ListMapsRequest {}): ListMapsResponse =
@@ -334,9 +352,10 @@ public interface MapClient {
      * Code 0x010C. Only reads.
      *
      * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_info.md`
+     * - 文档：`docs-site/reference/commands/get_map_info.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_info.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getMapInfo(request: GetMapInfoRequest = GetMapInfoRequest {}): GetMapInfoResponse =
@@ -360,9 +379,10 @@ public interface MapClient {
      * Code 0x0109. Changes the configuration.
      *
      * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/save_map.md`
+     * - 文档：`docs-site/reference/commands/save_map.md`
+     * - Docs: `docs-site/en/reference/commands/save_map.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun saveMap(request: SaveMapRequest): SaveMapResponse = connection.call(Operations.saveMap, request)
@@ -385,9 +405,10 @@ public interface MapClient {
      * Code 0x0320. Changes the configuration, inferred.
      *
      * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/download_maps.md`
+     * - 文档：`docs-site/reference/commands/download_maps.md`
+     * - Docs: `docs-site/en/reference/commands/download_maps.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun downloadMaps(request: DownloadMapsRequest): DownloadMapsResponse =
@@ -398,18 +419,18 @@ public interface MapClient {
         connection.callAsync(Operations.downloadMaps, request)
 
     /**
-     * [downloadMaps]，取得响应，再逐个取得它引起的 [MapSyncProgress]。
-     * [downloadMaps], and then each [MapSyncProgress] that it sets off.
+     * [downloadMaps]：先返回响应，再逐个返回它引起的 [MapSyncProgress]。
+     * [downloadMaps]: returns the response, and then each [MapSyncProgress] that the command sets off.
      *
-     * 没有写明哪个状态是终态：要由 app 停止。
+     * 规范没有写明终态：由 app 停止。
      *
-     * No state is said to be final: the app has to stop it.
+     * The spec marks no state as final. The app stops it.
      *
-     * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+     * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
      *
-     * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+     * No key ties a report to a call: reports of this kind from other calls arrive as well.
      *
-     * @throws fc.runtime.CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
     public suspend fun downloadMapsFollowed(request: DownloadMapsRequest): Following<DownloadMapsResponse, MapSyncProgress> =
@@ -427,9 +448,10 @@ public interface MapClient {
      * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
      *
      * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/upload_maps.md`
+     * - 文档：`docs-site/reference/commands/upload_maps.md`
+     * - Docs: `docs-site/en/reference/commands/upload_maps.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun uploadMaps(request: UploadMapsRequest = UploadMapsRequest {}): UploadMapsResponse =
@@ -443,18 +465,18 @@ public interface MapClient {
     public fun uploadMapsAsync(): CompletableFuture<UploadMapsResponse> = uploadMapsAsync(UploadMapsRequest {})
 
     /**
-     * [uploadMaps]，取得响应，再逐个取得它引起的 [MapSyncProgress]。
-     * [uploadMaps], and then each [MapSyncProgress] that it sets off.
+     * [uploadMaps]：先返回响应，再逐个返回它引起的 [MapSyncProgress]。
+     * [uploadMaps]: returns the response, and then each [MapSyncProgress] that the command sets off.
      *
-     * 没有写明哪个状态是终态：要由 app 停止。
+     * 规范没有写明终态：由 app 停止。
      *
-     * No state is said to be final: the app has to stop it.
+     * The spec marks no state as final. The app stops it.
      *
-     * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+     * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
      *
-     * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+     * No key ties a report to a call: reports of this kind from other calls arrive as well.
      *
-     * @throws fc.runtime.CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
     public suspend fun uploadMapsFollowed(request: UploadMapsRequest = UploadMapsRequest {}): Following<UploadMapsResponse, MapSyncProgress> =
@@ -471,9 +493,10 @@ public interface MapClient {
      * Code 0x0322. Only reads.
      *
      * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+     * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getMapSyncProgress(
@@ -509,9 +532,10 @@ public interface MapHandlers {
      * Code 0x0111. Only reads, inferred. Since 2023-08-10.
      *
      * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_image.md`
+     * - 文档：`docs-site/reference/commands/get_map_image.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_image.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getMapImage(context: Context, request: GetMapImageRequest): GetMapImageResponse
 
@@ -526,9 +550,10 @@ public interface MapHandlers {
      * Code 0x0103. Only reads.
      *
      * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/list_maps.md`
+     * - 文档：`docs-site/reference/commands/list_maps.md`
+     * - Docs: `docs-site/en/reference/commands/list_maps.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun listMaps(context: Context, request: ListMapsRequest): ListMapsResponse
 
@@ -539,9 +564,10 @@ public interface MapHandlers {
      * Code 0x010C. Only reads.
      *
      * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_info.md`
+     * - 文档：`docs-site/reference/commands/get_map_info.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_info.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getMapInfo(context: Context, request: GetMapInfoRequest): GetMapInfoResponse
 
@@ -556,9 +582,10 @@ public interface MapHandlers {
      * Code 0x0109. Changes the configuration.
      *
      * - Spec: `commands.save_map` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/save_map.md`
+     * - 文档：`docs-site/reference/commands/save_map.md`
+     * - Docs: `docs-site/en/reference/commands/save_map.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun saveMap(context: Context, request: SaveMapRequest): SaveMapResponse
 
@@ -576,9 +603,10 @@ public interface MapHandlers {
      * Code 0x0320. Changes the configuration, inferred.
      *
      * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/download_maps.md`
+     * - 文档：`docs-site/reference/commands/download_maps.md`
+     * - Docs: `docs-site/en/reference/commands/download_maps.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun downloadMaps(context: Context, request: DownloadMapsRequest): DownloadMapsResponse
 
@@ -594,9 +622,10 @@ public interface MapHandlers {
      * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
      *
      * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/upload_maps.md`
+     * - 文档：`docs-site/reference/commands/upload_maps.md`
+     * - Docs: `docs-site/en/reference/commands/upload_maps.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun uploadMaps(context: Context, request: UploadMapsRequest): UploadMapsResponse
 
@@ -611,9 +640,10 @@ public interface MapHandlers {
      * Code 0x0322. Only reads.
      *
      * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+     * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+     * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getMapSyncProgress(context: Context, request: GetMapSyncProgressRequest): GetMapSyncProgressResponse
 }
@@ -686,7 +716,7 @@ internal class MapExample(pretendMotion: Boolean) :
  * Maps: its part of `Reporter`.
  */
 public interface MapReporter {
-    /** 由它发送。What sends them. */
+    /** 由它发送。The server that sends them. */
     public val server: Server
 
     /**
@@ -700,9 +730,10 @@ public interface MapReporter {
      * Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
      *
      * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
-     * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+     * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+     * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun mapSyncProgress(audience: Audience, report: MapSyncProgress): List<Acknowledgement> =
@@ -729,12 +760,13 @@ public interface MapReporter {
  * `2002`: The target map could not be set
  *
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/set_target_map.md`
+ * - 文档：`docs-site/reference/commands/set_target_map.md`
+ * - Docs: `docs-site/en/reference/commands/set_target_map.md`
  */
 public class SetTargetMapRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SetTargetMapRequest> get() = SetTargetMapRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetTargetMapRequest] 的字段。Collects the fields of a [SetTargetMapRequest]. */
@@ -747,7 +779,7 @@ public class SetTargetMapRequest private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetTargetMapRequest =
             builder().apply(build).build()
@@ -761,12 +793,13 @@ public class SetTargetMapRequest private constructor(content: Content) : Message
  * Set the target map: response
  *
  * - Spec: `commands.set_target_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/set_target_map.md`
+ * - 文档：`docs-site/reference/commands/set_target_map.md`
+ * - Docs: `docs-site/en/reference/commands/set_target_map.md`
  */
 public class SetTargetMapResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SetTargetMapResponse> get() = SetTargetMapResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetTargetMapResponse] 的字段。Collects the fields of a [SetTargetMapResponse]. */
@@ -779,7 +812,7 @@ public class SetTargetMapResponse private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetTargetMapResponse =
             builder().apply(build).build()
@@ -800,7 +833,8 @@ public class SetTargetMapResponse private constructor(content: Content) : Messag
  * Code 0x0111. Only reads, inferred. Since 2023-08-10.
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 public class GetMapImageRequest private constructor(content: Content) : Message(content) {
     /**
@@ -813,7 +847,7 @@ public class GetMapImageRequest private constructor(content: Content) : Message(
 
     override val messageType: MessageType<GetMapImageRequest> get() = GetMapImageRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapImageRequest] 的字段。Collects the fields of a [GetMapImageRequest]. */
@@ -831,7 +865,7 @@ public class GetMapImageRequest private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapImageRequest =
             builder().apply(build).build()
@@ -845,7 +879,8 @@ public class GetMapImageRequest private constructor(content: Content) : Message(
  * Get the picture of a map: response
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 public class GetMapImageResponse private constructor(content: Content) : Message(content) {
     /**
@@ -912,7 +947,7 @@ public class GetMapImageResponse private constructor(content: Content) : Message
 
     override val messageType: MessageType<GetMapImageResponse> get() = GetMapImageResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapImageResponse] 的字段。Collects the fields of a [GetMapImageResponse]. */
@@ -953,7 +988,7 @@ public class GetMapImageResponse private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapImageResponse =
             builder().apply(build).build()
@@ -969,7 +1004,8 @@ public class GetMapImageResponse private constructor(content: Content) : Message
  * `origin` of [GetMapImageResponse].
  *
  * - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_image.md`
+ * - 文档：`docs-site/reference/commands/get_map_image.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_image.md`
  */
 public class GetMapImageResponseOrigin private constructor(content: Content) : Message(content) {
     /**
@@ -998,7 +1034,7 @@ public class GetMapImageResponseOrigin private constructor(content: Content) : M
 
     override val messageType: MessageType<GetMapImageResponseOrigin> get() = GetMapImageResponseOrigin
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapImageResponseOrigin] 的字段。Collects the fields of a [GetMapImageResponseOrigin]. */
@@ -1027,7 +1063,7 @@ public class GetMapImageResponseOrigin private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapImageResponseOrigin =
             builder().apply(build).build()
@@ -1047,7 +1083,8 @@ public class GetMapImageResponseOrigin private constructor(content: Content) : M
  * Code 0x0103. Only reads.
  *
  * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/list_maps.md`
+ * - 文档：`docs-site/reference/commands/list_maps.md`
+ * - Docs: `docs-site/en/reference/commands/list_maps.md`
  */
 public class ListMapsRequest private constructor(content: Content) : Message(content) {
     /**
@@ -1060,7 +1097,7 @@ public class ListMapsRequest private constructor(content: Content) : Message(con
 
     override val messageType: MessageType<ListMapsRequest> get() = ListMapsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListMapsRequest] 的字段。Collects the fields of a [ListMapsRequest]. */
@@ -1078,7 +1115,7 @@ public class ListMapsRequest private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListMapsRequest =
             builder().apply(build).build()
@@ -1092,7 +1129,8 @@ public class ListMapsRequest private constructor(content: Content) : Message(con
  * List the maps: response
  *
  * - Spec: `commands.list_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/list_maps.md`
+ * - 文档：`docs-site/reference/commands/list_maps.md`
+ * - Docs: `docs-site/en/reference/commands/list_maps.md`
  */
 public class ListMapsResponse private constructor(content: Content) : Message(content) {
     /**
@@ -1111,7 +1149,7 @@ public class ListMapsResponse private constructor(content: Content) : Message(co
 
     override val messageType: MessageType<ListMapsResponse> get() = ListMapsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListMapsResponse] 的字段。Collects the fields of a [ListMapsResponse]. */
@@ -1136,7 +1174,7 @@ public class ListMapsResponse private constructor(content: Content) : Message(co
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListMapsResponse =
             builder().apply(build).build()
@@ -1156,12 +1194,13 @@ public class ListMapsResponse private constructor(content: Content) : Message(co
  * Code 0x010C. Only reads.
  *
  * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_info.md`
+ * - 文档：`docs-site/reference/commands/get_map_info.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_info.md`
  */
 public class GetMapInfoRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetMapInfoRequest> get() = GetMapInfoRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapInfoRequest] 的字段。Collects the fields of a [GetMapInfoRequest]. */
@@ -1174,7 +1213,7 @@ public class GetMapInfoRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapInfoRequest =
             builder().apply(build).build()
@@ -1192,12 +1231,13 @@ public class GetMapInfoRequest private constructor(content: Content) : Message(c
  * Open: No response is printed; every key received is kept.
  *
  * - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_info.md`
+ * - 文档：`docs-site/reference/commands/get_map_info.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_info.md`
  */
 public class GetMapInfoResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetMapInfoResponse> get() = GetMapInfoResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapInfoResponse] 的字段。Collects the fields of a [GetMapInfoResponse]. */
@@ -1210,7 +1250,7 @@ public class GetMapInfoResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapInfoResponse =
             builder().apply(build).build()
@@ -1230,7 +1270,8 @@ public class GetMapInfoResponse private constructor(content: Content) : Message(
  * Code 0x0109. Changes the configuration.
  *
  * - Spec: `commands.save_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/save_map.md`
+ * - 文档：`docs-site/reference/commands/save_map.md`
+ * - Docs: `docs-site/en/reference/commands/save_map.md`
  */
 public class SaveMapRequest private constructor(content: Content) : Message(content) {
     /**
@@ -1281,7 +1322,7 @@ public class SaveMapRequest private constructor(content: Content) : Message(cont
      */
     public val tower: String? get() = get(TOWER)
 
-    /** 同上；没有给出时为默认值。The same; the default where it is not given. */
+    /** 同上；没有时为默认值。The same, or the default if it is absent. */
     public val towerOrDefault: String get() = tower ?: "未知"
 
     /**
@@ -1292,12 +1333,12 @@ public class SaveMapRequest private constructor(content: Content) : Message(cont
      */
     public val level: String? get() = get(LEVEL)
 
-    /** 同上；没有给出时为默认值。The same; the default where it is not given. */
+    /** 同上；没有时为默认值。The same, or the default if it is absent. */
     public val levelOrDefault: String get() = level ?: "1"
 
     override val messageType: MessageType<SaveMapRequest> get() = SaveMapRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SaveMapRequest] 的字段。Collects the fields of a [SaveMapRequest]. */
@@ -1342,7 +1383,7 @@ public class SaveMapRequest private constructor(content: Content) : Message(cont
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SaveMapRequest =
             builder().apply(build).build()
@@ -1360,12 +1401,13 @@ public class SaveMapRequest private constructor(content: Content) : Message(cont
  * Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
  *
  * - Spec: `commands.save_map` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/save_map.md`
+ * - 文档：`docs-site/reference/commands/save_map.md`
+ * - Docs: `docs-site/en/reference/commands/save_map.md`
  */
 public class SaveMapResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SaveMapResponse> get() = SaveMapResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SaveMapResponse] 的字段。Collects the fields of a [SaveMapResponse]. */
@@ -1378,7 +1420,7 @@ public class SaveMapResponse private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SaveMapResponse =
             builder().apply(build).build()
@@ -1401,7 +1443,8 @@ public class SaveMapResponse private constructor(content: Content) : Message(con
  * Code 0x0320. Changes the configuration, inferred.
  *
  * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/download_maps.md`
+ * - 文档：`docs-site/reference/commands/download_maps.md`
+ * - Docs: `docs-site/en/reference/commands/download_maps.md`
  */
 public class DownloadMapsRequest private constructor(content: Content) : Message(content) {
     /**
@@ -1420,7 +1463,7 @@ public class DownloadMapsRequest private constructor(content: Content) : Message
 
     override val messageType: MessageType<DownloadMapsRequest> get() = DownloadMapsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [DownloadMapsRequest] 的字段。Collects the fields of a [DownloadMapsRequest]. */
@@ -1445,7 +1488,7 @@ public class DownloadMapsRequest private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): DownloadMapsRequest =
             builder().apply(build).build()
@@ -1459,7 +1502,8 @@ public class DownloadMapsRequest private constructor(content: Content) : Message
  * Download maps: response
  *
  * - Spec: `commands.download_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/download_maps.md`
+ * - 文档：`docs-site/reference/commands/download_maps.md`
+ * - Docs: `docs-site/en/reference/commands/download_maps.md`
  */
 public class DownloadMapsResponse private constructor(content: Content) : Message(content) {
     /**
@@ -1472,7 +1516,7 @@ public class DownloadMapsResponse private constructor(content: Content) : Messag
 
     override val messageType: MessageType<DownloadMapsResponse> get() = DownloadMapsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [DownloadMapsResponse] 的字段。Collects the fields of a [DownloadMapsResponse]. */
@@ -1490,7 +1534,7 @@ public class DownloadMapsResponse private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): DownloadMapsResponse =
             builder().apply(build).build()
@@ -1515,12 +1559,13 @@ public class DownloadMapsResponse private constructor(content: Content) : Messag
  * Code 0x0321. Unknown effect: treat it as a command that moves the robot.
  *
  * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/upload_maps.md`
+ * - 文档：`docs-site/reference/commands/upload_maps.md`
+ * - Docs: `docs-site/en/reference/commands/upload_maps.md`
  */
 public class UploadMapsRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadMapsRequest> get() = UploadMapsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [UploadMapsRequest] 的字段。Collects the fields of a [UploadMapsRequest]. */
@@ -1533,7 +1578,7 @@ public class UploadMapsRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadMapsRequest =
             builder().apply(build).build()
@@ -1551,12 +1596,13 @@ public class UploadMapsRequest private constructor(content: Content) : Message(c
  * Open: The response is lost; nothing is known beyond the envelope.
  *
  * - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/upload_maps.md`
+ * - 文档：`docs-site/reference/commands/upload_maps.md`
+ * - Docs: `docs-site/en/reference/commands/upload_maps.md`
  */
 public class UploadMapsResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadMapsResponse> get() = UploadMapsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [UploadMapsResponse] 的字段。Collects the fields of a [UploadMapsResponse]. */
@@ -1569,7 +1615,7 @@ public class UploadMapsResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadMapsResponse =
             builder().apply(build).build()
@@ -1593,12 +1639,13 @@ public class UploadMapsResponse private constructor(content: Content) : Message(
  * Code 0x0322. Only reads.
  *
  * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+ * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
  */
 public class GetMapSyncProgressRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetMapSyncProgressRequest> get() = GetMapSyncProgressRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapSyncProgressRequest] 的字段。Collects the fields of a [GetMapSyncProgressRequest]. */
@@ -1611,7 +1658,7 @@ public class GetMapSyncProgressRequest private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapSyncProgressRequest =
             builder().apply(build).build()
@@ -1629,12 +1676,13 @@ public class GetMapSyncProgressRequest private constructor(content: Content) : M
  * Open: The response is lost. It may hold the syncMapList of map_sync_progress, but nothing says so.
  *
  * - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/commands/get_map_sync_progress.md`
+ * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
  */
 public class GetMapSyncProgressResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetMapSyncProgressResponse> get() = GetMapSyncProgressResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetMapSyncProgressResponse] 的字段。Collects the fields of a [GetMapSyncProgressResponse]. */
@@ -1647,7 +1695,7 @@ public class GetMapSyncProgressResponse private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetMapSyncProgressResponse =
             builder().apply(build).build()
@@ -1667,7 +1715,8 @@ public class GetMapSyncProgressResponse private constructor(content: Content) : 
  * Code 0x0343. Sent at each step of 5 of `syncMapList.progress`.
  *
  * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+ * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
  */
 public class MapSyncProgress private constructor(content: Content) : Message(content) {
     /**
@@ -1686,7 +1735,7 @@ public class MapSyncProgress private constructor(content: Content) : Message(con
 
     override val messageType: MessageType<MapSyncProgress> get() = MapSyncProgress
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [MapSyncProgress] 的字段。Collects the fields of a [MapSyncProgress]. */
@@ -1711,7 +1760,7 @@ public class MapSyncProgress private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): MapSyncProgress =
             builder().apply(build).build()
@@ -1721,11 +1770,12 @@ public class MapSyncProgress private constructor(content: Content) : Message(con
 }
 
 /**
- * 上报地图同步进度：确认
+ * 上报地图同步进度：应答
  * Progress of map synchronisation: acknowledgement
  *
  * - Spec: `reports.map_sync_progress` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/reports/map_sync_progress.md`
+ * - 文档：`docs-site/reference/reports/map_sync_progress.md`
+ * - Docs: `docs-site/en/reference/reports/map_sync_progress.md`
  */
 public class MapSyncProgressAck private constructor(content: Content) : Message(content) {
     /**
@@ -1738,7 +1788,7 @@ public class MapSyncProgressAck private constructor(content: Content) : Message(
 
     override val messageType: MessageType<MapSyncProgressAck> get() = MapSyncProgressAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [MapSyncProgressAck] 的字段。Collects the fields of a [MapSyncProgressAck]. */
@@ -1756,7 +1806,7 @@ public class MapSyncProgressAck private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): MapSyncProgressAck =
             builder().apply(build).build()
@@ -1770,7 +1820,8 @@ public class MapSyncProgressAck private constructor(content: Content) : Message(
  * Information about a map
  *
  * - Spec: `types.MapInfo` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class MapInfo private constructor(content: Content) : Message(content) {
     /**
@@ -1879,7 +1930,7 @@ public class MapInfo private constructor(content: Content) : Message(content) {
 
     override val messageType: MessageType<MapInfo> get() = MapInfo
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [MapInfo] 的字段。Collects the fields of a [MapInfo]. */
@@ -1947,7 +1998,7 @@ public class MapInfo private constructor(content: Content) : Message(content) {
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): MapInfo =
             builder().apply(build).build()
@@ -1961,7 +2012,8 @@ public class MapInfo private constructor(content: Content) : Message(content) {
  * A map to download
  *
  * - Spec: `types.MapDownload` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class MapDownload private constructor(content: Content) : Message(content) {
     /**
@@ -1990,7 +2042,7 @@ public class MapDownload private constructor(content: Content) : Message(content
 
     override val messageType: MessageType<MapDownload> get() = MapDownload
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [MapDownload] 的字段。Collects the fields of a [MapDownload]. */
@@ -2019,7 +2071,7 @@ public class MapDownload private constructor(content: Content) : Message(content
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): MapDownload =
             builder().apply(build).build()
@@ -2033,7 +2085,8 @@ public class MapDownload private constructor(content: Content) : Message(content
  * Progress of the synchronisation of a map
  *
  * - Spec: `types.MapSync` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class MapSync private constructor(content: Content) : Message(content) {
     /**
@@ -2074,7 +2127,7 @@ public class MapSync private constructor(content: Content) : Message(content) {
 
     override val messageType: MessageType<MapSync> get() = MapSync
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [MapSync] 的字段。Collects the fields of a [MapSync]. */
@@ -2110,7 +2163,7 @@ public class MapSync private constructor(content: Content) : Message(content) {
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): MapSync =
             builder().apply(build).build()
@@ -2124,7 +2177,8 @@ public class MapSync private constructor(content: Content) : Message(content) {
  * Direction of synchronisation
  *
  * - Spec: `types.MapSyncDirection` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class MapSyncDirection private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<MapSyncDirection> get() = MapSyncDirection
@@ -2146,8 +2200,8 @@ public class MapSyncDirection private constructor(wire: Long) : IntValue(wire) {
         public val DOWNLOAD: MapSyncDirection = named(0, "DOWNLOAD")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): MapSyncDirection = super.of(wire)
@@ -2161,7 +2215,8 @@ public class MapSyncDirection private constructor(wire: Long) : IntValue(wire) {
  * Result of the synchronisation
  *
  * - Spec: `types.MapSyncResult` in `spec/commands/map.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class MapSyncResult private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<MapSyncResult> get() = MapSyncResult
@@ -2190,8 +2245,8 @@ public class MapSyncResult private constructor(wire: Long) : IntValue(wire) {
         public val FAILED: MapSyncResult = named(-1, "FAILED")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): MapSyncResult = super.of(wire)

@@ -3,7 +3,7 @@
 package fc
 
 /**
- * 每条指令和每个主动上报。
+ * 每条指令和每个上报。
  * Every command and every report.
  */
 public object Operations :

@@ -122,8 +122,8 @@ public object Fc : Protocol() {
 }
 
 /**
- * 每个请求和主动上报都带的公共字段。
- * The keys that every request and every report carries beside its own.
+ * 每个请求和上报都带的公共字段。
+ * The keys of every request and report, in addition to those of its body.
  */
 public class RequestEnvelope private constructor(content: Content) : Message(content) {
     /**
@@ -143,8 +143,8 @@ public class RequestEnvelope private constructor(content: Content) : Message(con
 }
 
 /**
- * 每个响应和确认都带的公共字段。
- * The keys that every response and every acknowledgement carries beside its own.
+ * 每个响应和应答都带的公共字段。
+ * The keys of every response and acknowledgement, in addition to those of its body.
  */
 public class ResponseEnvelope private constructor(content: Content) : Message(content) {
     /**
@@ -178,15 +178,16 @@ public class ResponseEnvelope private constructor(content: Content) : Message(co
 }
 
 /**
- * 结果码。只依据它判断成败，不依据旁边的文字。
- * Result codes. Go by them and never by the text beside them.
+ * 结果码。用结果码判断成败，不要用随附的文字。
+ * Result codes. Use the code to detect success, not the text that comes with it.
  *
- * Docs: `docs-site/reference/results.md`.
+ * - 文档：`docs-site/reference/results.md`
+ * - Docs: `docs-site/en/reference/results.md`
  */
 public class ResultCode private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<ResultCode> get() = ResultCode
 
-    /** 随结果码发送的文字。The text sent beside the code. */
+    /** 随结果码发送的文字。The text sent with the code. */
     public val text: String get() = texts[wire] ?: ""
 
     /** 以此结果码拒绝。The refusal with this code. */
@@ -264,7 +265,7 @@ public class ResultCode private constructor(wire: Long) : IntValue(wire) {
             2004L to "消息过期",
         )
 
-        /** 以此值传输的结果码。The code that travels so. */
+        /** `wire` 对应的结果码。The code for `wire`. */
         @JvmStatic
         override fun of(wire: Long): ResultCode = super.of(wire)
 

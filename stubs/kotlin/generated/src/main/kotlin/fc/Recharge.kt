@@ -46,7 +46,8 @@ public interface RechargeOperations {
      * Code 0x0A04. Moves the robot. Since 2023-05.
      *
      * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/start_recharge.md`
+     * - 文档：`docs-site/reference/commands/start_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/start_recharge.md`
      */
     public val startRecharge: Command<StartRechargeRequest, StartRechargeResponse> get() = Companion.startRecharge
 
@@ -62,7 +63,8 @@ public interface RechargeOperations {
      * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
      *
      * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+     * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
      */
     public val cancelRecharge: Command<CancelRechargeRequest, CancelRechargeResponse> get() = Companion.cancelRecharge
 
@@ -78,7 +80,8 @@ public interface RechargeOperations {
      * Code 0x0A06. Only reads, inferred. Since 2023-05.
      *
      * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+     * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
      */
     public val getRechargeStatus: Command<GetRechargeStatusRequest, GetRechargeStatusResponse>
         get() = Companion.getRechargeStatus
@@ -103,7 +106,8 @@ public interface RechargeOperations {
      * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
      *
      * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/reports/recharge_progress.md`
+     * - 文档：`docs-site/reference/reports/recharge_progress.md`
+     * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
      */
     public val rechargeProgress: Report<RechargeProgress> get() = Companion.rechargeProgress
 
@@ -114,7 +118,8 @@ public interface RechargeOperations {
          * Start returning to dock
          *
          * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-         * - Docs: `docs-site/reference/commands/start_recharge.md`
+         * - 文档：`docs-site/reference/commands/start_recharge.md`
+         * - Docs: `docs-site/en/reference/commands/start_recharge.md`
          */
         @JvmField
         public val startRecharge: Command<StartRechargeRequest, StartRechargeResponse> =
@@ -126,7 +131,8 @@ public interface RechargeOperations {
          * Cancel returning to dock
          *
          * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-         * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+         * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+         * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
          */
         @JvmField
         public val cancelRecharge: Command<CancelRechargeRequest, CancelRechargeResponse> =
@@ -138,7 +144,8 @@ public interface RechargeOperations {
          * Get the charging state
          *
          * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-         * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+         * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+         * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
          */
         @JvmField
         public val getRechargeStatus: Command<GetRechargeStatusRequest, GetRechargeStatusResponse> =
@@ -150,7 +157,8 @@ public interface RechargeOperations {
          * Progress and result of charging
          *
          * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-         * - Docs: `docs-site/reference/reports/recharge_progress.md`
+         * - 文档：`docs-site/reference/reports/recharge_progress.md`
+         * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
          */
         @JvmField
         public val rechargeProgress: Report<RechargeProgress> =
@@ -196,9 +204,10 @@ public interface RechargeClient {
      * Code 0x0A04. Moves the robot. Since 2023-05.
      *
      * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/start_recharge.md`
+     * - 文档：`docs-site/reference/commands/start_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/start_recharge.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun startRecharge(request: StartRechargeRequest = StartRechargeRequest {}): StartRechargeResponse =
@@ -213,19 +222,18 @@ public interface RechargeClient {
         startRechargeAsync(StartRechargeRequest {})
 
     /**
-     * [startRecharge]，取得响应，再逐个取得它引起的 [RechargeProgress]。
-     * [startRecharge], and then each [RechargeProgress] that it sets off.
+     * [startRecharge]：先返回响应，再逐个返回它引起的 [RechargeProgress]。
+     * [startRecharge]: returns the response, and then each [RechargeProgress] that the command sets off.
      *
-     * 没有写明哪个状态是终态：只在 `data.errorStatus` 表示失败时结束，否则要由 app 停止。
+     * 规范没有写明终态：`data.errorStatus` 表示失败时结束，否则由 app 停止。
      *
-     * No state is said to be final: it ends only when `data.errorStatus` says that something failed, or when the app
-     * stops it.
+     * The spec marks no state as final. It ends when `data.errorStatus` reports a failure, or when the app stops it.
      *
-     * 报文中没有字段把上报与某一次调用对应起来：同类上报都会收到，不论由谁引起。
+     * 报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。
      *
-     * Nothing in the messages ties a report to a call: reports of this kind that others have set off come as well.
+     * No key ties a report to a call: reports of this kind from other calls arrive as well.
      *
-     * @throws fc.runtime.CallError if the command is not answered with success
+     * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
     public suspend fun startRechargeFollowed(request: StartRechargeRequest = StartRechargeRequest {}): Following<StartRechargeResponse, RechargeProgress> =
@@ -243,9 +251,10 @@ public interface RechargeClient {
      * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
      *
      * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+     * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun cancelRecharge(
@@ -273,9 +282,10 @@ public interface RechargeClient {
      * Code 0x0A06. Only reads, inferred. Since 2023-05.
      *
      * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+     * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getRechargeStatus(
@@ -311,9 +321,10 @@ public interface RechargeHandlers {
      * Code 0x0A04. Moves the robot. Since 2023-05.
      *
      * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/start_recharge.md`
+     * - 文档：`docs-site/reference/commands/start_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/start_recharge.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun startRecharge(context: Context, request: StartRechargeRequest): StartRechargeResponse
 
@@ -329,9 +340,10 @@ public interface RechargeHandlers {
      * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
      *
      * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+     * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+     * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun cancelRecharge(context: Context, request: CancelRechargeRequest): CancelRechargeResponse
 
@@ -347,9 +359,10 @@ public interface RechargeHandlers {
      * Code 0x0A06. Only reads, inferred. Since 2023-05.
      *
      * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+     * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): GetRechargeStatusResponse
 }
@@ -394,7 +407,7 @@ internal class RechargeExample(pretendMotion: Boolean) :
  * Return to dock: its part of `Reporter`.
  */
 public interface RechargeReporter {
-    /** 由它发送。What sends them. */
+    /** 由它发送。The server that sends them. */
     public val server: Server
 
     /**
@@ -417,9 +430,10 @@ public interface RechargeReporter {
      * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
      *
      * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-     * - Docs: `docs-site/reference/reports/recharge_progress.md`
+     * - 文档：`docs-site/reference/reports/recharge_progress.md`
+     * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun rechargeProgress(audience: Audience, report: RechargeProgress): List<Acknowledgement> =
@@ -449,12 +463,13 @@ public interface RechargeReporter {
  * Code 0x0A04. Moves the robot. Since 2023-05.
  *
  * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/start_recharge.md`
+ * - 文档：`docs-site/reference/commands/start_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/start_recharge.md`
  */
 public class StartRechargeRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<StartRechargeRequest> get() = StartRechargeRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StartRechargeRequest] 的字段。Collects the fields of a [StartRechargeRequest]. */
@@ -467,7 +482,7 @@ public class StartRechargeRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StartRechargeRequest =
             builder().apply(build).build()
@@ -481,12 +496,13 @@ public class StartRechargeRequest private constructor(content: Content) : Messag
  * Start returning to dock: response
  *
  * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/start_recharge.md`
+ * - 文档：`docs-site/reference/commands/start_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/start_recharge.md`
  */
 public class StartRechargeResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<StartRechargeResponse> get() = StartRechargeResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StartRechargeResponse] 的字段。Collects the fields of a [StartRechargeResponse]. */
@@ -499,7 +515,7 @@ public class StartRechargeResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StartRechargeResponse =
             builder().apply(build).build()
@@ -523,12 +539,13 @@ public class StartRechargeResponse private constructor(content: Content) : Messa
  * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
  *
  * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+ * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
  */
 public class CancelRechargeRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<CancelRechargeRequest> get() = CancelRechargeRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CancelRechargeRequest] 的字段。Collects the fields of a [CancelRechargeRequest]. */
@@ -541,7 +558,7 @@ public class CancelRechargeRequest private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CancelRechargeRequest =
             builder().apply(build).build()
@@ -559,12 +576,13 @@ public class CancelRechargeRequest private constructor(content: Content) : Messa
  * Open: The response is lost. Nothing is known beyond the envelope; any other key received is kept.
  *
  * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/cancel_recharge.md`
+ * - 文档：`docs-site/reference/commands/cancel_recharge.md`
+ * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
  */
 public class CancelRechargeResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<CancelRechargeResponse> get() = CancelRechargeResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CancelRechargeResponse] 的字段。Collects the fields of a [CancelRechargeResponse]. */
@@ -577,7 +595,7 @@ public class CancelRechargeResponse private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CancelRechargeResponse =
             builder().apply(build).build()
@@ -597,12 +615,13 @@ public class CancelRechargeResponse private constructor(content: Content) : Mess
  * Code 0x0A06. Only reads, inferred. Since 2023-05.
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 public class GetRechargeStatusRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetRechargeStatusRequest> get() = GetRechargeStatusRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRechargeStatusRequest] 的字段。Collects the fields of a [GetRechargeStatusRequest]. */
@@ -615,7 +634,7 @@ public class GetRechargeStatusRequest private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRechargeStatusRequest =
             builder().apply(build).build()
@@ -629,7 +648,8 @@ public class GetRechargeStatusRequest private constructor(content: Content) : Me
  * Get the charging state: response
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 public class GetRechargeStatusResponse private constructor(content: Content) : Message(content) {
     /**
@@ -640,7 +660,7 @@ public class GetRechargeStatusResponse private constructor(content: Content) : M
 
     override val messageType: MessageType<GetRechargeStatusResponse> get() = GetRechargeStatusResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRechargeStatusResponse] 的字段。Collects the fields of a [GetRechargeStatusResponse]. */
@@ -661,7 +681,7 @@ public class GetRechargeStatusResponse private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRechargeStatusResponse =
             builder().apply(build).build()
@@ -677,7 +697,8 @@ public class GetRechargeStatusResponse private constructor(content: Content) : M
  * `data` of [GetRechargeStatusResponse].
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/commands/get_recharge_status.md`
+ * - 文档：`docs-site/reference/commands/get_recharge_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
  */
 public class GetRechargeStatusResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -701,7 +722,7 @@ public class GetRechargeStatusResponseData private constructor(content: Content)
 
     override val messageType: MessageType<GetRechargeStatusResponseData> get() = GetRechargeStatusResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetRechargeStatusResponseData] 的字段。Collects the fields of a [GetRechargeStatusResponseData]. */
@@ -726,7 +747,7 @@ public class GetRechargeStatusResponseData private constructor(content: Content)
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetRechargeStatusResponseData =
             builder().apply(build).build()
@@ -755,7 +776,8 @@ public class GetRechargeStatusResponseData private constructor(content: Content)
  * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 public class RechargeProgress private constructor(content: Content) : Message(content) {
     /**
@@ -766,7 +788,7 @@ public class RechargeProgress private constructor(content: Content) : Message(co
 
     override val messageType: MessageType<RechargeProgress> get() = RechargeProgress
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RechargeProgress] 的字段。Collects the fields of a [RechargeProgress]. */
@@ -787,7 +809,7 @@ public class RechargeProgress private constructor(content: Content) : Message(co
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RechargeProgress =
             builder().apply(build).build()
@@ -803,7 +825,8 @@ public class RechargeProgress private constructor(content: Content) : Message(co
  * `data` of [RechargeProgress].
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 public class RechargeProgressData private constructor(content: Content) : Message(content) {
     /**
@@ -822,7 +845,7 @@ public class RechargeProgressData private constructor(content: Content) : Messag
 
     override val messageType: MessageType<RechargeProgressData> get() = RechargeProgressData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RechargeProgressData] 的字段。Collects the fields of a [RechargeProgressData]. */
@@ -847,7 +870,7 @@ public class RechargeProgressData private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RechargeProgressData =
             builder().apply(build).build()
@@ -857,16 +880,17 @@ public class RechargeProgressData private constructor(content: Content) : Messag
 }
 
 /**
- * 主动上报回充过程和结果：确认
+ * 主动上报回充过程和结果：应答
  * Progress and result of charging: acknowledgement
  *
  * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/reports/recharge_progress.md`
+ * - 文档：`docs-site/reference/reports/recharge_progress.md`
+ * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
  */
 public class RechargeProgressAck private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<RechargeProgressAck> get() = RechargeProgressAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RechargeProgressAck] 的字段。Collects the fields of a [RechargeProgressAck]. */
@@ -879,7 +903,7 @@ public class RechargeProgressAck private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RechargeProgressAck =
             builder().apply(build).build()
@@ -897,7 +921,8 @@ public class RechargeProgressAck private constructor(content: Content) : Message
  * The normal order is 0 → 4 → 1 → 2 → 3. The numbers do not follow it, so do not compare them.
  *
  * - Spec: `types.RechargeStatus` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class RechargeStatus private constructor(wire: Long) : IntValue(wire), State {
     override val enumType: EnumType<RechargeStatus> get() = RechargeStatus
@@ -952,8 +977,8 @@ public class RechargeStatus private constructor(wire: Long) : IntValue(wire), St
             .then(DOCKED.wire, CHARGING.wire)
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): RechargeStatus = super.of(wire)
@@ -967,7 +992,8 @@ public class RechargeStatus private constructor(wire: Long) : IntValue(wire), St
  * Whether charging failed
  *
  * - Spec: `types.RechargeError` in `spec/commands/recharge.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class RechargeError private constructor(wire: Long) : IntValue(wire), State {
     override val enumType: EnumType<RechargeError> get() = RechargeError
@@ -998,8 +1024,8 @@ public class RechargeError private constructor(wire: Long) : IntValue(wire), Sta
             .errors(FAILED.wire)
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): RechargeError = super.of(wire)

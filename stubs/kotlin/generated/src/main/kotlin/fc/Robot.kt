@@ -14,15 +14,15 @@ import fc.runtime.Service
  * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。只实现了一部分指令的机器人，改为实现
  * `PartialRobot`。
  *
- * A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing, and the compiler
- * says so. A robot that has some of them so far implements `PartialRobot` instead: what it leaves out is refused as not
+ * A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a
+ * missing method. A robot with some of the commands implements `PartialRobot`, which refuses the others as not
  * implemented.
  *
- * 处理超时或断线之后不再有人等待应答。会引起动作的指令，以及作用不详的指令，处理程序仍运行到结束，`Context.isAbandoned`
- * 让它知道；其他指令的处理程序被取消。
+ * 处理超时或断线之后，调用方不再等待响应。运动指令和影响不详的指令，处理程序仍运行到结束，可以查看
+ * `Context.isAbandoned`；其他指令的处理程序被取消。
  *
- * After a timeout or a loss nobody waits for the answer any more. The handler of a command that sets something in
- * motion, or whose effect is unknown, still runs to its end, and `Context.isAbandoned` tells it; that of any other
+ * After a timeout or a loss, the caller does not wait for the response any more. The handler of a command that moves
+ * the robot, or with an unknown effect, runs to its end and can check `Context.isAbandoned`. The handler of any other
  * command is cancelled.
  */
 public interface Robot :
@@ -44,22 +44,22 @@ public interface Robot :
      * 直接透传给上装
      * Passed straight through to the upper body
      *
-     * Codes 0x0200 to 0x0300 that have no method of their own.
+     * Codes 0x0200 to 0x0300 without a separate method.
      *
      * 不实现此方法时，按未知指令拒绝。
      *
-     * Refused as an unknown command unless the robot has this method.
+     * Without this method, the robot refuses them as unknown commands.
      */
     public suspend fun passThrough(context: Context, request: RawRequest): Json =
         throw context.unknown()
 
     /**
      * 功能码不在规范中的指令。
-     * Commands whose code is not in the spec.
+     * Commands with a code that is not in the spec.
      *
      * 不实现此方法时，按未知指令拒绝。
      *
-     * Refused as an unknown command unless the robot has this method.
+     * Without this method, the robot refuses them as unknown commands.
      */
     public suspend fun unknown(context: Context, request: RawRequest): Json =
         throw context.unknown()
@@ -67,7 +67,7 @@ public interface Robot :
 
 /**
  * 实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。
- * A robot that has some of the commands so far: what it leaves out is refused as not implemented.
+ * A robot with some of the commands. It refuses the others as not implemented.
  */
 public interface PartialRobot :
     Robot,
@@ -87,13 +87,13 @@ public interface PartialRobot :
     UpperBodyPartial
 
 /**
- * 用规范中的示例回答指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。
- * Answers with the spec's examples, for demos and tests alone; a robot of your own starts with `PartialRobot`.
+ * 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。
+ * Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.
  *
- * 会引起动作的指令，以及作用不详的指令，它并不执行，因此以“未实现”拒绝，除非用 `pretendMotion` 要求它假装。
+ * 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。
  *
- * It does not carry out what sets something in motion, or may do so: such commands are refused as not implemented,
- * unless `pretendMotion` tells it to pretend.
+ * It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With
+ * `pretendMotion`, it pretends success.
  */
 public open class ExampleRobot(pretendMotion: Boolean = false) :
     Robot,
@@ -112,16 +112,16 @@ public open class ExampleRobot(pretendMotion: Boolean = false) :
     UnnamedHandlers by UnnamedExample(pretendMotion),
     UpperBodyHandlers by UpperBodyExample(pretendMotion)
 
-/** 各指令组的示例共有的部分。What the examples of all groups have in common. */
+/** 各分组的示例共有的部分。The common part of the examples of all groups. */
 internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
-    /** The answer to what may set something in motion. */
+    /** The response to a command that may move the robot. */
     protected fun <A : Message> pretended(context: Context, response: MessageType<A>): A =
         if (pretendMotion) response.example() else throw context.notImplemented()
 }
 
 /**
- * 由此机器人处理的全部指令，供 \[Server.bind\] 使用。
- * The commands of the spec, carried out by this robot, for \[Server.bind\].
+ * 由此机器人处理规范中的指令，供 \[Server.bind\] 使用。
+ * A service that handles the commands with this robot, for \[Server.bind\].
  */
 public fun Robot.service(): Service =
     Service()
@@ -143,11 +143,11 @@ public fun Robot.service(): Service =
         .onUnknown { context, request -> unknown(context, request) }
 
 /**
- * 带类型的主动上报：每个上报一个方法，等到每个 app 应答，或者不会再应答。
- * Typed reports: one method each, which waits until each app has acknowledged it or will not.
+ * 发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。
+ * Pushes reports: one method per report, which waits for the outcome at each app.
  */
 public class Reporter(
-    /** 由它发送。What sends them. */
+    /** 由它发送。The server that sends them. */
     override val server: Server,
 ) : MapReporter,
     RechargeReporter,

@@ -34,7 +34,8 @@ public interface SettingsOperations {
      * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_0a08.md`
+     * - 文档：`docs-site/reference/commands/switch_0a08.md`
+     * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
      */
     public val switch0a08: Command<Switch0a08Request, Switch0a08Response> get() = Companion.switch0a08
 
@@ -54,7 +55,8 @@ public interface SettingsOperations {
      * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+     * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+     * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
      */
     @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
     public val setVoiceReminder: Command<SetVoiceReminderRequest, SetVoiceReminderResponse>
@@ -71,7 +73,8 @@ public interface SettingsOperations {
      * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_environment.md`
+     * - 文档：`docs-site/reference/commands/switch_environment.md`
+     * - Docs: `docs-site/en/reference/commands/switch_environment.md`
      */
     public val switchEnvironment: Command<SwitchEnvironmentRequest, SwitchEnvironmentResponse>
         get() = Companion.switchEnvironment
@@ -83,7 +86,8 @@ public interface SettingsOperations {
          * Read or set a switch (0x0A08, purpose unknown)
          *
          * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-         * - Docs: `docs-site/reference/commands/switch_0a08.md`
+         * - 文档：`docs-site/reference/commands/switch_0a08.md`
+         * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
          */
         @JvmField
         public val switch0a08: Command<Switch0a08Request, Switch0a08Response> =
@@ -95,7 +99,8 @@ public interface SettingsOperations {
          * Voice reminder switch
          *
          * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-         * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+         * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+         * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
          */
         @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
         @JvmField
@@ -108,7 +113,8 @@ public interface SettingsOperations {
          * Switch the environment
          *
          * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-         * - Docs: `docs-site/reference/commands/switch_environment.md`
+         * - 文档：`docs-site/reference/commands/switch_environment.md`
+         * - Docs: `docs-site/en/reference/commands/switch_environment.md`
          */
         @JvmField
         public val switchEnvironment: Command<SwitchEnvironmentRequest, SwitchEnvironmentResponse> =
@@ -144,9 +150,10 @@ public interface SettingsClient {
      * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_0a08.md`
+     * - 文档：`docs-site/reference/commands/switch_0a08.md`
+     * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun switch0a08(request: Switch0a08Request): Switch0a08Response =
@@ -172,9 +179,10 @@ public interface SettingsClient {
      * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+     * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+     * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
     @JvmSynthetic
@@ -197,9 +205,10 @@ public interface SettingsClient {
      * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_environment.md`
+     * - 文档：`docs-site/reference/commands/switch_environment.md`
+     * - Docs: `docs-site/en/reference/commands/switch_environment.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun switchEnvironment(
@@ -233,9 +242,10 @@ public interface SettingsHandlers {
      * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_0a08.md`
+     * - 文档：`docs-site/reference/commands/switch_0a08.md`
+     * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun switch0a08(context: Context, request: Switch0a08Request): Switch0a08Response
 
@@ -255,9 +265,10 @@ public interface SettingsHandlers {
      * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+     * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+     * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun setVoiceReminder(context: Context, request: SetVoiceReminderRequest): SetVoiceReminderResponse
 
@@ -272,9 +283,10 @@ public interface SettingsHandlers {
      * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
      *
      * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
-     * - Docs: `docs-site/reference/commands/switch_environment.md`
+     * - 文档：`docs-site/reference/commands/switch_environment.md`
+     * - Docs: `docs-site/en/reference/commands/switch_environment.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun switchEnvironment(context: Context, request: SwitchEnvironmentRequest): SwitchEnvironmentResponse
 }
@@ -326,7 +338,8 @@ internal class SettingsExample(pretendMotion: Boolean) :
  * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 public class Switch0a08Request private constructor(content: Content) : Message(content) {
     /**
@@ -337,7 +350,7 @@ public class Switch0a08Request private constructor(content: Content) : Message(c
 
     override val messageType: MessageType<Switch0a08Request> get() = Switch0a08Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Switch0a08Request] 的字段。Collects the fields of a [Switch0a08Request]. */
@@ -355,7 +368,7 @@ public class Switch0a08Request private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Switch0a08Request =
             builder().apply(build).build()
@@ -371,7 +384,8 @@ public class Switch0a08Request private constructor(content: Content) : Message(c
  * `data` of [Switch0a08Request].
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 public class Switch0a08RequestData private constructor(content: Content) : Message(content) {
     /**
@@ -382,7 +396,7 @@ public class Switch0a08RequestData private constructor(content: Content) : Messa
 
     override val messageType: MessageType<Switch0a08RequestData> get() = Switch0a08RequestData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Switch0a08RequestData] 的字段。Collects the fields of a [Switch0a08RequestData]. */
@@ -400,7 +414,7 @@ public class Switch0a08RequestData private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Switch0a08RequestData =
             builder().apply(build).build()
@@ -414,7 +428,8 @@ public class Switch0a08RequestData private constructor(content: Content) : Messa
  * Read or set a switch (0x0A08, purpose unknown): response
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 public class Switch0a08Response private constructor(content: Content) : Message(content) {
     /**
@@ -425,7 +440,7 @@ public class Switch0a08Response private constructor(content: Content) : Message(
 
     override val messageType: MessageType<Switch0a08Response> get() = Switch0a08Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Switch0a08Response] 的字段。Collects the fields of a [Switch0a08Response]. */
@@ -443,7 +458,7 @@ public class Switch0a08Response private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Switch0a08Response =
             builder().apply(build).build()
@@ -459,7 +474,8 @@ public class Switch0a08Response private constructor(content: Content) : Message(
  * `data` of [Switch0a08Response].
  *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_0a08.md`
+ * - 文档：`docs-site/reference/commands/switch_0a08.md`
+ * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
  */
 public class Switch0a08ResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -474,7 +490,7 @@ public class Switch0a08ResponseData private constructor(content: Content) : Mess
 
     override val messageType: MessageType<Switch0a08ResponseData> get() = Switch0a08ResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Switch0a08ResponseData] 的字段。Collects the fields of a [Switch0a08ResponseData]. */
@@ -492,7 +508,7 @@ public class Switch0a08ResponseData private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Switch0a08ResponseData =
             builder().apply(build).build()
@@ -522,7 +538,8 @@ public class Switch0a08ResponseData private constructor(content: Content) : Mess
  * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 public class SetVoiceReminderRequest private constructor(content: Content) : Message(content) {
     /**
@@ -533,7 +550,7 @@ public class SetVoiceReminderRequest private constructor(content: Content) : Mes
 
     override val messageType: MessageType<SetVoiceReminderRequest> get() = SetVoiceReminderRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetVoiceReminderRequest] 的字段。Collects the fields of a [SetVoiceReminderRequest]. */
@@ -554,7 +571,7 @@ public class SetVoiceReminderRequest private constructor(content: Content) : Mes
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetVoiceReminderRequest =
             builder().apply(build).build()
@@ -570,7 +587,8 @@ public class SetVoiceReminderRequest private constructor(content: Content) : Mes
  * `data` of [SetVoiceReminderRequest].
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 public class SetVoiceReminderRequestData private constructor(content: Content) : Message(content) {
     /**
@@ -581,7 +599,7 @@ public class SetVoiceReminderRequestData private constructor(content: Content) :
 
     override val messageType: MessageType<SetVoiceReminderRequestData> get() = SetVoiceReminderRequestData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetVoiceReminderRequestData] 的字段。Collects the fields of a [SetVoiceReminderRequestData]. */
@@ -602,7 +620,7 @@ public class SetVoiceReminderRequestData private constructor(content: Content) :
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetVoiceReminderRequestData =
             builder().apply(build).build()
@@ -616,7 +634,8 @@ public class SetVoiceReminderRequestData private constructor(content: Content) :
  * Voice reminder switch: response
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 public class SetVoiceReminderResponse private constructor(content: Content) : Message(content) {
     /**
@@ -627,7 +646,7 @@ public class SetVoiceReminderResponse private constructor(content: Content) : Me
 
     override val messageType: MessageType<SetVoiceReminderResponse> get() = SetVoiceReminderResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetVoiceReminderResponse] 的字段。Collects the fields of a [SetVoiceReminderResponse]. */
@@ -648,7 +667,7 @@ public class SetVoiceReminderResponse private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetVoiceReminderResponse =
             builder().apply(build).build()
@@ -664,7 +683,8 @@ public class SetVoiceReminderResponse private constructor(content: Content) : Me
  * `data` of [SetVoiceReminderResponse].
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/set_voice_reminder.md`
+ * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
+ * - Docs: `docs-site/en/reference/commands/set_voice_reminder.md`
  */
 public class SetVoiceReminderResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -675,7 +695,7 @@ public class SetVoiceReminderResponseData private constructor(content: Content) 
 
     override val messageType: MessageType<SetVoiceReminderResponseData> get() = SetVoiceReminderResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetVoiceReminderResponseData] 的字段。Collects the fields of a [SetVoiceReminderResponseData]. */
@@ -696,7 +716,7 @@ public class SetVoiceReminderResponseData private constructor(content: Content) 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetVoiceReminderResponseData =
             builder().apply(build).build()
@@ -721,12 +741,13 @@ public class SetVoiceReminderResponseData private constructor(content: Content) 
  * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_environment.md`
+ * - 文档：`docs-site/reference/commands/switch_environment.md`
+ * - Docs: `docs-site/en/reference/commands/switch_environment.md`
  */
 public class SwitchEnvironmentRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SwitchEnvironmentRequest> get() = SwitchEnvironmentRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SwitchEnvironmentRequest] 的字段。Collects the fields of a [SwitchEnvironmentRequest]. */
@@ -739,7 +760,7 @@ public class SwitchEnvironmentRequest private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SwitchEnvironmentRequest =
             builder().apply(build).build()
@@ -753,12 +774,13 @@ public class SwitchEnvironmentRequest private constructor(content: Content) : Me
  * Switch the environment: response
  *
  * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/commands/switch_environment.md`
+ * - 文档：`docs-site/reference/commands/switch_environment.md`
+ * - Docs: `docs-site/en/reference/commands/switch_environment.md`
  */
 public class SwitchEnvironmentResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SwitchEnvironmentResponse> get() = SwitchEnvironmentResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SwitchEnvironmentResponse] 的字段。Collects the fields of a [SwitchEnvironmentResponse]. */
@@ -771,7 +793,7 @@ public class SwitchEnvironmentResponse private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SwitchEnvironmentResponse =
             builder().apply(build).build()
@@ -785,7 +807,8 @@ public class SwitchEnvironmentResponse private constructor(content: Content) : M
  * What to do with a switch
  *
  * - Spec: `types.SwitchUpdate` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class SwitchUpdate private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<SwitchUpdate> get() = SwitchUpdate
@@ -814,8 +837,8 @@ public class SwitchUpdate private constructor(wire: String) : TextValue(wire) {
         public val TURN_OFF: SwitchUpdate = named("off", "TURN_OFF")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): SwitchUpdate = super.of(wire)
@@ -829,7 +852,8 @@ public class SwitchUpdate private constructor(wire: String) : TextValue(wire) {
  * State of a switch
  *
  * - Spec: `types.SwitchState` in `spec/commands/settings.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class SwitchState private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<SwitchState> get() = SwitchState
@@ -851,8 +875,8 @@ public class SwitchState private constructor(wire: String) : TextValue(wire) {
         public val OFF: SwitchState = named("off", "OFF")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): SwitchState = super.of(wire)

@@ -17,7 +17,8 @@ import fc.runtime.Types
  * C100).
  *
  * - Spec: `types.StationType` in `spec/types.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class StationType private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<StationType> get() = StationType
@@ -74,8 +75,8 @@ public class StationType private constructor(wire: Long) : IntValue(wire) {
         public val STANDBY: StationType = named(6, "STANDBY")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): StationType = super.of(wire)

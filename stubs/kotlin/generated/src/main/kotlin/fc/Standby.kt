@@ -32,7 +32,8 @@ public interface StandbyOperations {
      * Code 0x0311. Changes the configuration. Since 2024-01-02.
      *
      * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_standby_position.md`
+     * - 文档：`docs-site/reference/commands/set_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
      */
     public val setStandbyPosition: Command<SetStandbyPositionRequest, SetStandbyPositionResponse>
         get() = Companion.setStandbyPosition
@@ -44,7 +45,8 @@ public interface StandbyOperations {
      * Code 0x0312. Only reads. Since 2024-01-02.
      *
      * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_standby_position.md`
+     * - 文档：`docs-site/reference/commands/get_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
      */
     public val getStandbyPosition: Command<GetStandbyPositionRequest, GetStandbyPositionResponse>
         get() = Companion.getStandbyPosition
@@ -56,7 +58,8 @@ public interface StandbyOperations {
      * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+     * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+     * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
      */
     public val setPositions0313: Command<SetPositions0313Request, SetPositions0313Response>
         get() = Companion.setPositions0313
@@ -73,7 +76,8 @@ public interface StandbyOperations {
      * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+     * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+     * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
      */
     public val getPositions0314: Command<GetPositions0314Request, GetPositions0314Response>
         get() = Companion.getPositions0314
@@ -85,7 +89,8 @@ public interface StandbyOperations {
          * Set the standby position
          *
          * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-         * - Docs: `docs-site/reference/commands/set_standby_position.md`
+         * - 文档：`docs-site/reference/commands/set_standby_position.md`
+         * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
          */
         @JvmField
         public val setStandbyPosition: Command<SetStandbyPositionRequest, SetStandbyPositionResponse> =
@@ -97,7 +102,8 @@ public interface StandbyOperations {
          * Get the standby position
          *
          * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-         * - Docs: `docs-site/reference/commands/get_standby_position.md`
+         * - 文档：`docs-site/reference/commands/get_standby_position.md`
+         * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
          */
         @JvmField
         public val getStandbyPosition: Command<GetStandbyPositionRequest, GetStandbyPositionResponse> =
@@ -109,7 +115,8 @@ public interface StandbyOperations {
          * Set points (0x0313, purpose unknown)
          *
          * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-         * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+         * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+         * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
          */
         @JvmField
         public val setPositions0313: Command<SetPositions0313Request, SetPositions0313Response> =
@@ -121,7 +128,8 @@ public interface StandbyOperations {
          * Get points (0x0314, purpose unknown)
          *
          * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-         * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+         * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+         * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
          */
         @JvmField
         public val getPositions0314: Command<GetPositions0314Request, GetPositions0314Response> =
@@ -158,9 +166,10 @@ public interface StandbyClient {
      * Code 0x0311. Changes the configuration. Since 2024-01-02.
      *
      * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_standby_position.md`
+     * - 文档：`docs-site/reference/commands/set_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun setStandbyPosition(request: SetStandbyPositionRequest): SetStandbyPositionResponse =
@@ -179,9 +188,10 @@ public interface StandbyClient {
      * Code 0x0312. Only reads. Since 2024-01-02.
      *
      * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_standby_position.md`
+     * - 文档：`docs-site/reference/commands/get_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getStandbyPosition(
@@ -206,9 +216,10 @@ public interface StandbyClient {
      * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+     * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+     * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun setPositions0313(request: SetPositions0313Request): SetPositions0313Response =
@@ -230,9 +241,10 @@ public interface StandbyClient {
      * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+     * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+     * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getPositions0314(
@@ -266,9 +278,10 @@ public interface StandbyHandlers {
      * Code 0x0311. Changes the configuration. Since 2024-01-02.
      *
      * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_standby_position.md`
+     * - 文档：`docs-site/reference/commands/set_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun setStandbyPosition(context: Context, request: SetStandbyPositionRequest): SetStandbyPositionResponse
 
@@ -279,9 +292,10 @@ public interface StandbyHandlers {
      * Code 0x0312. Only reads. Since 2024-01-02.
      *
      * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_standby_position.md`
+     * - 文档：`docs-site/reference/commands/get_standby_position.md`
+     * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getStandbyPosition(context: Context, request: GetStandbyPositionRequest): GetStandbyPositionResponse
 
@@ -292,9 +306,10 @@ public interface StandbyHandlers {
      * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+     * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+     * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun setPositions0313(context: Context, request: SetPositions0313Request): SetPositions0313Response
 
@@ -310,9 +325,10 @@ public interface StandbyHandlers {
      * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
      *
      * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-     * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+     * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+     * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getPositions0314(context: Context, request: GetPositions0314Request): GetPositions0314Response
 }
@@ -371,7 +387,8 @@ internal class StandbyExample(pretendMotion: Boolean) :
  * Code 0x0311. Changes the configuration. Since 2024-01-02.
  *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_standby_position.md`
+ * - 文档：`docs-site/reference/commands/set_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
  */
 public class SetStandbyPositionRequest private constructor(content: Content) : Message(content) {
     /**
@@ -382,7 +399,7 @@ public class SetStandbyPositionRequest private constructor(content: Content) : M
 
     override val messageType: MessageType<SetStandbyPositionRequest> get() = SetStandbyPositionRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetStandbyPositionRequest] 的字段。Collects the fields of a [SetStandbyPositionRequest]. */
@@ -403,7 +420,7 @@ public class SetStandbyPositionRequest private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetStandbyPositionRequest =
             builder().apply(build).build()
@@ -417,12 +434,13 @@ public class SetStandbyPositionRequest private constructor(content: Content) : M
  * Set the standby position: response
  *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_standby_position.md`
+ * - 文档：`docs-site/reference/commands/set_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
  */
 public class SetStandbyPositionResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SetStandbyPositionResponse> get() = SetStandbyPositionResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetStandbyPositionResponse] 的字段。Collects the fields of a [SetStandbyPositionResponse]. */
@@ -435,7 +453,7 @@ public class SetStandbyPositionResponse private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetStandbyPositionResponse =
             builder().apply(build).build()
@@ -456,12 +474,13 @@ public class SetStandbyPositionResponse private constructor(content: Content) : 
  * Code 0x0312. Only reads. Since 2024-01-02.
  *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_standby_position.md`
+ * - 文档：`docs-site/reference/commands/get_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
  */
 public class GetStandbyPositionRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetStandbyPositionRequest> get() = GetStandbyPositionRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStandbyPositionRequest] 的字段。Collects the fields of a [GetStandbyPositionRequest]. */
@@ -474,7 +493,7 @@ public class GetStandbyPositionRequest private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStandbyPositionRequest =
             builder().apply(build).build()
@@ -493,12 +512,13 @@ public class GetStandbyPositionRequest private constructor(content: Content) : M
  * nothing says so.
  *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_standby_position.md`
+ * - 文档：`docs-site/reference/commands/get_standby_position.md`
+ * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
  */
 public class GetStandbyPositionResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetStandbyPositionResponse> get() = GetStandbyPositionResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStandbyPositionResponse] 的字段。Collects the fields of a [GetStandbyPositionResponse]. */
@@ -511,7 +531,7 @@ public class GetStandbyPositionResponse private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStandbyPositionResponse =
             builder().apply(build).build()
@@ -527,7 +547,8 @@ public class GetStandbyPositionResponse private constructor(content: Content) : 
  * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+ * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+ * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
  */
 public class SetPositions0313Request private constructor(content: Content) : Message(content) {
     /**
@@ -538,7 +559,7 @@ public class SetPositions0313Request private constructor(content: Content) : Mes
 
     override val messageType: MessageType<SetPositions0313Request> get() = SetPositions0313Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetPositions0313Request] 的字段。Collects the fields of a [SetPositions0313Request]. */
@@ -559,7 +580,7 @@ public class SetPositions0313Request private constructor(content: Content) : Mes
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetPositions0313Request =
             builder().apply(build).build()
@@ -577,12 +598,13 @@ public class SetPositions0313Request private constructor(content: Content) : Mes
  * Open: The response is lost; its label runs straight into section 48.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/set_positions_0313.md`
+ * - 文档：`docs-site/reference/commands/set_positions_0313.md`
+ * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
  */
 public class SetPositions0313Response private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<SetPositions0313Response> get() = SetPositions0313Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SetPositions0313Response] 的字段。Collects the fields of a [SetPositions0313Response]. */
@@ -595,7 +617,7 @@ public class SetPositions0313Response private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SetPositions0313Response =
             builder().apply(build).build()
@@ -616,12 +638,13 @@ public class SetPositions0313Response private constructor(content: Content) : Me
  * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+ * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+ * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
  */
 public class GetPositions0314Request private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetPositions0314Request> get() = GetPositions0314Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetPositions0314Request] 的字段。Collects the fields of a [GetPositions0314Request]. */
@@ -634,7 +657,7 @@ public class GetPositions0314Request private constructor(content: Content) : Mes
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetPositions0314Request =
             builder().apply(build).build()
@@ -648,7 +671,8 @@ public class GetPositions0314Request private constructor(content: Content) : Mes
  * Get points (0x0314, purpose unknown): response
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/commands/get_positions_0314.md`
+ * - 文档：`docs-site/reference/commands/get_positions_0314.md`
+ * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
  */
 public class GetPositions0314Response private constructor(content: Content) : Message(content) {
     /**
@@ -659,7 +683,7 @@ public class GetPositions0314Response private constructor(content: Content) : Me
 
     override val messageType: MessageType<GetPositions0314Response> get() = GetPositions0314Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetPositions0314Response] 的字段。Collects the fields of a [GetPositions0314Response]. */
@@ -680,7 +704,7 @@ public class GetPositions0314Response private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetPositions0314Response =
             builder().apply(build).build()
@@ -694,7 +718,8 @@ public class GetPositions0314Response private constructor(content: Content) : Me
  * A standby position
  *
  * - Spec: `types.StandbyPosition` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class StandbyPosition private constructor(content: Content) : Message(content) {
     /**
@@ -723,7 +748,7 @@ public class StandbyPosition private constructor(content: Content) : Message(con
 
     override val messageType: MessageType<StandbyPosition> get() = StandbyPosition
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StandbyPosition] 的字段。Collects the fields of a [StandbyPosition]. */
@@ -752,7 +777,7 @@ public class StandbyPosition private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StandbyPosition =
             builder().apply(build).build()
@@ -766,7 +791,8 @@ public class StandbyPosition private constructor(content: Content) : Message(con
  * A point, given by map ID and station ID
  *
  * - Spec: `types.StationRef` in `spec/commands/standby.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class StationRef private constructor(content: Content) : Message(content) {
     /**
@@ -787,7 +813,7 @@ public class StationRef private constructor(content: Content) : Message(content)
 
     override val messageType: MessageType<StationRef> get() = StationRef
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StationRef] 的字段。Collects the fields of a [StationRef]. */
@@ -812,7 +838,7 @@ public class StationRef private constructor(content: Content) : Message(content)
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StationRef =
             builder().apply(build).build()

@@ -31,7 +31,8 @@ public interface StationOperations {
      * Code 0x0A03. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/get_station.md`
+     * - 文档：`docs-site/reference/commands/get_station.md`
+     * - Docs: `docs-site/en/reference/commands/get_station.md`
      */
     public val getStation: Command<GetStationRequest, GetStationResponse> get() = Companion.getStation
 
@@ -47,7 +48,8 @@ public interface StationOperations {
      * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+     * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+     * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
      */
     public val uploadMapStations: Command<UploadMapStationsRequest, UploadMapStationsResponse>
         get() = Companion.uploadMapStations
@@ -63,7 +65,8 @@ public interface StationOperations {
      * Code 0x0302. Changes the configuration. Since 2023-07-17.
      *
      * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/add_station.md`
+     * - 文档：`docs-site/reference/commands/add_station.md`
+     * - Docs: `docs-site/en/reference/commands/add_station.md`
      */
     public val addStation: Command<AddStationRequest, AddStationResponse> get() = Companion.addStation
 
@@ -74,7 +77,8 @@ public interface StationOperations {
      * Code 0x0304. Changes the configuration. Since 2023-10-13.
      *
      * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/delete_station.md`
+     * - 文档：`docs-site/reference/commands/delete_station.md`
+     * - Docs: `docs-site/en/reference/commands/delete_station.md`
      */
     public val deleteStation: Command<DeleteStationRequest, DeleteStationResponse> get() = Companion.deleteStation
 
@@ -85,7 +89,8 @@ public interface StationOperations {
      * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/rename_station.md`
+     * - 文档：`docs-site/reference/commands/rename_station.md`
+     * - Docs: `docs-site/en/reference/commands/rename_station.md`
      */
     public val renameStation: Command<RenameStationRequest, RenameStationResponse> get() = Companion.renameStation
 
@@ -96,7 +101,8 @@ public interface StationOperations {
          * Get a station by its ID
          *
          * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-         * - Docs: `docs-site/reference/commands/get_station.md`
+         * - 文档：`docs-site/reference/commands/get_station.md`
+         * - Docs: `docs-site/en/reference/commands/get_station.md`
          */
         @JvmField
         public val getStation: Command<GetStationRequest, GetStationResponse> =
@@ -108,7 +114,8 @@ public interface StationOperations {
          * Report the stations of the map
          *
          * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-         * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+         * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+         * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
          */
         @JvmField
         public val uploadMapStations: Command<UploadMapStationsRequest, UploadMapStationsResponse> =
@@ -120,7 +127,8 @@ public interface StationOperations {
          * Add a station
          *
          * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-         * - Docs: `docs-site/reference/commands/add_station.md`
+         * - 文档：`docs-site/reference/commands/add_station.md`
+         * - Docs: `docs-site/en/reference/commands/add_station.md`
          */
         @JvmField
         public val addStation: Command<AddStationRequest, AddStationResponse> =
@@ -132,7 +140,8 @@ public interface StationOperations {
          * Delete a station
          *
          * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-         * - Docs: `docs-site/reference/commands/delete_station.md`
+         * - 文档：`docs-site/reference/commands/delete_station.md`
+         * - Docs: `docs-site/en/reference/commands/delete_station.md`
          */
         @JvmField
         public val deleteStation: Command<DeleteStationRequest, DeleteStationResponse> =
@@ -144,7 +153,8 @@ public interface StationOperations {
          * Rename a station
          *
          * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-         * - Docs: `docs-site/reference/commands/rename_station.md`
+         * - 文档：`docs-site/reference/commands/rename_station.md`
+         * - Docs: `docs-site/en/reference/commands/rename_station.md`
          */
         @JvmField
         public val renameStation: Command<RenameStationRequest, RenameStationResponse> =
@@ -177,9 +187,10 @@ public interface StationClient {
      * Code 0x0A03. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/get_station.md`
+     * - 文档：`docs-site/reference/commands/get_station.md`
+     * - Docs: `docs-site/en/reference/commands/get_station.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getStation(request: GetStationRequest): GetStationResponse =
@@ -201,9 +212,10 @@ public interface StationClient {
      * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+     * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+     * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun uploadMapStations(
@@ -230,9 +242,10 @@ public interface StationClient {
      * Code 0x0302. Changes the configuration. Since 2023-07-17.
      *
      * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/add_station.md`
+     * - 文档：`docs-site/reference/commands/add_station.md`
+     * - Docs: `docs-site/en/reference/commands/add_station.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun addStation(request: AddStationRequest): AddStationResponse =
@@ -249,9 +262,10 @@ public interface StationClient {
      * Code 0x0304. Changes the configuration. Since 2023-10-13.
      *
      * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/delete_station.md`
+     * - 文档：`docs-site/reference/commands/delete_station.md`
+     * - Docs: `docs-site/en/reference/commands/delete_station.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun deleteStation(request: DeleteStationRequest): DeleteStationResponse =
@@ -268,9 +282,10 @@ public interface StationClient {
      * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/rename_station.md`
+     * - 文档：`docs-site/reference/commands/rename_station.md`
+     * - Docs: `docs-site/en/reference/commands/rename_station.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun renameStation(request: RenameStationRequest): RenameStationResponse =
@@ -293,9 +308,10 @@ public interface StationHandlers {
      * Code 0x0A03. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/get_station.md`
+     * - 文档：`docs-site/reference/commands/get_station.md`
+     * - Docs: `docs-site/en/reference/commands/get_station.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getStation(context: Context, request: GetStationRequest): GetStationResponse
 
@@ -311,9 +327,10 @@ public interface StationHandlers {
      * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+     * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+     * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun uploadMapStations(context: Context, request: UploadMapStationsRequest): UploadMapStationsResponse
 
@@ -328,9 +345,10 @@ public interface StationHandlers {
      * Code 0x0302. Changes the configuration. Since 2023-07-17.
      *
      * - Spec: `commands.add_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/add_station.md`
+     * - 文档：`docs-site/reference/commands/add_station.md`
+     * - Docs: `docs-site/en/reference/commands/add_station.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun addStation(context: Context, request: AddStationRequest): AddStationResponse
 
@@ -341,9 +359,10 @@ public interface StationHandlers {
      * Code 0x0304. Changes the configuration. Since 2023-10-13.
      *
      * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/delete_station.md`
+     * - 文档：`docs-site/reference/commands/delete_station.md`
+     * - Docs: `docs-site/en/reference/commands/delete_station.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun deleteStation(context: Context, request: DeleteStationRequest): DeleteStationResponse
 
@@ -354,9 +373,10 @@ public interface StationHandlers {
      * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
      *
      * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
-     * - Docs: `docs-site/reference/commands/rename_station.md`
+     * - 文档：`docs-site/reference/commands/rename_station.md`
+     * - Docs: `docs-site/en/reference/commands/rename_station.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun renameStation(context: Context, request: RenameStationRequest): RenameStationResponse
 }
@@ -422,7 +442,8 @@ internal class StationExample(pretendMotion: Boolean) :
  * Code 0x0A03. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 public class GetStationRequest private constructor(content: Content) : Message(content) {
     /**
@@ -433,7 +454,7 @@ public class GetStationRequest private constructor(content: Content) : Message(c
 
     override val messageType: MessageType<GetStationRequest> get() = GetStationRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStationRequest] 的字段。Collects the fields of a [GetStationRequest]. */
@@ -451,7 +472,7 @@ public class GetStationRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStationRequest =
             builder().apply(build).build()
@@ -467,7 +488,8 @@ public class GetStationRequest private constructor(content: Content) : Message(c
  * `data` of [GetStationRequest].
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 public class GetStationRequestData private constructor(content: Content) : Message(content) {
     /**
@@ -480,7 +502,7 @@ public class GetStationRequestData private constructor(content: Content) : Messa
 
     override val messageType: MessageType<GetStationRequestData> get() = GetStationRequestData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStationRequestData] 的字段。Collects the fields of a [GetStationRequestData]. */
@@ -498,7 +520,7 @@ public class GetStationRequestData private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStationRequestData =
             builder().apply(build).build()
@@ -512,7 +534,8 @@ public class GetStationRequestData private constructor(content: Content) : Messa
  * Get a station by its ID: response
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 public class GetStationResponse private constructor(content: Content) : Message(content) {
     /**
@@ -523,7 +546,7 @@ public class GetStationResponse private constructor(content: Content) : Message(
 
     override val messageType: MessageType<GetStationResponse> get() = GetStationResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStationResponse] 的字段。Collects the fields of a [GetStationResponse]. */
@@ -544,7 +567,7 @@ public class GetStationResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStationResponse =
             builder().apply(build).build()
@@ -560,7 +583,8 @@ public class GetStationResponse private constructor(content: Content) : Message(
  * `data` of [GetStationResponse].
  *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_station.md`
+ * - 文档：`docs-site/reference/commands/get_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_station.md`
  */
 public class GetStationResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -615,7 +639,7 @@ public class GetStationResponseData private constructor(content: Content) : Mess
 
     override val messageType: MessageType<GetStationResponseData> get() = GetStationResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetStationResponseData] 的字段。Collects the fields of a [GetStationResponseData]. */
@@ -656,7 +680,7 @@ public class GetStationResponseData private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetStationResponseData =
             builder().apply(build).build()
@@ -681,12 +705,13 @@ public class GetStationResponseData private constructor(content: Content) : Mess
  * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+ * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+ * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
  */
 public class UploadMapStationsRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadMapStationsRequest> get() = UploadMapStationsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [UploadMapStationsRequest] 的字段。Collects the fields of a [UploadMapStationsRequest]. */
@@ -699,7 +724,7 @@ public class UploadMapStationsRequest private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadMapStationsRequest =
             builder().apply(build).build()
@@ -717,12 +742,13 @@ public class UploadMapStationsRequest private constructor(content: Content) : Me
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/upload_map_stations.md`
+ * - 文档：`docs-site/reference/commands/upload_map_stations.md`
+ * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
  */
 public class UploadMapStationsResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<UploadMapStationsResponse> get() = UploadMapStationsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [UploadMapStationsResponse] 的字段。Collects the fields of a [UploadMapStationsResponse]. */
@@ -735,7 +761,7 @@ public class UploadMapStationsResponse private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): UploadMapStationsResponse =
             builder().apply(build).build()
@@ -755,7 +781,8 @@ public class UploadMapStationsResponse private constructor(content: Content) : M
  * Code 0x0302. Changes the configuration. Since 2023-07-17.
  *
  * - Spec: `commands.add_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/add_station.md`
+ * - 文档：`docs-site/reference/commands/add_station.md`
+ * - Docs: `docs-site/en/reference/commands/add_station.md`
  */
 public class AddStationRequest private constructor(content: Content) : Message(content) {
     /**
@@ -808,7 +835,7 @@ public class AddStationRequest private constructor(content: Content) : Message(c
 
     override val messageType: MessageType<AddStationRequest> get() = AddStationRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [AddStationRequest] 的字段。Collects the fields of a [AddStationRequest]. */
@@ -854,7 +881,7 @@ public class AddStationRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): AddStationRequest =
             builder().apply(build).build()
@@ -868,12 +895,13 @@ public class AddStationRequest private constructor(content: Content) : Message(c
  * Add a station: response
  *
  * - Spec: `commands.add_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/add_station.md`
+ * - 文档：`docs-site/reference/commands/add_station.md`
+ * - Docs: `docs-site/en/reference/commands/add_station.md`
  */
 public class AddStationResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<AddStationResponse> get() = AddStationResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [AddStationResponse] 的字段。Collects the fields of a [AddStationResponse]. */
@@ -886,7 +914,7 @@ public class AddStationResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): AddStationResponse =
             builder().apply(build).build()
@@ -906,7 +934,8 @@ public class AddStationResponse private constructor(content: Content) : Message(
  * Code 0x0304. Changes the configuration. Since 2023-10-13.
  *
  * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/delete_station.md`
+ * - 文档：`docs-site/reference/commands/delete_station.md`
+ * - Docs: `docs-site/en/reference/commands/delete_station.md`
  */
 public class DeleteStationRequest private constructor(content: Content) : Message(content) {
     /**
@@ -933,7 +962,7 @@ public class DeleteStationRequest private constructor(content: Content) : Messag
 
     override val messageType: MessageType<DeleteStationRequest> get() = DeleteStationRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [DeleteStationRequest] 的字段。Collects the fields of a [DeleteStationRequest]. */
@@ -962,7 +991,7 @@ public class DeleteStationRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): DeleteStationRequest =
             builder().apply(build).build()
@@ -980,12 +1009,13 @@ public class DeleteStationRequest private constructor(content: Content) : Messag
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/delete_station.md`
+ * - 文档：`docs-site/reference/commands/delete_station.md`
+ * - Docs: `docs-site/en/reference/commands/delete_station.md`
  */
 public class DeleteStationResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<DeleteStationResponse> get() = DeleteStationResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [DeleteStationResponse] 的字段。Collects the fields of a [DeleteStationResponse]. */
@@ -998,7 +1028,7 @@ public class DeleteStationResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): DeleteStationResponse =
             builder().apply(build).build()
@@ -1014,7 +1044,8 @@ public class DeleteStationResponse private constructor(content: Content) : Messa
  * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/rename_station.md`
+ * - 文档：`docs-site/reference/commands/rename_station.md`
+ * - Docs: `docs-site/en/reference/commands/rename_station.md`
  */
 public class RenameStationRequest private constructor(content: Content) : Message(content) {
     /**
@@ -1049,7 +1080,7 @@ public class RenameStationRequest private constructor(content: Content) : Messag
 
     override val messageType: MessageType<RenameStationRequest> get() = RenameStationRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RenameStationRequest] 的字段。Collects the fields of a [RenameStationRequest]. */
@@ -1082,7 +1113,7 @@ public class RenameStationRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RenameStationRequest =
             builder().apply(build).build()
@@ -1100,12 +1131,13 @@ public class RenameStationRequest private constructor(content: Content) : Messag
  * Open: The response is lost; beyond the envelope nothing is known.
  *
  * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/rename_station.md`
+ * - 文档：`docs-site/reference/commands/rename_station.md`
+ * - Docs: `docs-site/en/reference/commands/rename_station.md`
  */
 public class RenameStationResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<RenameStationResponse> get() = RenameStationResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RenameStationResponse] 的字段。Collects the fields of a [RenameStationResponse]. */
@@ -1118,7 +1150,7 @@ public class RenameStationResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RenameStationResponse =
             builder().apply(build).build()
@@ -1134,7 +1166,8 @@ public class RenameStationResponse private constructor(content: Content) : Messa
  * No code yet: types only. Only reads, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.list_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/list_stations.md`
+ * - 文档：`docs-site/reference/commands/list_stations.md`
+ * - Docs: `docs-site/en/reference/commands/list_stations.md`
  */
 public class ListStationsRequest private constructor(content: Content) : Message(content) {
     /**
@@ -1161,7 +1194,7 @@ public class ListStationsRequest private constructor(content: Content) : Message
 
     override val messageType: MessageType<ListStationsRequest> get() = ListStationsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListStationsRequest] 的字段。Collects the fields of a [ListStationsRequest]. */
@@ -1190,7 +1223,7 @@ public class ListStationsRequest private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListStationsRequest =
             builder().apply(build).build()
@@ -1204,7 +1237,8 @@ public class ListStationsRequest private constructor(content: Content) : Message
  * List the stations of a map: response
  *
  * - Spec: `commands.list_stations` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/list_stations.md`
+ * - 文档：`docs-site/reference/commands/list_stations.md`
+ * - Docs: `docs-site/en/reference/commands/list_stations.md`
  */
 public class ListStationsResponse private constructor(content: Content) : Message(content) {
     /**
@@ -1215,7 +1249,7 @@ public class ListStationsResponse private constructor(content: Content) : Messag
 
     override val messageType: MessageType<ListStationsResponse> get() = ListStationsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListStationsResponse] 的字段。Collects the fields of a [ListStationsResponse]. */
@@ -1236,7 +1270,7 @@ public class ListStationsResponse private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListStationsResponse =
             builder().apply(build).build()
@@ -1260,12 +1294,13 @@ public class ListStationsResponse private constructor(content: Content) : Messag
  * No code yet: types only. Only reads. Since 2024-01-29.
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 public class GetCurrentStationRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetCurrentStationRequest> get() = GetCurrentStationRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCurrentStationRequest] 的字段。Collects the fields of a [GetCurrentStationRequest]. */
@@ -1278,7 +1313,7 @@ public class GetCurrentStationRequest private constructor(content: Content) : Me
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCurrentStationRequest =
             builder().apply(build).build()
@@ -1292,7 +1327,8 @@ public class GetCurrentStationRequest private constructor(content: Content) : Me
  * Get the station the robot is at: response
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 public class GetCurrentStationResponse private constructor(content: Content) : Message(content) {
     /**
@@ -1305,7 +1341,7 @@ public class GetCurrentStationResponse private constructor(content: Content) : M
 
     override val messageType: MessageType<GetCurrentStationResponse> get() = GetCurrentStationResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCurrentStationResponse] 的字段。Collects the fields of a [GetCurrentStationResponse]. */
@@ -1326,7 +1362,7 @@ public class GetCurrentStationResponse private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCurrentStationResponse =
             builder().apply(build).build()
@@ -1342,7 +1378,8 @@ public class GetCurrentStationResponse private constructor(content: Content) : M
  * `data` of [GetCurrentStationResponse].
  *
  * - Spec: `commands.get_current_station` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/commands/get_current_station.md`
+ * - 文档：`docs-site/reference/commands/get_current_station.md`
+ * - Docs: `docs-site/en/reference/commands/get_current_station.md`
  */
 public class GetCurrentStationResponseData private constructor(content: Content) : Message(content) {
     /**
@@ -1377,7 +1414,7 @@ public class GetCurrentStationResponseData private constructor(content: Content)
 
     override val messageType: MessageType<GetCurrentStationResponseData> get() = GetCurrentStationResponseData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetCurrentStationResponseData] 的字段。Collects the fields of a [GetCurrentStationResponseData]. */
@@ -1410,7 +1447,7 @@ public class GetCurrentStationResponseData private constructor(content: Content)
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetCurrentStationResponseData =
             builder().apply(build).build()
@@ -1431,12 +1468,13 @@ public class GetCurrentStationResponseData private constructor(content: Content)
  * No code yet: types only. Since 2024-01-29.
  *
  * - Spec: `reports.station_reached` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/reports/station_reached.md`
+ * - 文档：`docs-site/reference/reports/station_reached.md`
+ * - Docs: `docs-site/en/reference/reports/station_reached.md`
  */
 public class StationReached private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<StationReached> get() = StationReached
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StationReached] 的字段。Collects the fields of a [StationReached]. */
@@ -1449,7 +1487,7 @@ public class StationReached private constructor(content: Content) : Message(cont
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StationReached =
             builder().apply(build).build()
@@ -1459,11 +1497,12 @@ public class StationReached private constructor(content: Content) : Message(cont
 }
 
 /**
- * 主动上报机器人抵达站点：确认
+ * 主动上报机器人抵达站点：应答
  * Station reached: acknowledgement
  *
  * - Spec: `reports.station_reached` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/reports/station_reached.md`
+ * - 文档：`docs-site/reference/reports/station_reached.md`
+ * - Docs: `docs-site/en/reference/reports/station_reached.md`
  */
 public class StationReachedAck private constructor(content: Content) : Message(content) {
     /**
@@ -1476,7 +1515,7 @@ public class StationReachedAck private constructor(content: Content) : Message(c
 
     override val messageType: MessageType<StationReachedAck> get() = StationReachedAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [StationReachedAck] 的字段。Collects the fields of a [StationReachedAck]. */
@@ -1494,7 +1533,7 @@ public class StationReachedAck private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): StationReachedAck =
             builder().apply(build).build()
@@ -1508,7 +1547,8 @@ public class StationReachedAck private constructor(content: Content) : Message(c
  * Position of a station relative to the elevator
  *
  * - Spec: `types.StationPos` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class StationPos private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<StationPos> get() = StationPos
@@ -1551,8 +1591,8 @@ public class StationPos private constructor(wire: String) : TextValue(wire) {
         public val WAIT: StationPos = named("wait", "WAIT")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): StationPos = super.of(wire)
@@ -1566,7 +1606,8 @@ public class StationPos private constructor(wire: String) : TextValue(wire) {
  * A station in the list
  *
  * - Spec: `types.ListedStation` in `spec/commands/station.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class ListedStation private constructor(content: Content) : Message(content) {
     /**
@@ -1633,7 +1674,7 @@ public class ListedStation private constructor(content: Content) : Message(conte
 
     override val messageType: MessageType<ListedStation> get() = ListedStation
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListedStation] 的字段。Collects the fields of a [ListedStation]. */
@@ -1682,7 +1723,7 @@ public class ListedStation private constructor(content: Content) : Message(conte
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListedStation =
             builder().apply(build).build()

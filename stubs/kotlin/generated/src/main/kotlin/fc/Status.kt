@@ -44,7 +44,8 @@ public interface StatusOperations {
      * Code 0x0A0C. Only reads, inferred.
      *
      * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/list_faults.md`
+     * - 文档：`docs-site/reference/commands/list_faults.md`
+     * - Docs: `docs-site/en/reference/commands/list_faults.md`
      */
     public val listFaults: Command<ListFaultsRequest, ListFaultsResponse> get() = Companion.listFaults
 
@@ -60,7 +61,8 @@ public interface StatusOperations {
      * Code 0x0A0D. Only reads, inferred.
      *
      * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/get_self_check.md`
+     * - 文档：`docs-site/reference/commands/get_self_check.md`
+     * - Docs: `docs-site/en/reference/commands/get_self_check.md`
      */
     public val getSelfCheck: Command<GetSelfCheckRequest, GetSelfCheckResponse> get() = Companion.getSelfCheck
 
@@ -75,7 +77,8 @@ public interface StatusOperations {
      * Code 0x0342. Since 2023-05.
      *
      * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/reports/robot_status.md`
+     * - 文档：`docs-site/reference/reports/robot_status.md`
+     * - Docs: `docs-site/en/reference/reports/robot_status.md`
      */
     public val robotStatus: Report<RobotStatus> get() = Companion.robotStatus
 
@@ -86,7 +89,8 @@ public interface StatusOperations {
          * List the faults
          *
          * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-         * - Docs: `docs-site/reference/commands/list_faults.md`
+         * - 文档：`docs-site/reference/commands/list_faults.md`
+         * - Docs: `docs-site/en/reference/commands/list_faults.md`
          */
         @JvmField
         public val listFaults: Command<ListFaultsRequest, ListFaultsResponse> =
@@ -98,7 +102,8 @@ public interface StatusOperations {
          * Get the result of the self-check
          *
          * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-         * - Docs: `docs-site/reference/commands/get_self_check.md`
+         * - 文档：`docs-site/reference/commands/get_self_check.md`
+         * - Docs: `docs-site/en/reference/commands/get_self_check.md`
          */
         @JvmField
         public val getSelfCheck: Command<GetSelfCheckRequest, GetSelfCheckResponse> =
@@ -110,7 +115,8 @@ public interface StatusOperations {
          * Status of the robot
          *
          * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-         * - Docs: `docs-site/reference/reports/robot_status.md`
+         * - 文档：`docs-site/reference/reports/robot_status.md`
+         * - Docs: `docs-site/en/reference/reports/robot_status.md`
          */
         @JvmField
         public val robotStatus: Report<RobotStatus> =
@@ -150,9 +156,10 @@ public interface StatusClient {
      * Code 0x0A0C. Only reads, inferred.
      *
      * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/list_faults.md`
+     * - 文档：`docs-site/reference/commands/list_faults.md`
+     * - Docs: `docs-site/en/reference/commands/list_faults.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun listFaults(request: ListFaultsRequest = ListFaultsRequest {}): ListFaultsResponse =
@@ -177,9 +184,10 @@ public interface StatusClient {
      * Code 0x0A0D. Only reads, inferred.
      *
      * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/get_self_check.md`
+     * - 文档：`docs-site/reference/commands/get_self_check.md`
+     * - Docs: `docs-site/en/reference/commands/get_self_check.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getSelfCheck(request: GetSelfCheckRequest = GetSelfCheckRequest {}): GetSelfCheckResponse =
@@ -209,9 +217,10 @@ public interface StatusHandlers {
      * Code 0x0A0C. Only reads, inferred.
      *
      * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/list_faults.md`
+     * - 文档：`docs-site/reference/commands/list_faults.md`
+     * - Docs: `docs-site/en/reference/commands/list_faults.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun listFaults(context: Context, request: ListFaultsRequest): ListFaultsResponse
 
@@ -227,9 +236,10 @@ public interface StatusHandlers {
      * Code 0x0A0D. Only reads, inferred.
      *
      * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/commands/get_self_check.md`
+     * - 文档：`docs-site/reference/commands/get_self_check.md`
+     * - Docs: `docs-site/en/reference/commands/get_self_check.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getSelfCheck(context: Context, request: GetSelfCheckRequest): GetSelfCheckResponse
 }
@@ -267,7 +277,7 @@ internal class StatusExample(pretendMotion: Boolean) :
  * Status and faults: its part of `Reporter`.
  */
 public interface StatusReporter {
-    /** 由它发送。What sends them. */
+    /** 由它发送。The server that sends them. */
     public val server: Server
 
     /**
@@ -281,9 +291,10 @@ public interface StatusReporter {
      * Code 0x0342. Since 2023-05.
      *
      * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-     * - Docs: `docs-site/reference/reports/robot_status.md`
+     * - 文档：`docs-site/reference/reports/robot_status.md`
+     * - Docs: `docs-site/en/reference/reports/robot_status.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun robotStatus(audience: Audience, report: RobotStatus): List<Acknowledgement> =
@@ -305,12 +316,13 @@ public interface StatusReporter {
  * Code 0x0A0C. Only reads, inferred.
  *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/list_faults.md`
+ * - 文档：`docs-site/reference/commands/list_faults.md`
+ * - Docs: `docs-site/en/reference/commands/list_faults.md`
  */
 public class ListFaultsRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<ListFaultsRequest> get() = ListFaultsRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListFaultsRequest] 的字段。Collects the fields of a [ListFaultsRequest]. */
@@ -323,7 +335,7 @@ public class ListFaultsRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListFaultsRequest =
             builder().apply(build).build()
@@ -337,7 +349,8 @@ public class ListFaultsRequest private constructor(content: Content) : Message(c
  * List the faults: response
  *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/list_faults.md`
+ * - 文档：`docs-site/reference/commands/list_faults.md`
+ * - Docs: `docs-site/en/reference/commands/list_faults.md`
  */
 public class ListFaultsResponse private constructor(content: Content) : Message(content) {
     /**
@@ -348,7 +361,7 @@ public class ListFaultsResponse private constructor(content: Content) : Message(
 
     override val messageType: MessageType<ListFaultsResponse> get() = ListFaultsResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ListFaultsResponse] 的字段。Collects the fields of a [ListFaultsResponse]. */
@@ -369,7 +382,7 @@ public class ListFaultsResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ListFaultsResponse =
             builder().apply(build).build()
@@ -390,12 +403,13 @@ public class ListFaultsResponse private constructor(content: Content) : Message(
  * Code 0x0A0D. Only reads, inferred.
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/get_self_check.md`
+ * - 文档：`docs-site/reference/commands/get_self_check.md`
+ * - Docs: `docs-site/en/reference/commands/get_self_check.md`
  */
 public class GetSelfCheckRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetSelfCheckRequest> get() = GetSelfCheckRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetSelfCheckRequest] 的字段。Collects the fields of a [GetSelfCheckRequest]. */
@@ -408,7 +422,7 @@ public class GetSelfCheckRequest private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetSelfCheckRequest =
             builder().apply(build).build()
@@ -422,7 +436,8 @@ public class GetSelfCheckRequest private constructor(content: Content) : Message
  * Get the result of the self-check: response
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/commands/get_self_check.md`
+ * - 文档：`docs-site/reference/commands/get_self_check.md`
+ * - Docs: `docs-site/en/reference/commands/get_self_check.md`
  */
 public class GetSelfCheckResponse private constructor(content: Content) : Message(content) {
     /**
@@ -433,7 +448,7 @@ public class GetSelfCheckResponse private constructor(content: Content) : Messag
 
     override val messageType: MessageType<GetSelfCheckResponse> get() = GetSelfCheckResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetSelfCheckResponse] 的字段。Collects the fields of a [GetSelfCheckResponse]. */
@@ -454,7 +469,7 @@ public class GetSelfCheckResponse private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetSelfCheckResponse =
             builder().apply(build).build()
@@ -474,7 +489,8 @@ public class GetSelfCheckResponse private constructor(content: Content) : Messag
  * Code 0x0342. Since 2023-05.
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 public class RobotStatus private constructor(content: Content) : Message(content) {
     /**
@@ -485,7 +501,7 @@ public class RobotStatus private constructor(content: Content) : Message(content
 
     override val messageType: MessageType<RobotStatus> get() = RobotStatus
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RobotStatus] 的字段。Collects the fields of a [RobotStatus]. */
@@ -506,7 +522,7 @@ public class RobotStatus private constructor(content: Content) : Message(content
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RobotStatus =
             builder().apply(build).build()
@@ -522,7 +538,8 @@ public class RobotStatus private constructor(content: Content) : Message(content
  * `data` of [RobotStatus].
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 public class RobotStatusData private constructor(content: Content) : Message(content) {
     /**
@@ -556,7 +573,7 @@ public class RobotStatusData private constructor(content: Content) : Message(con
 
     override val messageType: MessageType<RobotStatusData> get() = RobotStatusData
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RobotStatusData] 的字段。Collects the fields of a [RobotStatusData]. */
@@ -585,7 +602,7 @@ public class RobotStatusData private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RobotStatusData =
             builder().apply(build).build()
@@ -595,16 +612,17 @@ public class RobotStatusData private constructor(content: Content) : Message(con
 }
 
 /**
- * 主动上报机器人状态：确认
+ * 主动上报机器人状态：应答
  * Status of the robot: acknowledgement
  *
  * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/reports/robot_status.md`
+ * - 文档：`docs-site/reference/reports/robot_status.md`
+ * - Docs: `docs-site/en/reference/reports/robot_status.md`
  */
 public class RobotStatusAck private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<RobotStatusAck> get() = RobotStatusAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [RobotStatusAck] 的字段。Collects the fields of a [RobotStatusAck]. */
@@ -617,7 +635,7 @@ public class RobotStatusAck private constructor(content: Content) : Message(cont
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): RobotStatusAck =
             builder().apply(build).build()
@@ -637,7 +655,8 @@ public class RobotStatusAck private constructor(content: Content) : Message(cont
  * MAPPING, IDLE, RECHARGE, TASK, PARKING, RECOVER and BROKEN. Any other value is kept as it is.
  *
  * - Spec: `types.UpperStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class UpperStatus private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<UpperStatus> get() = UpperStatus
@@ -701,8 +720,8 @@ public class UpperStatus private constructor(wire: Long) : IntValue(wire) {
         public val BROKEN: UpperStatus = named(99, "BROKEN")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): UpperStatus = super.of(wire)
@@ -720,7 +739,8 @@ public class UpperStatus private constructor(wire: Long) : IntValue(wire) {
  * The constants in the source: NO_LOWER_STATUS, MOVING, ARRIVED, ENTER_ELEV and EXIT_ELEV.
  *
  * - Spec: `types.LowerStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class LowerStatus private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<LowerStatus> get() = LowerStatus
@@ -763,8 +783,8 @@ public class LowerStatus private constructor(wire: Long) : IntValue(wire) {
         public val LEAVING_ELEVATOR: LowerStatus = named(1403, "LEAVING_ELEVATOR")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): LowerStatus = super.of(wire)
@@ -778,7 +798,8 @@ public class LowerStatus private constructor(wire: Long) : IntValue(wire) {
  * A fault
  *
  * - Spec: `types.Fault` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class Fault private constructor(content: Content) : Message(content) {
     /**
@@ -849,7 +870,7 @@ public class Fault private constructor(content: Content) : Message(content) {
 
     override val messageType: MessageType<Fault> get() = Fault
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Fault] 的字段。Collects the fields of a [Fault]. */
@@ -898,7 +919,7 @@ public class Fault private constructor(content: Content) : Message(content) {
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Fault =
             builder().apply(build).build()
@@ -912,7 +933,8 @@ public class Fault private constructor(content: Content) : Message(content) {
  * Level of a fault
  *
  * - Spec: `types.FaultLevel` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class FaultLevel private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<FaultLevel> get() = FaultLevel
@@ -941,8 +963,8 @@ public class FaultLevel private constructor(wire: String) : TextValue(wire) {
         public val WARNING: FaultLevel = named("WARNING", "WARNING")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): FaultLevel = super.of(wire)
@@ -956,7 +978,8 @@ public class FaultLevel private constructor(wire: String) : TextValue(wire) {
  * Result of one item of the self-check
  *
  * - Spec: `types.SelfCheckItem` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class SelfCheckItem private constructor(content: Content) : Message(content) {
     /**
@@ -987,7 +1010,7 @@ public class SelfCheckItem private constructor(content: Content) : Message(conte
 
     override val messageType: MessageType<SelfCheckItem> get() = SelfCheckItem
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [SelfCheckItem] 的字段。Collects the fields of a [SelfCheckItem]. */
@@ -1020,7 +1043,7 @@ public class SelfCheckItem private constructor(content: Content) : Message(conte
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): SelfCheckItem =
             builder().apply(build).build()
@@ -1034,7 +1057,8 @@ public class SelfCheckItem private constructor(content: Content) : Message(conte
  * Item of the self-check
  *
  * - Spec: `types.SelfCheckName` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class SelfCheckName private constructor(wire: String) : TextValue(wire) {
     override val enumType: EnumType<SelfCheckName> get() = SelfCheckName
@@ -1077,8 +1101,8 @@ public class SelfCheckName private constructor(wire: String) : TextValue(wire) {
         public val BOOT_AT_STATION: SelfCheckName = named("boot_at_station", "BOOT_AT_STATION")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): SelfCheckName = super.of(wire)
@@ -1092,7 +1116,8 @@ public class SelfCheckName private constructor(wire: String) : TextValue(wire) {
  * State of an item of the self-check
  *
  * - Spec: `types.SelfCheckStatus` in `spec/commands/status.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class SelfCheckStatus private constructor(wire: String) : TextValue(wire), State {
     override val enumType: EnumType<SelfCheckStatus> get() = SelfCheckStatus
@@ -1132,8 +1157,8 @@ public class SelfCheckStatus private constructor(wire: String) : TextValue(wire)
             .errors(ABNORMAL.wire)
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: String): SelfCheckStatus = super.of(wire)

@@ -3,8 +3,8 @@
 package fc
 
 /**
- * 规范公布的常量表。
- * Tables of constants that the spec publishes.
+ * 规范中的常量表。
+ * Tables of constants in the spec.
  */
 public object Tables {
     /**
@@ -21,7 +21,8 @@ public object Tables {
      * Kept in `chassis_config`.
      *
      * - Spec: `tables.cell_layouts` in `spec/commands/cell.yaml`
-     * - Docs: `docs-site/reference/tables.md`
+     * - 文档：`docs-site/reference/tables.md`
+     * - Docs: `docs-site/en/reference/tables.md`
      */
     @JvmStatic
     public fun cellLayouts(): List<CellLayout> =

@@ -41,7 +41,8 @@ public interface TaskOperations {
      * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
      *
      * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/create_task.md`
+     * - 文档：`docs-site/reference/commands/create_task.md`
+     * - Docs: `docs-site/en/reference/commands/create_task.md`
      */
     public val createTask: Command<CreateTaskRequest, CreateTaskResponse> get() = Companion.createTask
 
@@ -52,7 +53,8 @@ public interface TaskOperations {
      * Code 0x0353. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/get_task_status.md`
+     * - 文档：`docs-site/reference/commands/get_task_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_task_status.md`
      */
     public val getTaskStatus: Command<GetTaskStatusRequest, GetTaskStatusResponse> get() = Companion.getTaskStatus
 
@@ -68,7 +70,8 @@ public interface TaskOperations {
      * Code 0x0341. Since 2023-05.
      *
      * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+     * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+     * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
      */
     public val obstacleAnnouncement: Report<ObstacleAnnouncement> get() = Companion.obstacleAnnouncement
 
@@ -83,7 +86,8 @@ public interface TaskOperations {
      * Code 0x0340, inferred. Since 2023-05.
      *
      * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/target_reached.md`
+     * - 文档：`docs-site/reference/reports/target_reached.md`
+     * - Docs: `docs-site/en/reference/reports/target_reached.md`
      */
     public val targetReached: Report<TargetReached> get() = Companion.targetReached
 
@@ -99,7 +103,8 @@ public interface TaskOperations {
      * Code 0x0345. Since 2024-01-29.
      *
      * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/task_progress.md`
+     * - 文档：`docs-site/reference/reports/task_progress.md`
+     * - Docs: `docs-site/en/reference/reports/task_progress.md`
      */
     public val taskProgress: Report<TaskProgress> get() = Companion.taskProgress
 
@@ -110,7 +115,8 @@ public interface TaskOperations {
          * Create a patrol or delivery task
          *
          * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-         * - Docs: `docs-site/reference/commands/create_task.md`
+         * - 文档：`docs-site/reference/commands/create_task.md`
+         * - Docs: `docs-site/en/reference/commands/create_task.md`
          */
         @JvmField
         public val createTask: Command<CreateTaskRequest, CreateTaskResponse> =
@@ -122,7 +128,8 @@ public interface TaskOperations {
          * Get a task's status
          *
          * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-         * - Docs: `docs-site/reference/commands/get_task_status.md`
+         * - 文档：`docs-site/reference/commands/get_task_status.md`
+         * - Docs: `docs-site/en/reference/commands/get_task_status.md`
          */
         @JvmField
         public val getTaskStatus: Command<GetTaskStatusRequest, GetTaskStatusResponse> =
@@ -134,7 +141,8 @@ public interface TaskOperations {
          * Voice announcement of an obstacle
          *
          * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-         * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+         * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+         * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
          */
         @JvmField
         public val obstacleAnnouncement: Report<ObstacleAnnouncement> =
@@ -147,7 +155,8 @@ public interface TaskOperations {
          * Target reached
          *
          * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-         * - Docs: `docs-site/reference/reports/target_reached.md`
+         * - 文档：`docs-site/reference/reports/target_reached.md`
+         * - Docs: `docs-site/en/reference/reports/target_reached.md`
          */
         @JvmField
         public val targetReached: Report<TargetReached> =
@@ -160,7 +169,8 @@ public interface TaskOperations {
          * Task progress
          *
          * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-         * - Docs: `docs-site/reference/reports/task_progress.md`
+         * - 文档：`docs-site/reference/reports/task_progress.md`
+         * - Docs: `docs-site/en/reference/reports/task_progress.md`
          */
         @JvmField
         public val taskProgress: Report<TaskProgress> =
@@ -204,9 +214,10 @@ public interface TaskClient {
      * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
      *
      * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/create_task.md`
+     * - 文档：`docs-site/reference/commands/create_task.md`
+     * - Docs: `docs-site/en/reference/commands/create_task.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun createTask(request: CreateTaskRequest = CreateTaskRequest {}): CreateTaskResponse =
@@ -226,9 +237,10 @@ public interface TaskClient {
      * Code 0x0353. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/get_task_status.md`
+     * - 文档：`docs-site/reference/commands/get_task_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_task_status.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getTaskStatus(request: GetTaskStatusRequest = GetTaskStatusRequest {}): GetTaskStatusResponse =
@@ -261,9 +273,10 @@ public interface TaskHandlers {
      * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
      *
      * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/create_task.md`
+     * - 文档：`docs-site/reference/commands/create_task.md`
+     * - Docs: `docs-site/en/reference/commands/create_task.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun createTask(context: Context, request: CreateTaskRequest): CreateTaskResponse
 
@@ -274,9 +287,10 @@ public interface TaskHandlers {
      * Code 0x0353. Only reads. Since 2023-05.
      *
      * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/commands/get_task_status.md`
+     * - 文档：`docs-site/reference/commands/get_task_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_task_status.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getTaskStatus(context: Context, request: GetTaskStatusRequest): GetTaskStatusResponse
 }
@@ -314,7 +328,7 @@ internal class TaskExample(pretendMotion: Boolean) :
  * Tasks: its part of `Reporter`.
  */
 public interface TaskReporter {
-    /** 由它发送。What sends them. */
+    /** 由它发送。The server that sends them. */
     public val server: Server
 
     /**
@@ -329,9 +343,10 @@ public interface TaskReporter {
      * Code 0x0341. Since 2023-05.
      *
      * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+     * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+     * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun obstacleAnnouncement(audience: Audience, report: ObstacleAnnouncement): List<Acknowledgement> =
@@ -352,9 +367,10 @@ public interface TaskReporter {
      * Code 0x0340, inferred. Since 2023-05.
      *
      * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/target_reached.md`
+     * - 文档：`docs-site/reference/reports/target_reached.md`
+     * - Docs: `docs-site/en/reference/reports/target_reached.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun targetReached(audience: Audience, report: TargetReached): List<Acknowledgement> =
@@ -376,9 +392,10 @@ public interface TaskReporter {
      * Code 0x0345. Since 2024-01-29.
      *
      * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-     * - Docs: `docs-site/reference/reports/task_progress.md`
+     * - 文档：`docs-site/reference/reports/task_progress.md`
+     * - Docs: `docs-site/en/reference/reports/task_progress.md`
      *
-     * @throws fc.runtime.PushError if it was not even queued
+     * @throws fc.runtime.PushError if it could not be queued
      */
     @JvmSynthetic
     public suspend fun taskProgress(audience: Audience, report: TaskProgress): List<Acknowledgement> =
@@ -407,12 +424,13 @@ public interface TaskReporter {
  * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
  *
  * - Spec: `commands.create_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/create_task.md`
+ * - 文档：`docs-site/reference/commands/create_task.md`
+ * - Docs: `docs-site/en/reference/commands/create_task.md`
  */
 public class CreateTaskRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<CreateTaskRequest> get() = CreateTaskRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CreateTaskRequest] 的字段。Collects the fields of a [CreateTaskRequest]. */
@@ -425,7 +443,7 @@ public class CreateTaskRequest private constructor(content: Content) : Message(c
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CreateTaskRequest =
             builder().apply(build).build()
@@ -439,7 +457,8 @@ public class CreateTaskRequest private constructor(content: Content) : Message(c
  * Create a patrol or delivery task: response
  *
  * - Spec: `commands.create_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/create_task.md`
+ * - 文档：`docs-site/reference/commands/create_task.md`
+ * - Docs: `docs-site/en/reference/commands/create_task.md`
  */
 public class CreateTaskResponse private constructor(content: Content) : Message(content) {
     /**
@@ -460,7 +479,7 @@ public class CreateTaskResponse private constructor(content: Content) : Message(
 
     override val messageType: MessageType<CreateTaskResponse> get() = CreateTaskResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [CreateTaskResponse] 的字段。Collects the fields of a [CreateTaskResponse]. */
@@ -485,7 +504,7 @@ public class CreateTaskResponse private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): CreateTaskResponse =
             builder().apply(build).build()
@@ -511,12 +530,13 @@ public class CreateTaskResponse private constructor(content: Content) : Message(
  * No code yet: types only. Moves the robot. Since 2023-10.
  *
  * - Spec: `commands.execute_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/execute_task.md`
+ * - 文档：`docs-site/reference/commands/execute_task.md`
+ * - Docs: `docs-site/en/reference/commands/execute_task.md`
  */
 public class ExecuteTaskRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<ExecuteTaskRequest> get() = ExecuteTaskRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ExecuteTaskRequest] 的字段。Collects the fields of a [ExecuteTaskRequest]. */
@@ -529,7 +549,7 @@ public class ExecuteTaskRequest private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ExecuteTaskRequest =
             builder().apply(build).build()
@@ -543,7 +563,8 @@ public class ExecuteTaskRequest private constructor(content: Content) : Message(
  * Execute a task: response
  *
  * - Spec: `commands.execute_task` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/execute_task.md`
+ * - 文档：`docs-site/reference/commands/execute_task.md`
+ * - Docs: `docs-site/en/reference/commands/execute_task.md`
  */
 public class ExecuteTaskResponse private constructor(content: Content) : Message(content) {
     /**
@@ -564,7 +585,7 @@ public class ExecuteTaskResponse private constructor(content: Content) : Message
 
     override val messageType: MessageType<ExecuteTaskResponse> get() = ExecuteTaskResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ExecuteTaskResponse] 的字段。Collects the fields of a [ExecuteTaskResponse]. */
@@ -589,7 +610,7 @@ public class ExecuteTaskResponse private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ExecuteTaskResponse =
             builder().apply(build).build()
@@ -609,12 +630,13 @@ public class ExecuteTaskResponse private constructor(content: Content) : Message
  * Code 0x0353. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_status.md`
+ * - 文档：`docs-site/reference/commands/get_task_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_status.md`
  */
 public class GetTaskStatusRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetTaskStatusRequest> get() = GetTaskStatusRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetTaskStatusRequest] 的字段。Collects the fields of a [GetTaskStatusRequest]. */
@@ -627,7 +649,7 @@ public class GetTaskStatusRequest private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetTaskStatusRequest =
             builder().apply(build).build()
@@ -645,12 +667,13 @@ public class GetTaskStatusRequest private constructor(content: Content) : Messag
  * Open: The response is lost. Which keys hold the status is unknown; every key received is kept.
  *
  * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_status.md`
+ * - 文档：`docs-site/reference/commands/get_task_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_status.md`
  */
 public class GetTaskStatusResponse private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetTaskStatusResponse> get() = GetTaskStatusResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetTaskStatusResponse] 的字段。Collects the fields of a [GetTaskStatusResponse]. */
@@ -663,7 +686,7 @@ public class GetTaskStatusResponse private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetTaskStatusResponse =
             builder().apply(build).build()
@@ -685,7 +708,8 @@ public class GetTaskStatusResponse private constructor(content: Content) : Messa
  * No code yet: types only. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_history.md`
+ * - 文档：`docs-site/reference/commands/get_task_history.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_history.md`
  */
 public class GetTaskHistoryRequest private constructor(content: Content) : Message(content) {
     /**
@@ -698,7 +722,7 @@ public class GetTaskHistoryRequest private constructor(content: Content) : Messa
 
     override val messageType: MessageType<GetTaskHistoryRequest> get() = GetTaskHistoryRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetTaskHistoryRequest] 的字段。Collects the fields of a [GetTaskHistoryRequest]. */
@@ -716,7 +740,7 @@ public class GetTaskHistoryRequest private constructor(content: Content) : Messa
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetTaskHistoryRequest =
             builder().apply(build).build()
@@ -730,7 +754,8 @@ public class GetTaskHistoryRequest private constructor(content: Content) : Messa
  * Get a task's execution history: response
  *
  * - Spec: `commands.get_task_history` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/commands/get_task_history.md`
+ * - 文档：`docs-site/reference/commands/get_task_history.md`
+ * - Docs: `docs-site/en/reference/commands/get_task_history.md`
  */
 public class GetTaskHistoryResponse private constructor(content: Content) : Message(content) {
     /**
@@ -779,7 +804,7 @@ public class GetTaskHistoryResponse private constructor(content: Content) : Mess
 
     override val messageType: MessageType<GetTaskHistoryResponse> get() = GetTaskHistoryResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetTaskHistoryResponse] 的字段。Collects the fields of a [GetTaskHistoryResponse]. */
@@ -820,7 +845,7 @@ public class GetTaskHistoryResponse private constructor(content: Content) : Mess
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetTaskHistoryResponse =
             builder().apply(build).build()
@@ -841,7 +866,8 @@ public class GetTaskHistoryResponse private constructor(content: Content) : Mess
  * Code 0x0341. Since 2023-05.
  *
  * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+ * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+ * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
  */
 public class ObstacleAnnouncement private constructor(content: Content) : Message(content) {
     /**
@@ -854,7 +880,7 @@ public class ObstacleAnnouncement private constructor(content: Content) : Messag
 
     override val messageType: MessageType<ObstacleAnnouncement> get() = ObstacleAnnouncement
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ObstacleAnnouncement] 的字段。Collects the fields of a [ObstacleAnnouncement]. */
@@ -872,7 +898,7 @@ public class ObstacleAnnouncement private constructor(content: Content) : Messag
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ObstacleAnnouncement =
             builder().apply(build).build()
@@ -882,16 +908,17 @@ public class ObstacleAnnouncement private constructor(content: Content) : Messag
 }
 
 /**
- * 遇障语音播报：确认
+ * 遇障语音播报：应答
  * Voice announcement of an obstacle: acknowledgement
  *
  * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/obstacle_announcement.md`
+ * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
+ * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
  */
 public class ObstacleAnnouncementAck private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<ObstacleAnnouncementAck> get() = ObstacleAnnouncementAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [ObstacleAnnouncementAck] 的字段。Collects the fields of a [ObstacleAnnouncementAck]. */
@@ -904,7 +931,7 @@ public class ObstacleAnnouncementAck private constructor(content: Content) : Mes
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): ObstacleAnnouncementAck =
             builder().apply(build).build()
@@ -929,12 +956,13 @@ public class ObstacleAnnouncementAck private constructor(content: Content) : Mes
  * Code 0x0340, inferred. Since 2023-05.
  *
  * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/target_reached.md`
+ * - 文档：`docs-site/reference/reports/target_reached.md`
+ * - Docs: `docs-site/en/reference/reports/target_reached.md`
  */
 public class TargetReached private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<TargetReached> get() = TargetReached
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [TargetReached] 的字段。Collects the fields of a [TargetReached]. */
@@ -947,7 +975,7 @@ public class TargetReached private constructor(content: Content) : Message(conte
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): TargetReached =
             builder().apply(build).build()
@@ -957,16 +985,17 @@ public class TargetReached private constructor(content: Content) : Message(conte
 }
 
 /**
- * 到达目标点通知上报：确认
+ * 到达目标点通知上报：应答
  * Target reached: acknowledgement
  *
  * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/target_reached.md`
+ * - 文档：`docs-site/reference/reports/target_reached.md`
+ * - Docs: `docs-site/en/reference/reports/target_reached.md`
  */
 public class TargetReachedAck private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<TargetReachedAck> get() = TargetReachedAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [TargetReachedAck] 的字段。Collects the fields of a [TargetReachedAck]. */
@@ -979,7 +1008,7 @@ public class TargetReachedAck private constructor(content: Content) : Message(co
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): TargetReachedAck =
             builder().apply(build).build()
@@ -1000,7 +1029,8 @@ public class TargetReachedAck private constructor(content: Content) : Message(co
  * Code 0x0345. Since 2024-01-29.
  *
  * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/task_progress.md`
+ * - 文档：`docs-site/reference/reports/task_progress.md`
+ * - Docs: `docs-site/en/reference/reports/task_progress.md`
  */
 public class TaskProgress private constructor(content: Content) : Message(content) {
     /**
@@ -1013,7 +1043,7 @@ public class TaskProgress private constructor(content: Content) : Message(conten
 
     override val messageType: MessageType<TaskProgress> get() = TaskProgress
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [TaskProgress] 的字段。Collects the fields of a [TaskProgress]. */
@@ -1031,7 +1061,7 @@ public class TaskProgress private constructor(content: Content) : Message(conten
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): TaskProgress =
             builder().apply(build).build()
@@ -1041,7 +1071,7 @@ public class TaskProgress private constructor(content: Content) : Message(conten
 }
 
 /**
- * 上报机器人任务进度：确认
+ * 上报机器人任务进度：应答
  * Task progress: acknowledgement
  *
  * 推断：应答正文已丢失。其他上报的应答除公共字段外至多多一个 msgId，推定这里只有公共字段。
@@ -1050,12 +1080,13 @@ public class TaskProgress private constructor(content: Content) : Message(conten
  * taken to be the envelope alone.
  *
  * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/reports/task_progress.md`
+ * - 文档：`docs-site/reference/reports/task_progress.md`
+ * - Docs: `docs-site/en/reference/reports/task_progress.md`
  */
 public class TaskProgressAck private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<TaskProgressAck> get() = TaskProgressAck
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [TaskProgressAck] 的字段。Collects the fields of a [TaskProgressAck]. */
@@ -1068,7 +1099,7 @@ public class TaskProgressAck private constructor(content: Content) : Message(con
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): TaskProgressAck =
             builder().apply(build).build()
@@ -1082,7 +1113,8 @@ public class TaskProgressAck private constructor(content: Content) : Message(con
  * Status of a task or of one of its stations
  *
  * - Spec: `types.TaskStatus` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class TaskStatus private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<TaskStatus> get() = TaskStatus
@@ -1111,8 +1143,8 @@ public class TaskStatus private constructor(wire: Long) : IntValue(wire) {
         public val FAILED: TaskStatus = named(2, "FAILED")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): TaskStatus = super.of(wire)
@@ -1126,7 +1158,8 @@ public class TaskStatus private constructor(wire: Long) : IntValue(wire) {
  * Record of one station of a task
  *
  * - Spec: `types.TaskStation` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class TaskStation private constructor(content: Content) : Message(content) {
     /**
@@ -1185,7 +1218,7 @@ public class TaskStation private constructor(content: Content) : Message(content
 
     override val messageType: MessageType<TaskStation> get() = TaskStation
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [TaskStation] 的字段。Collects the fields of a [TaskStation]. */
@@ -1230,7 +1263,7 @@ public class TaskStation private constructor(content: Content) : Message(content
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): TaskStation =
             builder().apply(build).build()
@@ -1249,7 +1282,8 @@ public class TaskStation private constructor(content: Content) : Message(content
  * entering (6), riding (4), leaving (7).
  *
  * - Spec: `types.TaskProcess` in `spec/commands/task.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class TaskProcess private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<TaskProcess> get() = TaskProcess
@@ -1313,8 +1347,8 @@ public class TaskProcess private constructor(wire: Long) : IntValue(wire) {
         public val LEAVING_ELEVATOR: TaskProcess = named(7, "LEAVING_ELEVATOR")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): TaskProcess = super.of(wire)

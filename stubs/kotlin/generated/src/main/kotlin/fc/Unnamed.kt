@@ -32,7 +32,8 @@ public interface UnnamedOperations {
      * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
      */
     public val unnamed0309: Command<Unnamed0309Request, Unnamed0309Response> get() = Companion.unnamed0309
 
@@ -48,7 +49,8 @@ public interface UnnamedOperations {
      * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
      */
     public val unnamed0460: Command<Unnamed0460Request, Unnamed0460Response> get() = Companion.unnamed0460
 
@@ -59,7 +61,8 @@ public interface UnnamedOperations {
          * Unnamed command (0x0309)
          *
          * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-         * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+         * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+         * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
          */
         @JvmField
         public val unnamed0309: Command<Unnamed0309Request, Unnamed0309Response> =
@@ -71,7 +74,8 @@ public interface UnnamedOperations {
          * Unnamed command (0x0460)
          *
          * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-         * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+         * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+         * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
          */
         @JvmField
         public val unnamed0460: Command<Unnamed0460Request, Unnamed0460Response> =
@@ -107,9 +111,10 @@ public interface UnnamedClient {
      * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun unnamed0309(request: Unnamed0309Request = Unnamed0309Request {}): Unnamed0309Response =
@@ -134,9 +139,10 @@ public interface UnnamedClient {
      * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun unnamed0460(request: Unnamed0460Request = Unnamed0460Request {}): Unnamed0460Response =
@@ -168,9 +174,10 @@ public interface UnnamedHandlers {
      * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun unnamed0309(context: Context, request: Unnamed0309Request): Unnamed0309Response
 
@@ -186,9 +193,10 @@ public interface UnnamedHandlers {
      * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
      *
      * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
-     * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+     * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+     * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun unnamed0460(context: Context, request: Unnamed0460Request): Unnamed0460Response
 }
@@ -233,12 +241,13 @@ internal class UnnamedExample(pretendMotion: Boolean) :
  * Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
  */
 public class Unnamed0309Request private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Unnamed0309Request> get() = Unnamed0309Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Unnamed0309Request] 的字段。Collects the fields of a [Unnamed0309Request]. */
@@ -251,7 +260,7 @@ public class Unnamed0309Request private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Unnamed0309Request =
             builder().apply(build).build()
@@ -269,12 +278,13 @@ public class Unnamed0309Request private constructor(content: Content) : Message(
  * Open: The response is lost; its label runs straight into section 9.
  *
  * - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0309.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0309.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
  */
 public class Unnamed0309Response private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Unnamed0309Response> get() = Unnamed0309Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Unnamed0309Response] 的字段。Collects the fields of a [Unnamed0309Response]. */
@@ -287,7 +297,7 @@ public class Unnamed0309Response private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Unnamed0309Response =
             builder().apply(build).build()
@@ -308,12 +318,13 @@ public class Unnamed0309Response private constructor(content: Content) : Message
  * Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
  */
 public class Unnamed0460Request private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Unnamed0460Request> get() = Unnamed0460Request
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Unnamed0460Request] 的字段。Collects the fields of a [Unnamed0460Request]. */
@@ -326,7 +337,7 @@ public class Unnamed0460Request private constructor(content: Content) : Message(
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Unnamed0460Request =
             builder().apply(build).build()
@@ -340,12 +351,13 @@ public class Unnamed0460Request private constructor(content: Content) : Message(
  * Unnamed command (0x0460): response
  *
  * - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
- * - Docs: `docs-site/reference/commands/unnamed_0460.md`
+ * - 文档：`docs-site/reference/commands/unnamed_0460.md`
+ * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
  */
 public class Unnamed0460Response private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Unnamed0460Response> get() = Unnamed0460Response
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [Unnamed0460Response] 的字段。Collects the fields of a [Unnamed0460Response]. */
@@ -358,7 +370,7 @@ public class Unnamed0460Response private constructor(content: Content) : Message
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): Unnamed0460Response =
             builder().apply(build).build()

@@ -36,7 +36,8 @@ public interface UpperBodyOperations {
      * Code 0x0204. Only reads.
      *
      * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-     * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+     * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
      */
     public val getUpperBodyStatus: Command<GetUpperBodyStatusRequest, GetUpperBodyStatusResponse>
         get() = Companion.getUpperBodyStatus
@@ -48,7 +49,8 @@ public interface UpperBodyOperations {
          * Get the upper body's status
          *
          * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-         * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+         * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+         * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
          */
         @JvmField
         public val getUpperBodyStatus: Command<GetUpperBodyStatusRequest, GetUpperBodyStatusResponse> =
@@ -83,9 +85,10 @@ public interface UpperBodyClient {
      * Code 0x0204. Only reads.
      *
      * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-     * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+     * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
      *
-     * @throws fc.runtime.CallError if there is no such response in time
+     * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun getUpperBodyStatus(
@@ -122,9 +125,10 @@ public interface UpperBodyHandlers {
      * Code 0x0204. Only reads.
      *
      * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
-     * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+     * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+     * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
      *
-     * @throws fc.runtime.Refusal to answer with another result than success
+     * @throws fc.runtime.Refusal to respond with a result other than success
      */
     public suspend fun getUpperBodyStatus(context: Context, request: GetUpperBodyStatusRequest): GetUpperBodyStatusResponse
 }
@@ -163,12 +167,13 @@ internal class UpperBodyExample(pretendMotion: Boolean) :
  * Code 0x0204. Only reads.
  *
  * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+ * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
  */
 public class GetUpperBodyStatusRequest private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<GetUpperBodyStatusRequest> get() = GetUpperBodyStatusRequest
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetUpperBodyStatusRequest] 的字段。Collects the fields of a [GetUpperBodyStatusRequest]. */
@@ -181,7 +186,7 @@ public class GetUpperBodyStatusRequest private constructor(content: Content) : M
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetUpperBodyStatusRequest =
             builder().apply(build).build()
@@ -195,7 +200,8 @@ public class GetUpperBodyStatusRequest private constructor(content: Content) : M
  * Get the upper body's status: response
  *
  * - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/commands/get_upper_body_status.md`
+ * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
+ * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
  */
 public class GetUpperBodyStatusResponse private constructor(content: Content) : Message(content) {
     /**
@@ -224,7 +230,7 @@ public class GetUpperBodyStatusResponse private constructor(content: Content) : 
 
     override val messageType: MessageType<GetUpperBodyStatusResponse> get() = GetUpperBodyStatusResponse
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [GetUpperBodyStatusResponse] 的字段。Collects the fields of a [GetUpperBodyStatusResponse]. */
@@ -254,7 +260,7 @@ public class GetUpperBodyStatusResponse private constructor(content: Content) : 
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): GetUpperBodyStatusResponse =
             builder().apply(build).build()
@@ -268,7 +274,8 @@ public class GetUpperBodyStatusResponse private constructor(content: Content) : 
  * Status of the push rod
  *
  * - Spec: `types.PushRodStatus` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class PushRodStatus private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<PushRodStatus> get() = PushRodStatus
@@ -290,8 +297,8 @@ public class PushRodStatus private constructor(wire: Long) : IntValue(wire) {
         public val EXTENDED: PushRodStatus = named(4, "EXTENDED")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): PushRodStatus = super.of(wire)
@@ -305,7 +312,8 @@ public class PushRodStatus private constructor(wire: Long) : IntValue(wire) {
  * Status of a door lock
  *
  * - Spec: `types.DoorLockStatus` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class DoorLockStatus private constructor(wire: Long) : IntValue(wire) {
     override val enumType: EnumType<DoorLockStatus> get() = DoorLockStatus
@@ -327,8 +335,8 @@ public class DoorLockStatus private constructor(wire: Long) : IntValue(wire) {
         public val CLOSED: DoorLockStatus = named(7, "CLOSED")
 
         /**
-         * 以此值传输的取值；规范中没有的值原样保留。
-         * The value that travels so; one that the spec does not have is kept as it is.
+         * `wire` 对应的取值；规范中没有的值原样保留。
+         * The value for `wire`. A value that is not in the spec is kept unchanged.
          */
         @JvmStatic
         override fun of(wire: Long): DoorLockStatus = super.of(wire)
@@ -342,7 +350,8 @@ public class DoorLockStatus private constructor(wire: Long) : IntValue(wire) {
  * Status of one door lock
  *
  * - Spec: `types.DoorLockInfo` in `spec/commands/upper_body.yaml`
- * - Docs: `docs-site/reference/types.md`
+ * - 文档：`docs-site/reference/types.md`
+ * - Docs: `docs-site/en/reference/types.md`
  */
 public class DoorLockInfo private constructor(content: Content) : Message(content) {
     /**
@@ -363,7 +372,7 @@ public class DoorLockInfo private constructor(content: Content) : Message(conten
 
     override val messageType: MessageType<DoorLockInfo> get() = DoorLockInfo
 
-    /** 以此消息的内容为起点的构造器。A builder that begins with what this message holds. */
+    /** 以此消息的内容为起点的构造器。A builder that starts with the content of this message. */
     public fun toBuilder(): Builder = Builder(this)
 
     /** 逐项设置 [DoorLockInfo] 的字段。Collects the fields of a [DoorLockInfo]. */
@@ -385,7 +394,7 @@ public class DoorLockInfo private constructor(content: Content) : Message(conten
         @JvmStatic
         public fun builder(): Builder = Builder(null)
 
-        /** 由 `build` 设置了字段的消息。The message whose fields `build` sets. */
+        /** 用 `build` 设置字段，构造消息。Builds a message with the fields that `build` sets. */
         @JvmSynthetic
         public inline operator fun invoke(build: Builder.() -> Unit): DoorLockInfo =
             builder().apply(build).build()
