@@ -205,7 +205,7 @@ fn what_cannot_be_compared_is_said() {
     for (old, status, said) in [
         ("nowhere", 2, "cannot read `nowhere`"),
         ("spec/protocol.yaml", 2, "not a dump of `fcproto inspect`"),
-        ("spec/commands", 2, "neither a directory with a spec"),
+        ("spec/commands", 2, "is not a directory with a spec"),
     ] {
         let run = project.fc(&["diff", old]).expect(status);
         assert!(run.stderr.contains(said), "{run:#?}");

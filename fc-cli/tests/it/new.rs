@@ -112,7 +112,7 @@ fn what_cannot_be_begun_changes_nothing() {
         (
             &["set_level", "--group", "lamp"],
             2,
-            "there is a `set_level` already, in spec/commands/lamp.yaml:",
+            "`set_level` already exists, in spec/commands/lamp.yaml:",
         ),
         (
             &["get_battery", "--group", "lamp", "--code", "0x0101"],

@@ -149,10 +149,13 @@ fn nothing_is_written_that_would_not_be_sound() {
         // No range has this code.
         (vec!["switch_lamp.code", "--code", "0xFFFF"], "FC0303"),
         (vec!["C901", "--unit", "parsec"], "FC"),
-        (vec!["C901", "--code", "0x0001"], "C901 is not about `code`"),
+        (
+            vec!["C901", "--code", "0x0001"],
+            "C901 is about request.delay.unit, not about `code`",
+        ),
         (
             vec!["C901", "--confirm"],
-            "C901 asks for request.delay.unit",
+            "C901 needs a value for request.delay.unit",
         ),
         (vec!["C901"], "nothing is said"),
         (vec!["C999", "--confirm"], "there is no question C999"),

@@ -140,7 +140,7 @@ fn a_number_that_does_not_fit_is_refused_and_nothing_is_written() {
     let before = project.files("spec");
     refused("7", "the last release is 7; choose a later number");
     refused("7.1", "the first part of the number has to rise");
-    refused("2026.12", "accept each with a waiver: FC0717-");
+    refused("2026.12", "waive each of them: FC0717-");
     assert_eq!(project.files("spec"), before);
     project.fc(&["release", "8"]).expect(0);
     let run = project.fc(&["release", "v9"]).expect(2);

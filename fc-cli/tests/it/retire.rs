@@ -107,7 +107,7 @@ fn an_operation_goes_with_its_comments_and_types_and_leaves_its_code_behind() {
     assert_eq!(code.stdout, "0x0109  retired: \"Nobody\" uses it\n");
     let again = ["new", "spin_fan", "--group", "fan", "--code", "0x0109"];
     let again = project.fc(&again).expect(2);
-    assert!(again.stderr.contains("was retired"), "{again:#?}");
+    assert!(again.stderr.contains("is retired"), "{again:#?}");
 }
 
 #[test]
