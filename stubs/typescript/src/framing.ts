@@ -4,6 +4,7 @@ import { hexByte } from './bytes.ts'
 import { crc32 } from './crc32.ts'
 import type { ErrorName } from './errors.ts'
 import type { OwnLimit } from './fault.ts'
+import { hasTrailer } from './gzip.ts'
 import type { PlatformAlgorithms, Soon } from './platform.ts'
 import type { HeaderRole } from './protocol.ts'
 import { room } from './room.ts'
@@ -12,9 +13,6 @@ import type { FrameLayout, WireField } from './wire.ts'
 
 /** Data of so many bytes or fewer may have been compressed by any ratio: a grid in which all is zero is no longer. */
 const INFLATE_FREE = 2 ** 20
-
-/** Bytes of a gzip member without any data. */
-const LEAST_MEMBER = 18
 
 /** What bounds a frame. */
 export interface FrameLimits {
@@ -207,7 +205,6 @@ export class Framing {
         ? inflatedBytes
         : Math.max(INFLATE_FREE, data.length * inflateRatio)
     if (plainLength > most) return bad('inflates_too_much')
-    if (data.length < LEAST_MEMBER) return bad('bad_gzip')
     const judge = (plain: Uint8Array | ErrorName): WholeFrame => {
       // More than is announced, whatever follows.
       if (plain === 'inflated_too_long') return bad('plain_length_mismatch')
@@ -229,12 +226,6 @@ export class Framing {
     for (let at = 0; at < digest.size; at++) if (bytes[digest.offset + at] !== expected[at]) return false
     return true
   }
-}
-
-/** Some libraries do not look at the trailer of a member (RFC 1952, 2.3.1): CRC-32 and length of the plain data. */
-function hasTrailer(member: Uint8Array, plain: Uint8Array): boolean {
-  const end = new DataView(member.buffer, member.byteOffset + member.length - 8, 8)
-  return end.getUint32(0, true) === crc32(plain) && end.getUint32(4, true) === plain.length % 2 ** 32
 }
 
 const HEX = Array.from({ length: 256 }, (_, byte) => hexByte(byte).toLowerCase())

@@ -56,7 +56,10 @@ export interface PlatformAlgorithms {
   md5(data: Uint8Array): Uint8Array
   /** Packs into one gzip member. */
   gzip(data: Uint8Array): Soon<Uint8Array>
-  /** Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. */
+  /**
+   * Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. Bytes behind the member, such as
+   * zeros or a second member, are `bad_gzip`.
+   */
   gunzip(member: Uint8Array, limit: number): Soon<Uint8Array | GunzipFault>
 }
 
