@@ -9,6 +9,8 @@ import type { PlatformAlgorithms, Soon } from './platform.ts'
 import type { HeaderRole } from './protocol.ts'
 import { room } from './room.ts'
 import type { FrameId } from './session.ts'
+import { integer } from './settings.ts'
+import type { Check } from './settings.ts'
 import type { FrameLayout, WireField } from './wire.ts'
 
 /** Data of so many bytes or fewer may have been compressed by any ratio: a grid in which all is zero is no longer. */
@@ -57,6 +59,8 @@ export class Framing {
   private readonly verifies: boolean
   private readonly fields: Partial<Record<HeaderRole, WireField>> = {}
   private readonly fixed: readonly WireField[]
+  private readonly code: Check
+  private readonly id: Check
   private readonly plain: number
   private readonly gzip: number | null
   private readonly reports: number
@@ -76,6 +80,8 @@ export class Framing {
     this.headEnd = total.offset + total.size
     this.headerLength = layout.headerLength
     this.idMax = 2 ** (8 * Math.min(4, this.need('id').size)) - 1
+    this.code = roomOf(this.need('code'))
+    this.id = roomOf(this.need('id'))
     this.frameBytes = limits.frameBytes
     this.plain = layout.encodings.find(({ role }) => role === 'plain')?.value ?? 0
     this.gzip = layout.encodings.find(({ role }) => role === 'gzip')?.value ?? null
@@ -92,6 +98,16 @@ export class Framing {
   /** The kind of frames with this role. */
   kind(role: 'stream' | 'command' | 'report'): number {
     return this.layout.kinds.find((kind) => kind.role === role)?.value ?? 0
+  }
+
+  /** Throws a `TypeError` or `RangeError` for a command code that the header has no room for. */
+  checkCode(code: number): void {
+    this.code('code', code)
+  }
+
+  /** The same for a message id. */
+  checkId(id: number): void {
+    this.id('id', id)
   }
 
   /** Makes a frame. `from`: data of so many bytes or more is compressed, if the protocol can and it gets shorter. */
@@ -227,6 +243,9 @@ export class Framing {
     return true
   }
 }
+
+/** Checks the value of a field of the header. */
+const roomOf = ({ size }: WireField): Check => integer(0, Math.min(2 ** (8 * size) - 1, Number.MAX_SAFE_INTEGER))
 
 const HEX = Array.from({ length: 256 }, (_, byte) => hexByte(byte).toLowerCase())
 

@@ -75,7 +75,8 @@ class SocketTransport implements Transport {
     this.socket = socket
     this.remote = socket.remoteAddress ?? ''
     socket.setNoDelay(true)
-    if (keepalive !== null) socket.setKeepAlive(true, keepalive)
+    // Node.js drops fractions of a second, and with 0 the system uses its own time.
+    if (keepalive !== null) socket.setKeepAlive(true, Math.max(1000, keepalive))
     socket.on('data', (chunk: Uint8Array) => {
       if (this.reader === null) {
         this.chunks.push(chunk)

@@ -2,6 +2,7 @@
 
 import { Alarm, pause } from '../alarm.ts'
 import { Bodies, firstIdAt } from '../bodies.ts'
+import { withDefaults } from '../defaults.ts'
 import type { ErrorName } from '../errors.ts'
 import { Framing } from '../framing.ts'
 import type { WholeFrame } from '../framing.ts'
@@ -14,7 +15,7 @@ import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Arrivals } from './arrivals.ts'
-import { defaultBackoff } from './config.ts'
+import { clientCheck, defaultBackoff } from './config.ts'
 import type { Backoff, ClientConfig } from './config.ts'
 import { newCounters } from './counters.ts'
 import type { ClientCounters } from './counters.ts'
@@ -58,15 +59,16 @@ export interface Settings {
 }
 
 function settle({ wire }: ProtocolOf, config: ClientConfig): Settings {
+  clientCheck('ClientConfig', config)
   const { host = wire.host, connectTimeout: timeout = 3000, keepalive = 30_000, reconnect = {}, gzip = null } = config
   return {
     commands: { host, port: config.commandPort ?? wire.commandPort, timeout, keepalive },
     data: { host, port: config.dataPort ?? wire.dataPort, timeout, keepalive },
     callTimeout: config.callTimeout ?? wire.defaults.callTimeout,
-    backoff: reconnect === null ? null : { ...defaultBackoff, ...reconnect },
+    backoff: reconnect === null ? null : withDefaults(reconnect, defaultBackoff),
     stallTimeout: config.stallTimeout ?? 10_000,
     gzipFrom: gzip === null ? null : (gzip.fromBytes ?? 1024),
-    limits: { ...wire.defaults.limits, ...config.limits },
+    limits: withDefaults(config.limits ?? {}, wire.defaults.limits),
   }
 }
 
@@ -103,8 +105,8 @@ export class Core {
     const { wire } = protocol
     this.protocol = protocol
     this.platform = platform
-    this.log = config.log ?? silent
     this.settings = settle(protocol, config)
+    this.log = config.log ?? silent
     const { limits } = this.settings
     this.framing = new Framing(wire.frame, limits, platform.algorithms, config.verifyDigest ?? true)
     this.bodies = new Bodies(wire, platform.clock, limits)

@@ -143,6 +143,10 @@ export class DataConnection {
    * `lost` if this frame, or one before, may not have arrived.
    */
   async send(code: number, id: number, data: Uint8Array): Promise<void> {
+    const { framing } = this.core
+    framing.checkCode(code)
+    framing.checkId(id)
+    if (!(data instanceof Uint8Array)) throw new DataError('invalid', { body: new BodyError('wrong_type', 'bytes') })
     const { clock } = this.core.platform
     const deadline = clock.now() + this.core.settings.callTimeout
     const before = this.turn
@@ -152,9 +156,9 @@ export class DataConnection {
     })
     try {
       await before
-      const frame = { response: false, kind: this.core.framing.kind('stream'), code, id }
-      const bytes = await this.core.framing.encode(frame, data, this.core.settings.gzipFrom)
-      if (bytes.length > this.core.framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
+      const frame = { response: false, kind: framing.kind('stream'), code, id }
+      const bytes = await framing.encode(frame, data, this.core.settings.gzipFrom)
+      if (bytes.length > framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
       await this.sendBytes(bytes, deadline)
     } finally {
       done()

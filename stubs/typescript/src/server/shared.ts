@@ -1,6 +1,7 @@
 // What all connections of a robot share: settings, counters, and who is there.
 
 import { Bodies, because, firstIdAt } from '../bodies.ts'
+import { withDefaults } from '../defaults.ts'
 import { Framing } from '../framing.ts'
 import { Thin, silent } from '../log.ts'
 import type { Log, LogFields, LogLevel } from '../log.ts'
@@ -9,6 +10,7 @@ import type { Refusal } from '../refusal.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Change } from '../alarm.ts'
 import { Access } from './allow.ts'
+import { serverCheck } from './config.ts'
 import type { ServerConfig } from './config.ts'
 import { newCounters } from './counters.ts'
 import type { ServerCounters } from './counters.ts'
@@ -74,8 +76,9 @@ export class Abandoned {
 }
 
 function settle({ defaults }: ProtocolOf['wire'], config: ServerConfig): ServerSettings {
+  serverCheck('ServerConfig', config)
   const memory = config.memory ?? 256 << 20
-  const given = { ...defaults.limits, ...config.limits }
+  const given = withDefaults(config.limits ?? {}, defaults.limits)
   // A frame that could not be dealt with even if it were alone is refused: it may take up to four times its text beside itself.
   const limits = { ...given, frameBytes: Math.min(given.frameBytes, Math.floor((memory / 16) * 3)) }
   const stall = config.stallTimeout ?? 30_000
@@ -135,10 +138,10 @@ export class Shared {
     this.protocol = protocol
     this.platform = platform
     this.routes = routes
+    this.settings = settle(protocol.wire, config)
     this.config = config
     this.log = config.log ?? silent
     this.access = new Access(config.allow)
-    this.settings = settle(protocol.wire, config)
     this.framing = new Framing(
       protocol.wire.frame,
       this.settings.limits,
