@@ -1,5 +1,8 @@
 // An app's connection to a robot: what a generated client stands on.
 
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
 import { keys, keysOf, textOf } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
 import type { WholeFrame } from '../framing.ts'

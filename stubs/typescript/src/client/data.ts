@@ -1,5 +1,8 @@
 // An app's connection to the data port: frames of raw bytes in both directions.
 
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
 import { Change, pause } from '../alarm.ts'
 import { keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'

@@ -1,5 +1,8 @@
 // The robot's side: what a generated robot stands on.
 
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
 import { BodyError } from '../fault.ts'
 import { bytesOfContent } from '../client/data.ts'
 import { DataError } from '../client/error.ts'
