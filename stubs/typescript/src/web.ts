@@ -110,11 +110,17 @@ interface Socket {
 /** How often it is looked whether a WebSocket has sent what it was given; it tells nobody. */
 const LOOK = 10
 
+/** Most bytes that wait to be read. A WebSocket cannot ask the other side to pause, so beyond this it is closed. */
+const WAITING = 64 * 1024 * 1024
+
 class SocketTransport implements Transport {
   readonly remote: string
   private readonly socket: Socket
-  private readonly chunks: Uint8Array[] = []
+  private chunks: Uint8Array[] = []
+  /** Bytes of the chunks. */
+  private waiting = 0
   private closed = false
+  private broken: TransportError | null = null
   private reader: ((chunk: Uint8Array | null) => void) | null = null
 
   constructor(socket: Socket, remote: string) {
@@ -124,7 +130,7 @@ class SocketTransport implements Transport {
       if (!(data instanceof ArrayBuffer)) return
       const chunk = new Uint8Array(data)
       if (this.reader) this.give(chunk)
-      else this.chunks.push(chunk)
+      else this.keep(chunk)
     })
     socket.addEventListener('close', () => {
       this.closed = true
@@ -138,8 +144,20 @@ class SocketTransport implements Transport {
     reader?.(chunk)
   }
 
+  private keep(chunk: Uint8Array): void {
+    if (this.broken) return
+    this.chunks.push(chunk)
+    this.waiting += chunk.length
+    if (this.waiting <= WAITING) return
+    this.broken = new TransportError('UNREAD')
+    this.chunks = []
+    this.socket.close()
+  }
+
   read(): Promise<Uint8Array | null> {
+    if (this.broken) return Promise.reject(this.broken)
     const chunk = this.chunks.shift()
+    this.waiting -= chunk?.length ?? 0
     if (chunk || this.closed) return Promise.resolve(chunk ?? null)
     return new Promise((resolve) => {
       this.reader = resolve
