@@ -119,7 +119,9 @@ export class Framing {
       member.length < data.length
         ? this.seal(id, member, data.length, gzip)
         : this.seal(id, data, data.length, this.plain)
-    return packed instanceof Promise ? packed.then(sealed) : sealed(packed)
+    if (!(packed instanceof Promise)) return sealed(packed)
+    // A platform that fails to compress does not prevent sending.
+    return packed.then(sealed, () => this.seal(id, data, data.length, this.plain))
   }
 
   /** Whether data fits into a frame. */

@@ -50,6 +50,12 @@ export interface Clock {
 /** Something, now or later. */
 export type Soon<T> = T | Promise<T>
 
+/** Calls back with the value, at once if it is there. */
+export function soon<T>(value: Soon<T>, then: (value: T) => void): void {
+  if (value instanceof Promise) void value.then(then)
+  else then(value)
+}
+
 /** MD5 and gzip, at once or later. */
 export interface PlatformAlgorithms {
   /** The sixteen bytes of the MD5 digest. */

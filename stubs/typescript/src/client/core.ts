@@ -10,7 +10,8 @@ import { Thin, silent } from '../log.ts'
 import type { Log, LogFields, LogLevel } from '../log.ts'
 import { lossText } from '../loss.ts'
 import type { Loss } from '../loss.ts'
-import type { Platform, Soon, Transport } from '../platform.ts'
+import { soon } from '../platform.ts'
+import type { Platform, Transport } from '../platform.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
@@ -287,11 +288,7 @@ export class Core {
         link.outlet.push(bytes)
       }
     }
-    if (made instanceof Promise)
-      made.then(go, () => {
-        if (this.session.cancel(frame)) flight.failed(new CallError('frame', { frame: 'bad_gzip' }))
-      })
-    else go(made)
+    soon(made, go)
   }
 
   /** Nobody waits for a call any more. */
@@ -307,10 +304,4 @@ export class Core {
     this.down(true)
     link?.end({ is: 'closed_here' })
   }
-}
-
-/** Something that comes at once, or later: both are dealt with by the same. */
-export function soon<T>(value: Soon<T>, then: (value: T) => void): void {
-  if (value instanceof Promise) void value.then(then)
-  else then(value)
 }

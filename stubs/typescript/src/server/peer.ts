@@ -19,7 +19,7 @@ import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
 import type { ConnectionId } from './types.ts'
 
-/** Beyond this much unsent, in bytes, nothing is read or taken up. */
+/** Beyond this much unsent, or being compressed, in bytes, nothing is read or taken up. */
 const HIGH_WATER = 256 * 1024
 
 /** Who holds no more, in bytes, is not weighed when it gets more. */
@@ -52,6 +52,8 @@ export class Peer {
   private readonly session: Session<Queued>
   private readonly queue: Queued[] = []
   private queuedBytes = 0
+  /** Bytes that the platform is compressing. */
+  private packing = 0
   private readonly effects: 'all' | readonly Effect[]
   private readonly works = new Set<Work>()
   private readonly pace = new Pace()
@@ -127,7 +129,7 @@ export class Peer {
 
   /** Bytes that are held for it. */
   get held(): number {
-    let sum = this.inlet.pending + this.outlet.unsent + this.queuedBytes
+    let sum = this.inlet.pending + this.outlet.unsent + this.packing + this.queuedBytes
     for (const { weight } of this.works) sum += weight
     return sum
   }
@@ -143,7 +145,7 @@ export class Peer {
         connection: this.id,
         inFlight: settings.limits.inFlight,
       })
-    } else if (rest === 0 && this.outlet.unsent < HIGH_WATER) return
+    } else if (rest === 0 && this.outlet.unsent < HIGH_WATER && this.packing < HIGH_WATER) return
     return this.pause(rest)
   }
 
@@ -179,6 +181,7 @@ export class Peer {
     while (!this.isDraining && !this.isGone) {
       if (this.works.size >= inFlight) await this.changed.wait()
       else if (this.outlet.unsent >= HIGH_WATER) await this.outlet.below(HIGH_WATER)
+      else if (this.packing >= HIGH_WATER) await this.changed.wait()
       else return
     }
   }
@@ -381,9 +384,18 @@ export class Peer {
       }
       counters.bytesOut += bytes.length
       this.outlet.push(bytes)
+      if (this.outlet.unsent > WEIGHTY) this.shared.weigh()
     }
-    if (made instanceof Promise) void made.then(go)
-    else go(made)
+    if (!(made instanceof Promise)) {
+      go(made)
+      return
+    }
+    this.packing += data.length
+    void made.then((bytes) => {
+      this.packing -= data.length
+      go(bytes)
+      this.settled()
+    })
   }
 
   /** Queues a report. If the queue is full, the oldest reports in it give way. */
@@ -455,7 +467,7 @@ export class Peer {
   }
 
   private leaveIfDone(): void {
-    if (this.isDraining && this.works.size === 0 && !this.isGone) this.end('drained')
+    if (this.isDraining && this.works.size === 0 && this.packing === 0 && !this.isGone) this.end('drained')
   }
 
   /** Nothing more will be answered. What has been is still sent. */
