@@ -99,6 +99,7 @@ test('robot_refuses_other_settings_that_make_no_sense', async () => {
     ['gzip', { gzip: true }],
     ['verifyDigest', { verifyDigest: 1 }],
     ['log', { log: {} }],
+    ['onHandlerError', { onHandlerError: true }],
     ['allow', { allow: '10.0.0.0/8' }],
     ['allow\\[0\\]', { allow: ['10.0.0.0/8'] }],
     ['allow\\[0\\].network', { allow: [{ network: 10, effects: 'all' }] }],

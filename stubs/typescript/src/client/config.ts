@@ -52,7 +52,7 @@ export interface ClientConfig {
   readonly gzip?: Gzip | null
   /** Whether to verify the digests of what is received: yes, unless set. */
   readonly verifyDigest?: boolean
-  /** Is told what happens. */
+  /** Is told what happens. Unless set, errors are written to the console. */
   readonly log?: Log
 }
 

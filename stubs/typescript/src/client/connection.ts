@@ -12,6 +12,7 @@ import type { Platform } from '../platform.ts'
 import { Refusal } from '../refusal.ts'
 import type { JsonText } from '../schema.ts'
 import type { FrameId } from '../session.ts'
+import { callUser, thrownFields } from '../thrown.ts'
 import type { ProtocolOf } from '../wire.ts'
 import { callCheck } from './config.ts'
 import type { CallOptions, ClientConfig } from './config.ts'
@@ -245,13 +246,10 @@ export class Connection<Any> {
   on<Body>(report: Report<Body>, then: (body: Body) => void): () => void {
     const reports = this.reports(report)
     const pump = async (): Promise<void> => {
-      for await (const body of reports) {
-        try {
-          then(body)
-        } catch {
-          this.core.tell('error', 'a listener threw', { name: report.name })
-        }
+      const failed = (problem: unknown): void => {
+        this.core.log.tellThinly('error', 'a listener threw', { name: report.name, ...thrownFields(problem) })
       }
+      for await (const body of reports) callUser(() => then(body), failed)
     }
     void pump()
     return () => {

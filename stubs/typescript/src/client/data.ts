@@ -240,7 +240,7 @@ export class DataConnection {
         if (this.isClosed || !(problem instanceof ConnectError)) return
         tries.failed()
         this.life.lost(lossOf(problem))
-        this.core.tellThinly('warn', 'data port not connected', { why: problem.message })
+        this.core.log.tellThinly('warn', 'data port not connected', { why: problem.message })
       }
     }
     const { now } = this.life
@@ -268,7 +268,7 @@ export class DataConnection {
     this.link = link
     this.sent = false
     this.life.connected()
-    this.core.tell('info', 'data port connected', { connects: this.life.now.connects })
+    this.core.log.tell('info', 'data port connected', { connects: this.life.now.connects })
     const commands = this.core.life
     const part = async (): Promise<void> => {
       while (this.link === link && commands.now.is !== 'closed' && commands.now.connects === number)
@@ -281,7 +281,7 @@ export class DataConnection {
     // For who watches the command connection for this one.
     commands.changed.tell()
     this.wasHeard = link.heard
-    this.core.tell('info', 'data connection ended', { why: lossText(why) })
+    this.core.log.tell('info', 'data connection ended', { why: lossText(why) })
     if (this.isClosed) await link.goodbye()
     else link.cut()
     return why

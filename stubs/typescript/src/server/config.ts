@@ -8,6 +8,7 @@ import { callback, duration, flag, group, host, integer, kind, listOf, orNull, r
 import type { Check } from '../settings.ts'
 import type { Limits } from '../wire.ts'
 import type { Allowed } from './allow.ts'
+import type { Context } from './types.ts'
 
 /** What a robot can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
 export interface ServerConfig {
@@ -56,8 +57,13 @@ export interface ServerConfig {
   readonly idleTimeout?: number | null
   /** After how much silence TCP asks whether the app is still there, or `null` not to ask: 30 000 unless set. */
   readonly keepalive?: number | null
-  /** Is told what happens. */
+  /** Is told what happens. Unless set, errors are written to the console. */
   readonly log?: Log
+  /**
+   * Is called with each error of a handler: what it threw besides a `Refusal`, also after its timeout, or why its response cannot
+   * be sent. The error may quote the request; the log has only its class and place. An error of this function is ignored.
+   */
+  readonly onHandlerError?: (error: unknown, context: Context) => void
 }
 
 const EFFECTS: Readonly<Record<Effect, true>> = { read: true, config: true, motion: true, unknown: true }
@@ -93,4 +99,5 @@ export const serverCheck: Check = group<ServerConfig>({
   idleTimeout: orNull(duration),
   keepalive: orNull(duration),
   log: callback,
+  onHandlerError: callback,
 })

@@ -172,7 +172,7 @@ export class Server {
     duration('grace', grace)
     const { shared } = this
     for (const listener of this.listeners) listener.close()
-    shared.tell('info', 'shutting down')
+    shared.log.tell('info', 'shutting down')
     let stop = (): void => {}
     const late = new Promise<boolean>((resolve) => {
       const cancel = shared.platform.clock.after(grace, () => {
@@ -182,7 +182,7 @@ export class Server {
     })
     const isCut = await Promise.race([late, shared.stop().then(() => false)])
     stop()
-    if (isCut) shared.tell('warn', 'connections or handlers were cut off at the end of the grace')
+    if (isCut) shared.log.tell('warn', 'connections or handlers were cut off at the end of the grace')
     shared.abort()
     this.over()
   }
