@@ -126,6 +126,27 @@ test('handler_error_reaches_the_hook_with_its_call', async () => {
   assert.deepEqual([refuses.told, refuses.errors()], [[], []])
 })
 
+test('hook_error_is_logged_with_class_and_own_line', async () => {
+  const handler = () => {
+    throw new Error('handler')
+  }
+  for (const onHandlerError of [
+    () => {
+      throw new Stuck('secret')
+    },
+    async () => {
+      throw new Stuck('secret')
+    },
+  ]) {
+    const one = watched({ echo: handler }, { onHandlerError })
+    await callEcho(one)
+    const [, { message, fields }] = one.errors()
+    assert.deepEqual([message, fields.error, fields.id], ['`onHandlerError` threw', 'Stuck', 1])
+    assert.match(fields.at, /\/handlers\.test\.mjs:\d+:\d+$/)
+    assert.ok(!JSON.stringify(one.lines).includes('secret'))
+  }
+})
+
 test('hook_and_log_that_throw_harm_nothing', async () => {
   const throws = () => {
     throw new Error('hook')

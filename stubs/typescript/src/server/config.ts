@@ -61,7 +61,7 @@ export interface ServerConfig {
   readonly log?: Log
   /**
    * Is called with each error of a handler: what it threw besides a `Refusal`, also after its timeout, or why its response cannot
-   * be sent. The error may quote the request; the log has only its class and place. An error of this function is ignored.
+   * be sent. The error may quote the request; the log has only its class and place. An error of this function is logged.
    */
   readonly onHandlerError?: (error: unknown, context: Context) => void
 }

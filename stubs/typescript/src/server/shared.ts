@@ -170,7 +170,8 @@ export class Shared {
     this.log.tellThinly('error', message, { connection, name, code, id, ...fields })
     callUser(
       () => this.config.onHandlerError?.(problem, context),
-      () => {},
+      (failed) =>
+        this.log.tellThinly('error', '`onHandlerError` threw', { connection, code, id, ...thrownFields(failed) }),
     )
   }
 
