@@ -67,7 +67,8 @@ class Tour {
 }
 
 await main(USAGE, async (args) => {
-  const client = await Client.connect(nodePlatform, { host: args.host, gzip: args.gzip, ...ports(args) })
+  // Closed at the end, and also when something fails: an open connection keeps the program running.
+  await using client = await Client.connect(nodePlatform, { host: args.host, gzip: args.gzip, ...ports(args) })
   const reports = client.reports()
   // #region data
   const data = client.data()
@@ -79,7 +80,6 @@ await main(USAGE, async (args) => {
   await receiveAll(reports, tour)
   await receivePicture(data, tour)
   console.log(table(tour.rows))
-  client.close()
   if (tour.failed > 0) throw new Error(`${tour.failed} operations failed`)
 })
 

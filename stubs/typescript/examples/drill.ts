@@ -18,20 +18,20 @@ const READS = 1000
 
 await main(USAGE, async (args) => {
   const config = { host: args.host, gzip: args.gzip, ...ports(args) }
-  let client = await Client.connect(nodePlatform, config)
-  console.log('reading')
-  await read(client)
-  console.log(`read: ${READS} answered`)
-  await giveUp(client)
-  console.log(`given up: ${AT_ONCE}, and the next one answered`)
-  client.close()
+  {
+    await using client = await Client.connect(nodePlatform, config)
+    console.log('reading')
+    await read(client)
+    console.log(`read: ${READS} answered`)
+    await giveUp(client)
+    console.log(`given up: ${AT_ONCE}, and the next one answered`)
+  }
 
   // Another one, which does not come back: that the robot has ended ends its calls.
-  client = await Client.connect(nodePlatform, { ...config, reconnect: null })
+  await using client = await Client.connect(nodePlatform, { ...config, reconnect: null })
   console.log('calling')
   const answered = await callToTheEnd(client)
   console.log(`ended: ${answered} answered, ${AT_ONCE} lost`)
-  client.close()
 })
 
 /** So many of them at a time. */

@@ -11,8 +11,8 @@ export interface Algorithms {
   /** Packs into one gzip member. */
   gzip(data: Uint8Array): Uint8Array
   /**
-   * Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. It need not look at the
-   * checksum and the length at the member's end, which the decoder checks itself.
+   * Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. Bytes behind the member, such as
+   * zeros or a second member, are `bad_gzip`. It need not check the checksum and the length at the member's end, which the decoder does.
    */
   gunzip(member: Uint8Array, limit: number): Uint8Array | GunzipFault
 }

@@ -3,7 +3,7 @@
 import { BodyError } from './fault.ts'
 import type { ResultText } from './operation.ts'
 import type { Clock } from './platform.ts'
-import { readEnvelope, readEnveloped } from './read.ts'
+import { readEnvelope, readEnveloped, readMessage } from './read.ts'
 import { Refusal } from './refusal.ts'
 import type { Allowance } from './scanner.ts'
 import type { AnyStruct, Extra, Struct } from './schema.ts'
@@ -22,6 +22,12 @@ export const keys: Struct<Keys> = { is: 'struct', name: 'Keys', fields: {} }
 /** The keys of an object as its text. */
 export const textOf = ({ extra = [] }: Keys): string =>
   `{${extra.map(({ key, json }) => `${JSON.stringify(key)}:${json}`).join(',')}}`
+
+/** The keys of an object that is given as its text. Throws a `BodyError`. */
+export function keysOf(json: unknown, allowed: Allowance): Keys {
+  if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON text')
+  return readMessage(keys, bytesOf(json), allowed)
+}
 
 type Envelope = Record<string, unknown>
 

@@ -5,6 +5,7 @@ import type { Codec, GunzipFault } from './algorithms.ts'
 import { hexByte, readUint, writeUint } from './bytes.ts'
 import { crc32 } from './crc32.ts'
 import type { ErrorName } from './errors.ts'
+import { hasTrailer } from './gzip.ts'
 import { fieldOf } from './lookup.ts'
 import type { DigestAlgorithm, HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
 
@@ -51,21 +52,12 @@ export interface Decoded {
 const same = (a: ArrayLike<number>, b: ArrayLike<number>) =>
   a.length === b.length && Array.prototype.every.call(a, (byte, index) => byte === b[index])
 
-/** Bytes of a gzip member behind its data, and of a member without any. */
-const TRAILER = 8
-const LEAST_MEMBER = 18
-
 /** Unpacks one gzip member of at most `limit` bytes, and checks its end. */
 function gunzip({ algorithms }: Codec, member: Uint8Array, limit: number): Uint8Array | GunzipFault {
-  if (member.length < LEAST_MEMBER) return 'bad_gzip'
   const plain = algorithms.gunzip(member, limit)
   if (typeof plain === 'string') return plain
   if (plain.length > limit) return 'inflated_too_long'
-  // Some libraries do not look at the trailer (RFC 1952, 2.3.1): CRC-32 and length of the plain data.
-  const trailer = member.subarray(-TRAILER)
-  const sum = readUint(trailer.subarray(0, 4), 'little')
-  const length = readUint(trailer.subarray(4), 'little')
-  return sum === crc32(plain) && length === plain.length % 2 ** 32 ? plain : 'bad_gzip'
+  return hasTrailer(member, plain) ? plain : 'bad_gzip'
 }
 
 /** What a digest's field holds of data. */

@@ -4,17 +4,17 @@ import { hexByte } from './bytes.ts'
 import { crc32 } from './crc32.ts'
 import type { ErrorName } from './errors.ts'
 import type { OwnLimit } from './fault.ts'
+import { hasTrailer } from './gzip.ts'
 import type { PlatformAlgorithms, Soon } from './platform.ts'
 import type { HeaderRole } from './protocol.ts'
 import { room } from './room.ts'
 import type { FrameId } from './session.ts'
+import { integer } from './settings.ts'
+import type { Check } from './settings.ts'
 import type { FrameLayout, WireField } from './wire.ts'
 
 /** Data of so many bytes or fewer may have been compressed by any ratio: a grid in which all is zero is no longer. */
 const INFLATE_FREE = 2 ** 20
-
-/** Bytes of a gzip member without any data. */
-const LEAST_MEMBER = 18
 
 /** What bounds a frame. */
 export interface FrameLimits {
@@ -59,6 +59,8 @@ export class Framing {
   private readonly verifies: boolean
   private readonly fields: Partial<Record<HeaderRole, WireField>> = {}
   private readonly fixed: readonly WireField[]
+  private readonly code: Check
+  private readonly id: Check
   private readonly plain: number
   private readonly gzip: number | null
   private readonly reports: number
@@ -78,6 +80,8 @@ export class Framing {
     this.headEnd = total.offset + total.size
     this.headerLength = layout.headerLength
     this.idMax = 2 ** (8 * Math.min(4, this.need('id').size)) - 1
+    this.code = roomOf(this.need('code'))
+    this.id = roomOf(this.need('id'))
     this.frameBytes = limits.frameBytes
     this.plain = layout.encodings.find(({ role }) => role === 'plain')?.value ?? 0
     this.gzip = layout.encodings.find(({ role }) => role === 'gzip')?.value ?? null
@@ -96,6 +100,16 @@ export class Framing {
     return this.layout.kinds.find((kind) => kind.role === role)?.value ?? 0
   }
 
+  /** Throws a `TypeError` or `RangeError` for a command code that the header has no room for. */
+  checkCode(code: number): void {
+    this.code('code', code)
+  }
+
+  /** The same for a message id. */
+  checkId(id: number): void {
+    this.id('id', id)
+  }
+
   /** Makes a frame. `from`: data of so many bytes or more is compressed, if the protocol can and it gets shorter. */
   encode(id: FrameId, data: Uint8Array, from: number | null): Soon<Uint8Array> {
     if (from === null || this.gzip === null || data.length < from) return this.seal(id, data, data.length, this.plain)
@@ -105,7 +119,9 @@ export class Framing {
       member.length < data.length
         ? this.seal(id, member, data.length, gzip)
         : this.seal(id, data, data.length, this.plain)
-    return packed instanceof Promise ? packed.then(sealed) : sealed(packed)
+    if (!(packed instanceof Promise)) return sealed(packed)
+    // A platform that fails to compress does not prevent sending.
+    return packed.then(sealed, () => this.seal(id, data, data.length, this.plain))
   }
 
   /** Whether data fits into a frame. */
@@ -207,7 +223,6 @@ export class Framing {
         ? inflatedBytes
         : Math.max(INFLATE_FREE, data.length * inflateRatio)
     if (plainLength > most) return bad('inflates_too_much')
-    if (data.length < LEAST_MEMBER) return bad('bad_gzip')
     const judge = (plain: Uint8Array | ErrorName): WholeFrame => {
       // More than is announced, whatever follows.
       if (plain === 'inflated_too_long') return bad('plain_length_mismatch')
@@ -231,11 +246,8 @@ export class Framing {
   }
 }
 
-/** Some libraries do not look at the trailer of a member (RFC 1952, 2.3.1): CRC-32 and length of the plain data. */
-function hasTrailer(member: Uint8Array, plain: Uint8Array): boolean {
-  const end = new DataView(member.buffer, member.byteOffset + member.length - 8, 8)
-  return end.getUint32(0, true) === crc32(plain) && end.getUint32(4, true) === plain.length % 2 ** 32
-}
+/** Checks the value of a field of the header. */
+const roomOf = ({ size }: WireField): Check => integer(0, Math.min(2 ** (8 * size) - 1, Number.MAX_SAFE_INTEGER))
 
 const HEX = Array.from({ length: 256 }, (_, byte) => hexByte(byte).toLowerCase())
 

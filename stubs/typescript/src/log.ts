@@ -1,4 +1,6 @@
-// What is told of what happens.
+// The log of a client or server.
+
+import { callUser } from './thrown.ts'
 
 /** How much it matters. */
 export type LogLevel = 'debug' | 'info' | 'warn' | 'error'
@@ -9,15 +11,17 @@ export type LogFields = Readonly<Record<string, string | number | boolean | null
 /** Is told what happens. */
 export type Log = (level: LogLevel, message: string, fields: LogFields) => void
 
-/** Tells nobody. */
-export const silent: Log = () => {}
+/** Writes errors to the console, and nothing else: they are faults of the program. */
+const errorsOnly: Log = (level, message, fields) => {
+  if (level === 'error') console.error(message, fields)
+}
 
 /** Lines that one cause may write in a minute. */
 const LINES = 5
 const WINDOW = 60_000
 
-/** A log that a flood does not flood: a few lines a minute of one cause. What is held back is counted, and the next line says so. */
-export class Thin {
+/** The lines of one cause. */
+class Thin {
   private since = Number.NEGATIVE_INFINITY
   private lines = 0
   private held = 0
@@ -36,5 +40,36 @@ export class Thin {
     const held = this.held
     this.held = 0
     return held
+  }
+}
+
+/** Writes lines to a log. A log that throws, or rejects, harms nothing. */
+export class Logger {
+  private readonly log: Log
+  private readonly protocol: string
+  private readonly now: () => number
+  private readonly causes = new Map<string, Thin>()
+
+  /** Writes to this log, or errors to the console. `now` returns milliseconds that never go back. */
+  constructor(log: Log | undefined, protocol: string, now: () => number) {
+    this.log = log ?? errorsOnly
+    this.protocol = protocol
+    this.now = now
+  }
+
+  /** Writes a line. */
+  tell(level: LogLevel, message: string, fields: LogFields = {}): void {
+    callUser(
+      () => this.log(level, message, { protocol: this.protocol, ...fields }),
+      () => {},
+    )
+  }
+
+  /** Writes a few lines a minute of one message. The next line has the number of those held back. */
+  tellThinly(level: LogLevel, message: string, fields: LogFields): void {
+    let thin = this.causes.get(message)
+    if (!thin) this.causes.set(message, (thin = new Thin()))
+    const held = thin.line(this.now())
+    if (held !== null) this.tell(level, message, held > 0 ? { ...fields, held } : fields)
   }
 }

@@ -3,8 +3,9 @@
 import * as crypto from 'node:crypto'
 import { connect, createServer } from 'node:net'
 import type { AddressInfo, Socket } from 'node:net'
-import { gunzipSync, gzipSync } from 'node:zlib'
+import { gzipSync, inflateRawSync } from 'node:zlib'
 import type { Algorithms } from './algorithms.ts'
+import { deflatedOf } from './gzip.ts'
 import { TransportError } from './platform.ts'
 import type { Clock, DialOptions, Listener, ListenOptions, ServerPlatform, Transport } from './platform.ts'
 
@@ -16,14 +17,27 @@ function md5AtOnce(data: Uint8Array): Uint8Array {
   return digest
 }
 
+/** The result of inflating with `info`. */
+interface Inflated {
+  /** The plain data. */
+  readonly buffer: Uint8Array
+  /** The engine, with the number of bytes that it used. */
+  readonly engine: { readonly bytesWritten: number }
+}
+
 /** Those of Node.js itself. */
 export const nodeAlgorithms: Algorithms = {
   // In one step where Node.js has that, from 20.12 on.
   md5: typeof crypto.hash === 'function' ? md5AtOnce : (data) => crypto.createHash('md5').update(data).digest(),
   gzip: (data) => gzipSync(data, { level: 1 }),
   gunzip(member, limit) {
+    const deflated = deflatedOf(member)
+    if (!deflated) return 'bad_gzip'
     try {
-      return gunzipSync(member, { maxOutputLength: Math.max(1, limit) })
+      const options = { maxOutputLength: Math.max(1, limit), info: true }
+      // The types do not have what `info` asks for: how many bytes were used.
+      const { buffer, engine } = inflateRawSync(deflated, options) as unknown as Inflated
+      return engine.bytesWritten === deflated.length ? buffer : 'bad_gzip'
     } catch (problem) {
       return (problem as { code?: unknown }).code === 'ERR_BUFFER_TOO_LARGE' ? 'inflated_too_long' : 'bad_gzip'
     }
@@ -61,7 +75,8 @@ class SocketTransport implements Transport {
     this.socket = socket
     this.remote = socket.remoteAddress ?? ''
     socket.setNoDelay(true)
-    if (keepalive !== null) socket.setKeepAlive(true, keepalive)
+    // Node.js drops fractions of a second, and with 0 the system uses its own time.
+    if (keepalive !== null) socket.setKeepAlive(true, Math.max(1000, keepalive))
     socket.on('data', (chunk: Uint8Array) => {
       if (this.reader === null) {
         this.chunks.push(chunk)

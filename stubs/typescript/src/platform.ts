@@ -50,13 +50,22 @@ export interface Clock {
 /** Something, now or later. */
 export type Soon<T> = T | Promise<T>
 
+/** Calls back with the value, at once if it is there. */
+export function soon<T>(value: Soon<T>, then: (value: T) => void): void {
+  if (value instanceof Promise) void value.then(then)
+  else then(value)
+}
+
 /** MD5 and gzip, at once or later. */
 export interface PlatformAlgorithms {
   /** The sixteen bytes of the MD5 digest. */
   md5(data: Uint8Array): Uint8Array
   /** Packs into one gzip member. */
   gzip(data: Uint8Array): Soon<Uint8Array>
-  /** Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. */
+  /**
+   * Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. Bytes behind the member, such as
+   * zeros or a second member, are `bad_gzip`.
+   */
   gunzip(member: Uint8Array, limit: number): Soon<Uint8Array | GunzipFault>
 }
 

@@ -402,16 +402,14 @@ export class Scanner {
     if (this.peek() !== END) throw this.bad('nothing behind the value')
   }
 
-  /** The keys of the object at hand, of which nothing is read by this. */
+  /** Returns the keys of the object at hand and stays in front of it. The keys count, so the search ends at the limits. */
   keysAhead(): Set<string> {
     const { at, depth, values } = this
     const keys = new Set<string>()
-    // Beyond the limits it is not read afterwards.
-    this.depth = COUNTLESS
-    this.values = COUNTLESS
     this.enter()
     if (!this.endsAtOnce(CLOSE_OBJECT)) {
       do {
+        this.count(1)
         keys.add(this.key())
         this.skip()
       } while (this.goesOn(CLOSE_OBJECT))

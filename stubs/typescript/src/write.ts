@@ -39,26 +39,52 @@ const EXTRA: Allowance = { depth: 512, values: Number.POSITIVE_INFINITY }
 function members(parts: readonly Part[]): string {
   let text = ''
   for (const [struct, message] of parts) {
-    const own = asObject(message)
+    const own = asObject(message, struct.name)
+    let isEmpty = true
     for (const field of planOf(struct).fields) {
       const value = own[field.name]
       if (value === undefined || value === null) {
         if (field.schema.optional !== true) throw new BodyError('missing_field', field.schema.key, field.schema.key)
         continue
       }
+      isEmpty = false
       const written = writeField(field, value)
       text += text === '' ? field.lead + written : `,${field.lead}${written}`
     }
-    for (const { key, json } of (own['extra'] as readonly ExtraKey[] | undefined) ?? []) {
+    if (isEmpty && isOther(struct, own)) throw new BodyError('wrong_type', struct.name)
+    const extra = own['extra']
+    if (extra === undefined || extra === null) continue
+    for (const { key, json } of extraOf(extra)) {
       text += `${text === '' ? '' : ','}${quoted(key)}:${checked(json, key)}`
     }
   }
   return text
 }
 
-function asObject(value: Value): Readonly<Record<string, Value>> {
-  if (typeof value !== 'object' || value === null) throw new BodyError('wrong_type', '{ … }')
-  return value as Readonly<Record<string, Value>>
+/** A plain object or an instance of a class, and no list, date, error or promise: these have other contents than keys. */
+function asObject(value: Value, expected: string): Readonly<Record<string, Value>> {
+  if (typeof value === 'object' && value !== null) {
+    const isPlainObject = Object.getPrototypeOf(value) === Object.prototype
+    if (isPlainObject || Object.prototype.toString.call(value) === '[object Object]')
+      return value as Readonly<Record<string, Value>>
+  }
+  throw new BodyError('wrong_type', expected)
+}
+
+/**
+ * Returns `true` if a message that has none of the keys of its struct has others: it is one of another type, and would be sent
+ * without any key. TypeScript refuses it, too.
+ */
+function isOther({ fields }: AnyStruct, own: Readonly<Record<string, Value>>): boolean {
+  const isUnknown = (name: string): boolean => name !== 'extra' && !Object.hasOwn(fields, name)
+  return Object.keys(own).some((name) => own[name] !== undefined && isUnknown(name))
+}
+
+/** The unknown keys of a message, which are handed in by the caller. */
+function extraOf(value: Value): readonly ExtraKey[] {
+  const isKey = (one: Partial<ExtraKey> | null | undefined): boolean => typeof one?.key === 'string'
+  if (!Array.isArray(value) || !value.every(isKey)) throw new BodyError('wrong_type', '{ key, json }[]', 'extra')
+  return value as readonly ExtraKey[]
 }
 
 /** A JSON text that has been handed in: it must not end what is around it. */
@@ -109,9 +135,7 @@ const inForm = ({ form }: FieldSchema, text: string): string => (form === 'strin
 
 function writeText(value: Value): string {
   if (typeof value !== 'string') throw new BodyError('wrong_type', '" … "')
-  if (isPlain(value)) return `"${value}"`
-  if (hasLoneSurrogate(value)) throw new BodyError('lone_surrogate', 'Unicode')
-  return quoted(value)
+  return isPlain(value) ? `"${value}"` : quoted(value)
 }
 
 /** Whether a text is short and stands for itself, as most do: to look is faster than to have it quoted. */
@@ -126,8 +150,9 @@ function isPlain(text: string): boolean {
   return true
 }
 
-/** A string as JSON. `JSON.stringify` escapes what JSON demands, and halves of surrogate pairs. */
+/** A string as JSON. Half of a surrogate pair is no text, which peers refuse. */
 function quoted(text: string): string {
+  if (hasLoneSurrogate(text)) throw new BodyError('lone_surrogate', 'Unicode')
   return JSON.stringify(text)
 }
 
@@ -172,7 +197,7 @@ function writeList(type: TypeSchema, schema: FieldSchema, value: Value): string 
 function writeNamed(type: Named, schema: FieldSchema, value: Value): string {
   if (type.is === 'enum') return writeEnum(type, schema, value)
   if (type.is === 'struct') return `{${members([[type, value]])}}`
-  const { case: name, value: held } = asObject(value)
+  const { case: name, value: held } = asObject(value, '{ case, value }')
   const form = (type.forms as Record<string, () => AnyStruct>)[String(name)]
   if (!form) throw new BodyError('no_variant', Object.keys(type.forms).join(' | '))
   return `{${members([[form(), held]])}}`

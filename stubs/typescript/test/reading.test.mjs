@@ -5,6 +5,7 @@ import { test } from 'node:test'
 import { BodyError, readMessage, writeMessage } from 'fc-protocol/runtime'
 import { base64Of, bytesOfBase64 } from '../dist/src/base64.js'
 import { room, utf8Of } from '../dist/src/room.js'
+import { Scanner } from '../dist/src/scanner.js'
 
 const ANY = { depth: 64, values: 1 << 20 }
 const struct = {
@@ -156,4 +157,26 @@ test('a browser has a character for each byte as well', async () => {
   for (let byte = 0; byte < 128; byte++) assert.equal(text.charCodeAt(byte), byte)
   for (let byte = 128; byte < 256; byte++) assert.ok(text.charCodeAt(byte) >= 128, String(byte))
   assert.equal(oneForEach(new Uint8Array()), '')
+})
+
+test('values_count_while_they_are_read_and_end_it_at_the_limit', () => {
+  const choice = { is: 'choice', name: 'Any', forms: { All: () => struct } }
+  const holder = { is: 'struct', name: 'Holder', fields: { one: { key: 'one', type: () => choice, optional: true } } }
+  const many = '"a":[[1,2]],'
+  // Behind the limit comes a character that is no JSON: a reader that goes so far reports it.
+  for (const [type, text] of [
+    [struct, `{${many.repeat(30)}?`],
+    [struct, `{"open":{${many.repeat(30)}?`],
+    [struct, `{"more":[${'[],'.repeat(120)}?`],
+    [holder, `{"one":{${many.repeat(30)}?`],
+    [holder, `{"one":{"a":[${'{},'.repeat(120)}?`],
+  ]) {
+    assert.throws(() => readMessage(type, utf8(text), { depth: 64, values: 100 }), { kind: 'too_many_values' }, text)
+    assert.throws(() => readMessage(type, utf8(text), { depth: 64, values: 1000 }), { kind: 'bad_json' }, text)
+  }
+  const scanner = new Scanner(utf8(`{${many.repeat(30)}?`), { depth: 64, values: 100 })
+  assert.throws(() => scanner.keysAhead(), { kind: 'too_many_values' })
+  assert.ok(scanner.at <= 25 * many.length + 1, String(scanner.at))
+  const deep = new Scanner(utf8(`{"a":${'['.repeat(100)}`), { depth: 64, values: 100 })
+  assert.throws(() => deep.keysAhead(), { kind: 'too_deep' })
 })

@@ -4,8 +4,9 @@ import assert from 'node:assert/strict'
 import { once } from 'node:events'
 import net from 'node:net'
 import { test } from 'node:test'
-import { CallError, Client, commands, ExampleRobot, Reporter, serve } from 'fc-protocol'
+import { CallError, Client, commands, ExampleRobot, Fc, Reporter, serve } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
+import { Framing } from 'fc-protocol/runtime'
 
 const LOCAL = '127.0.0.1'
 
@@ -169,6 +170,23 @@ test('hostile apps harm nobody else', async (context) => {
   assert.ok((await app.getRobotSn({})).data.robotSn.length > 0)
   while (server.connections().length > 1) await new Promise((resolve) => setImmediate(resolve))
   assert.ok(server.counters().badFrames >= 2)
+})
+
+test('a_small_frame_of_many_lists_stops_at_the_limit', async (context) => {
+  const { server, app, ports } = await both(context, new ExampleRobot())
+  const framing = new Framing(Fc.wire.frame, Fc.wire.defaults.limits, nodePlatform.algorithms)
+  const lists = `"a":${'['.repeat(40)}${']'.repeat(40)},`
+  const body = new TextEncoder().encode(`{${lists.repeat(158_000)}"a":1}`)
+  const id = { response: false, kind: framing.kind('command'), code: commands.getRobotSn.code, id: 1 }
+  const frame = framing.encode(id, body, 0)
+  assert.ok(frame.length < 140_000 && body.length > 13_000_000, `${frame.length} ${body.length}`)
+  const socket = net.connect(ports.commandPort, LOCAL)
+  socket.write(frame)
+  const [answer] = await once(socket, 'data')
+  assert.match(answer.toString(), /too_many_values/)
+  assert.equal(server.counters().callsInvalid, 1)
+  assert.ok((await app.getRobotSn({})).data.robotSn.length > 0)
+  socket.destroy()
 })
 
 test('`await using` and `close` leave nothing behind', async () => {

@@ -379,8 +379,8 @@ export function lazyClient(config = {}) {
 }
 
 /** A robot, whose app is the test. */
-export function robot(methods, config = {}) {
-  const platform = new FakePlatform()
+export function robot(methods, config = {}, algorithms = nodeAlgorithms) {
+  const platform = Object.assign(new FakePlatform(), { algorithms })
   const server = robotWithoutPorts(toy, service, platform, methods, { firstId: 500, ...config })
   const join = (room) => {
     const [theirs, ours] = pipe(room)

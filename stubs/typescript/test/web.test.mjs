@@ -101,12 +101,32 @@ class Socket {
   }
 }
 
-test('a client runs over a WebSocket', async (context) => {
+/** Connections over WebSockets that are pipes, as long as a test runs. */
+function useSockets(context) {
   const before = globalThis.WebSocket
   globalThis.WebSocket = Socket
   context.after(() => {
     globalThis.WebSocket = before
   })
+}
+
+test('socket_that_is_not_read_is_closed_beyond_its_limit', async (context) => {
+  useSockets(context)
+  const { signal } = new AbortController()
+  const transport = await webPlatform(() => 'wss://bridge').connect('robot', 1, { keepalive: null, signal })
+  const piece = new ArrayBuffer(1 << 20)
+  for (let count = 0; count < 64; count++) Socket.last.tell('message', { data: piece })
+  assert.equal((await transport.read()).length, 1 << 20)
+  Socket.last.tell('message', { data: piece })
+  assert.ok(!Socket.last.end.isBroken)
+  Socket.last.tell('message', { data: piece })
+  assert.ok(Socket.last.end.isBroken)
+  await assert.rejects(transport.read(), { name: 'TransportError', reason: 'UNREAD' })
+  await assert.rejects(transport.write(new Uint8Array(1)), { name: 'TransportError' })
+})
+
+test('a client runs over a WebSocket', async (context) => {
+  useSockets(context)
   const platform = webPlatform((host, port) => `wss://bridge/${host}/${port}`)
   const connection = new Connection(await dial(toy, platform, { gzip: { fromBytes: 10 } }))
   const { raw, url } = Socket.last

@@ -50,7 +50,7 @@ export class Arrivals {
     const { results } = core.protocol.wire
     if (frame.fault !== null) {
       core.counters.badFrames++
-      core.tellThinly('warn', 'bad frame', { error: frame.fault, code: id.code, id: id.id })
+      core.log.tellThinly('warn', 'bad frame', { error: frame.fault, code: id.code, id: id.id })
       if (!id.response) {
         this.answer(link, id, results.protocol)
         return
@@ -64,7 +64,7 @@ export class Arrivals {
       } catch (problem) {
         if (!(problem instanceof BodyError)) throw problem
         core.counters.reportsInvalid++
-        core.tellThinly('warn', 'report refused', { code: id.code, id: id.id, error: problem.kind })
+        core.log.tellThinly('warn', 'report refused', { code: id.code, id: id.id, error: problem.kind })
         this.answer(link, id, because(results.invalid, problem.message))
         return
       }
@@ -78,7 +78,7 @@ export class Arrivals {
         return
       case 'late':
         core.counters.lateAnswers++
-        core.tell('debug', 'late answer', { code: id.code, id: id.id })
+        core.log.tell('debug', 'late answer', { code: id.code, id: id.id })
         return
       case 'report':
         if (report) this.take(report, id, digest, link)
@@ -118,7 +118,7 @@ export class Arrivals {
     const missed = hasRoom ? core.queues.push(report) : null
     if (missed === null) {
       core.counters.reportsRefused++
-      core.tellThinly('warn', 'report not taken: there is no receiver, or no room', { code: id.code, id: id.id })
+      core.log.tellThinly('warn', 'report not taken: there is no receiver, or no room', { code: id.code, id: id.id })
       return
     }
     core.counters.reports++
@@ -135,7 +135,7 @@ export class Arrivals {
     beat.last = now
     if (since <= beat.atMost) return
     this.core.counters.reportsLate++
-    this.core.tellThinly('warn', 'report late', { code, id, since })
+    this.core.log.tellThinly('warn', 'report late', { code, id, since })
   }
 
   /** Replies with nothing but a result; not at all where no response can carry it. */

@@ -1,6 +1,8 @@
 // What a client can be told beforehand.
 
 import type { Log } from '../log.ts'
+import { callback, duration, flag, group, host, integer, kind, orNull } from '../settings.ts'
+import type { Check } from '../settings.ts'
 import type { Limits } from '../wire.ts'
 
 /** How to wait between attempts to connect; times in milliseconds. */
@@ -50,7 +52,7 @@ export interface ClientConfig {
   readonly gzip?: Gzip | null
   /** Whether to verify the digests of what is received: yes, unless set. */
   readonly verifyDigest?: boolean
-  /** Is told what happens. */
+  /** Is told what happens. Unless set, errors are written to the console. */
   readonly log?: Log
 }
 
@@ -66,3 +68,45 @@ export interface CallOptions {
   /** Ends the call early: it rejects with the reason of the signal. The robot acts all the same once the request is on its way. */
   readonly signal?: AbortSignal
 }
+
+/** Checks `gzip`. */
+export const gzipCheck: Check = orNull(group<Gzip>({ fromBytes: integer(0) }))
+
+/** Checks limits. */
+export const limitsCheck: Check = group<Limits>({
+  frameBytes: integer(1),
+  inflatedBytes: integer(1),
+  inflateRatio: integer(1),
+  jsonDepth: integer(1),
+  jsonValues: integer(1),
+  inFlight: integer(1),
+  queuedReports: integer(1),
+  connections: integer(1),
+})
+
+/** Checks the settings of a client. */
+export const clientCheck: Check = group<ClientConfig>({
+  host,
+  commandPort: integer(1, 65_535),
+  dataPort: integer(1, 65_535),
+  connectTimeout: duration,
+  callTimeout: duration,
+  reconnect: orNull(group<Backoff>({ first: duration, longest: duration, attempts: orNull(integer(0)) })),
+  keepalive: orNull(duration),
+  stallTimeout: duration,
+  limits: limitsCheck,
+  queuedBytes: integer(1),
+  firstId: integer(0),
+  gzip: gzipCheck,
+  verifyDigest: flag,
+  log: callback,
+})
+
+const isSignal = (value: unknown): boolean => typeof (value as AbortSignal | null)?.addEventListener === 'function'
+
+/** Checks the options of a call. */
+export const callCheck: Check = group<CallOptions>({
+  timeout: duration,
+  repeat: flag,
+  signal: kind('an AbortSignal', isSignal),
+})

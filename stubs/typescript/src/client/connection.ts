@@ -1,18 +1,20 @@
 // An app's connection to a robot: what a generated client stands on.
 
-import { keys, textOf } from '../bodies.ts'
-import type { Keys } from '../bodies.ts'
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
+import { keys, keysOf, textOf } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
 import type { WholeFrame } from '../framing.ts'
 import type { Loss } from '../loss.ts'
 import type { AnyCommand, Command, FollowedCommand, Report, Reported } from '../operation.ts'
 import type { Platform } from '../platform.ts'
-import { readMessage } from '../read.ts'
 import { Refusal } from '../refusal.ts'
 import type { JsonText } from '../schema.ts'
 import type { FrameId } from '../session.ts'
+import { callUser, thrownFields } from '../thrown.ts'
 import type { ProtocolOf } from '../wire.ts'
-import { bytesOf } from '../write.ts'
+import { callCheck } from './config.ts'
 import type { CallOptions, ClientConfig } from './config.ts'
 import { Core } from './core.ts'
 import type { ClientCounters } from './counters.ts'
@@ -129,7 +131,7 @@ export class Connection<Any> {
     const { core } = this
     const response = this.begin(
       command.code,
-      options.repeat ?? command.effect === 'read',
+      command.effect === 'read',
       options,
       () => core.bodies.writeRequest(command.request, request),
       (data) => {
@@ -171,8 +173,8 @@ export class Connection<Any> {
    */
   callRaw(code: number, json: JsonText, options: CallOptions = {}): Promise<RawResponse> {
     const { bodies } = this.core
-    const body = (): Uint8Array => bodies.writeRequest(keys, readMessage<Keys>(keys, bytesOf(json), bodies.allowed))
-    return this.begin(code, options.repeat ?? false, options, body, (data) => {
+    const body = (): Uint8Array => bodies.writeRequest(keys, keysOf(json, bodies.allowed))
+    return this.begin(code, false, options, body, (data) => {
       const read = bodies.readResponse(keys, data)
       return read instanceof Refusal ? { refusal: read, json: '{}' } : { refusal: null, json: textOf(read.message) }
     })
@@ -180,14 +182,17 @@ export class Connection<Any> {
 
   private begin<Response>(
     code: number | null,
-    repeat: boolean,
-    { timeout = this.core.settings.callTimeout, signal }: CallOptions,
+    repeatsByItself: boolean,
+    options: CallOptions,
     body: () => Uint8Array,
     read: (data: Uint8Array) => Response,
   ): Promise<Response> {
     const { core } = this
     return new Promise((resolve, reject) => {
+      callCheck('CallOptions', options)
+      const { timeout = core.settings.callTimeout, repeat = repeatsByItself, signal } = options
       if (code === null) throw new TypeError('the command has no code yet')
+      core.framing.checkCode(code)
       signal?.throwIfAborted()
       let frame: FrameId | null = null
       const stop = (): void => {
@@ -241,13 +246,10 @@ export class Connection<Any> {
   on<Body>(report: Report<Body>, then: (body: Body) => void): () => void {
     const reports = this.reports(report)
     const pump = async (): Promise<void> => {
-      for await (const body of reports) {
-        try {
-          then(body)
-        } catch {
-          this.core.tell('error', 'a listener threw', { name: report.name })
-        }
+      const failed = (problem: unknown): void => {
+        this.core.log.tellThinly('error', 'a listener threw', { name: report.name, ...thrownFields(problem) })
       }
+      for await (const body of reports) callUser(() => then(body), failed)
     }
     void pump()
     return () => {

@@ -2,19 +2,20 @@
 
 import { Alarm, pause } from '../alarm.ts'
 import { Bodies, firstIdAt } from '../bodies.ts'
+import { withDefaults } from '../defaults.ts'
 import type { ErrorName } from '../errors.ts'
 import { Framing } from '../framing.ts'
 import type { WholeFrame } from '../framing.ts'
-import { Thin, silent } from '../log.ts'
-import type { Log, LogFields, LogLevel } from '../log.ts'
+import { Logger } from '../log.ts'
 import { lossText } from '../loss.ts'
 import type { Loss } from '../loss.ts'
-import type { Platform, Soon, Transport } from '../platform.ts'
+import { soon } from '../platform.ts'
+import type { Platform, Transport } from '../platform.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Arrivals } from './arrivals.ts'
-import { defaultBackoff } from './config.ts'
+import { clientCheck, defaultBackoff } from './config.ts'
 import type { Backoff, ClientConfig } from './config.ts'
 import { newCounters } from './counters.ts'
 import type { ClientCounters } from './counters.ts'
@@ -58,15 +59,16 @@ export interface Settings {
 }
 
 function settle({ wire }: ProtocolOf, config: ClientConfig): Settings {
+  clientCheck('ClientConfig', config)
   const { host = wire.host, connectTimeout: timeout = 3000, keepalive = 30_000, reconnect = {}, gzip = null } = config
   return {
     commands: { host, port: config.commandPort ?? wire.commandPort, timeout, keepalive },
     data: { host, port: config.dataPort ?? wire.dataPort, timeout, keepalive },
     callTimeout: config.callTimeout ?? wire.defaults.callTimeout,
-    backoff: reconnect === null ? null : { ...defaultBackoff, ...reconnect },
+    backoff: reconnect === null ? null : withDefaults(reconnect, defaultBackoff),
     stallTimeout: config.stallTimeout ?? 10_000,
     gzipFrom: gzip === null ? null : (gzip.fromBytes ?? 1024),
-    limits: { ...wire.defaults.limits, ...config.limits },
+    limits: withDefaults(config.limits ?? {}, wire.defaults.limits),
   }
 }
 
@@ -90,8 +92,8 @@ export class Core {
   readonly queues: Queues
   /** What has been seen. */
   readonly counters: ClientCounters = newCounters()
-  private readonly log: Log
-  private readonly lines = new Map<string, Thin>()
+  /** Lines for people. */
+  readonly log: Logger
   private readonly arrivals: Arrivals
   private readonly alarm: Alarm
   private readonly ending = new AbortController()
@@ -103,8 +105,8 @@ export class Core {
     const { wire } = protocol
     this.protocol = protocol
     this.platform = platform
-    this.log = config.log ?? silent
     this.settings = settle(protocol, config)
+    this.log = new Logger(config.log, wire.name, () => this.now)
     const { limits } = this.settings
     this.framing = new Framing(wire.frame, limits, platform.algorithms, config.verifyDigest ?? true)
     this.bodies = new Bodies(wire, platform.clock, limits)
@@ -138,19 +140,6 @@ export class Core {
     return this.ending.signal
   }
 
-  /** Tells the log. */
-  tell(level: LogLevel, message: string, fields: LogFields = {}): void {
-    this.log(level, message, { protocol: this.protocol.wire.name, ...fields })
-  }
-
-  /** Tells the log, but not in a flood. */
-  tellThinly(level: LogLevel, message: string, fields: LogFields): void {
-    let thin = this.lines.get(message)
-    if (!thin) this.lines.set(message, (thin = new Thin()))
-    const held = thin.line(this.now)
-    if (held !== null) this.tell(level, message, held > 0 ? { ...fields, held } : fields)
-  }
-
   /** The first attempt to connect, which may fail; the loop goes on behind it. */
   async connect(): Promise<void> {
     const transport = await attempt(this.platform, this.settings.commands, this.ended)
@@ -180,7 +169,7 @@ export class Core {
     })
     this.up(link)
     this.why = await link.over
-    this.tell('info', 'connection ended', { why: lossText(this.why) })
+    this.log.tell('info', 'connection ended', { why: lossText(this.why) })
     this.link = null
     if (this.life.now.is === 'closed') await link.goodbye()
     else link.cut()
@@ -201,7 +190,7 @@ export class Core {
         if (this.ended.aborted || !(problem instanceof ConnectError)) return null
         this.why = lossOf(problem)
         tries.failed()
-        this.tellThinly('warn', 'not connected', { why: lossText(this.why) })
+        this.log.tellThinly('warn', 'not connected', { why: lossText(this.why) })
       }
     }
   }
@@ -210,7 +199,7 @@ export class Core {
     this.link = link
     // The first connection may have been there, and counted, before.
     if (this.life.now.is !== 'connected') this.life.connected()
-    this.tell('info', 'connected', { connects: this.life.now.connects })
+    this.log.tell('info', 'connected', { connects: this.life.now.connects })
     this.session.reconnected()
     this.arrivals.begin()
     this.session.endIf((frame, flight) => {
@@ -260,7 +249,7 @@ export class Core {
     const policy = { timeout, retries: 0 }
     const frame = this.session.open(this.framing.kind('command'), code, policy, this.now, flight)
     if (!frame) {
-      this.tellThinly('warn', 'too many calls', { code, inFlight: this.settings.limits.inFlight })
+      this.log.tellThinly('warn', 'too many calls', { code, inFlight: this.settings.limits.inFlight })
       throw new CallError('busy')
     }
     if (this.link) this.send(frame, flight)
@@ -285,11 +274,7 @@ export class Core {
         link.outlet.push(bytes)
       }
     }
-    if (made instanceof Promise)
-      made.then(go, () => {
-        if (this.session.cancel(frame)) flight.failed(new CallError('frame', { frame: 'bad_gzip' }))
-      })
-    else go(made)
+    soon(made, go)
   }
 
   /** Nobody waits for a call any more. */
@@ -305,10 +290,4 @@ export class Core {
     this.down(true)
     link?.end({ is: 'closed_here' })
   }
-}
-
-/** Something that comes at once, or later: both are dealt with by the same. */
-export function soon<T>(value: Soon<T>, then: (value: T) => void): void {
-  if (value instanceof Promise) void value.then(then)
-  else then(value)
 }

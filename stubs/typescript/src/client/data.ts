@@ -1,5 +1,8 @@
 // An app's connection to the data port: frames of raw bytes in both directions.
 
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
 import { Change, pause } from '../alarm.ts'
 import { keys } from '../bodies.ts'
 import { BodyError } from '../fault.ts'
@@ -143,6 +146,10 @@ export class DataConnection {
    * `lost` if this frame, or one before, may not have arrived.
    */
   async send(code: number, id: number, data: Uint8Array): Promise<void> {
+    const { framing } = this.core
+    framing.checkCode(code)
+    framing.checkId(id)
+    if (!(data instanceof Uint8Array)) throw new DataError('invalid', { body: new BodyError('wrong_type', 'bytes') })
     const { clock } = this.core.platform
     const deadline = clock.now() + this.core.settings.callTimeout
     const before = this.turn
@@ -152,9 +159,9 @@ export class DataConnection {
     })
     try {
       await before
-      const frame = { response: false, kind: this.core.framing.kind('stream'), code, id }
-      const bytes = await this.core.framing.encode(frame, data, this.core.settings.gzipFrom)
-      if (bytes.length > this.core.framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
+      const frame = { response: false, kind: framing.kind('stream'), code, id }
+      const bytes = await framing.encode(frame, data, this.core.settings.gzipFrom)
+      if (bytes.length > framing.frameBytes) throw new DataError('frame', { frame: 'frame_too_long' })
       await this.sendBytes(bytes, deadline)
     } finally {
       done()
@@ -233,7 +240,7 @@ export class DataConnection {
         if (this.isClosed || !(problem instanceof ConnectError)) return
         tries.failed()
         this.life.lost(lossOf(problem))
-        this.core.tellThinly('warn', 'data port not connected', { why: problem.message })
+        this.core.log.tellThinly('warn', 'data port not connected', { why: problem.message })
       }
     }
     const { now } = this.life
@@ -261,7 +268,7 @@ export class DataConnection {
     this.link = link
     this.sent = false
     this.life.connected()
-    this.core.tell('info', 'data port connected', { connects: this.life.now.connects })
+    this.core.log.tell('info', 'data port connected', { connects: this.life.now.connects })
     const commands = this.core.life
     const part = async (): Promise<void> => {
       while (this.link === link && commands.now.is !== 'closed' && commands.now.connects === number)
@@ -274,7 +281,7 @@ export class DataConnection {
     // For who watches the command connection for this one.
     commands.changed.tell()
     this.wasHeard = link.heard
-    this.core.tell('info', 'data connection ended', { why: lossText(why) })
+    this.core.log.tell('info', 'data connection ended', { why: lossText(why) })
     if (this.isClosed) await link.goodbye()
     else link.cut()
     return why
@@ -327,9 +334,9 @@ export class DataConnection {
   }
 }
 
-/** The bytes of a frame of a stream. Throws a `DataError` if they break a constraint. */
+/** The bytes of a frame of a stream. Raw bytes are returned unchecked. Throws a `DataError` for an invalid message. */
 export function bytesOfContent<Content>(stream: Stream<Content>, content: Content): Uint8Array {
-  if (content instanceof Uint8Array) return content
+  if (stream.content === null) return content as Uint8Array
   try {
     return bytesOf(writeMessage(stream.content as Struct<Content>, content))
   } catch (problem) {

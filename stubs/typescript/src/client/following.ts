@@ -95,7 +95,7 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
 
   private outOfOrder(): void {
     this.core.counters.reportsOutOfOrder++
-    this.core.tellThinly('info', 'report out of order', { name: this.report.name, code: this.report.code })
+    this.core.log.tellThinly('info', 'report out of order', { name: this.report.name, code: this.report.code })
   }
 
   /** Follows no further. */

@@ -1,9 +1,14 @@
 // What a robot can be told beforehand.
 
+import { gzipCheck, limitsCheck } from '../client/config.ts'
 import type { Gzip } from '../client/config.ts'
 import type { Log } from '../log.ts'
+import type { Effect } from '../operation.ts'
+import { callback, duration, flag, group, host, integer, kind, listOf, orNull, rate } from '../settings.ts'
+import type { Check } from '../settings.ts'
 import type { Limits } from '../wire.ts'
 import type { Allowed } from './allow.ts'
+import type { Context } from './types.ts'
 
 /** What a robot can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
 export interface ServerConfig {
@@ -52,6 +57,47 @@ export interface ServerConfig {
   readonly idleTimeout?: number | null
   /** After how much silence TCP asks whether the app is still there, or `null` not to ask: 30 000 unless set. */
   readonly keepalive?: number | null
-  /** Is told what happens. */
+  /** Is told what happens. Unless set, errors are written to the console. */
   readonly log?: Log
+  /**
+   * Is called with each error of a handler: what it threw besides a `Refusal`, also after its timeout, or why its response cannot
+   * be sent. The error may quote the request; the log has only its class and place. An error of this function is logged.
+   */
+  readonly onHandlerError?: (error: unknown, context: Context) => void
 }
+
+const EFFECTS: Readonly<Record<Effect, true>> = { read: true, config: true, motion: true, unknown: true }
+const isEffect = (value: unknown): boolean => typeof value === 'string' && Object.hasOwn(EFFECTS, value)
+
+/** Checks the settings of a server. */
+export const serverCheck: Check = group<ServerConfig>({
+  address: host,
+  commandPort: integer(0, 65_535),
+  dataPort: integer(0, 65_535),
+  handlerTimeout: duration,
+  maxAge: orNull(duration),
+  limits: limitsCheck,
+  queuedBytes: integer(1),
+  connectionsPerAddress: integer(1),
+  allow: listOf(
+    group<Allowed>({
+      network: kind('an address or a network', (value) => typeof value === 'string'),
+      effects: kind(
+        `"all" or a list of ${Object.keys(EFFECTS).join(', ')}`,
+        (value) => value === 'all' || (Array.isArray(value) && value.every(isEffect)),
+      ),
+    }),
+  ),
+  memory: integer(1),
+  abandonedHandlers: integer(0),
+  firstId: integer(0),
+  gzip: gzipCheck,
+  verifyDigest: flag,
+  headerTimeout: duration,
+  stallTimeout: duration,
+  leastRate: rate,
+  idleTimeout: orNull(duration),
+  keepalive: orNull(duration),
+  log: callback,
+  onHandlerError: callback,
+})

@@ -34,7 +34,7 @@ export interface ServerCounters {
   callsForbidden: number
   /** Requests refused because the robot does not implement a command of the spec; among `callsProtocol`. */
   callsNotImplemented: number
-  /** Handlers that threw something else than a `Refusal`; their requests are among `callsProtocol`. */
+  /** Handlers that threw something else than a `Refusal`. Their requests are among `callsProtocol`, or `callsTimedOut` before. */
   handlersPanicked: number
   /** Handlers that ran on though nobody waited for their answer any more. */
   handlersAbandoned: number

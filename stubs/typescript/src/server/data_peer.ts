@@ -157,7 +157,11 @@ export class DataPeer {
     let rest = 0
     if (fault !== null || data === null || id.response || id.kind !== shared.framing.kind('stream')) {
       shared.counters.badFrames++
-      shared.tellThinly('warn', 'bad frame', { connection: this.id, error: fault ?? 'unexpected_frame', code: id.code })
+      shared.log.tellThinly('warn', 'bad frame', {
+        connection: this.id,
+        error: fault ?? 'unexpected_frame',
+        code: id.code,
+      })
       if (!id.response) this.refuse(id)
       rest = this.pace.unusable(shared.now)
     } else {
@@ -208,7 +212,7 @@ export class DataPeer {
     this.isGone = true
     this.inlet.stop(why)
     this.changed.tell()
-    this.shared.tell('info', 'connection ended', { connection: this.id, peer: this.address, port: 'data', why })
+    this.shared.log.tell('info', 'connection ended', { connection: this.id, peer: this.address, port: 'data', why })
     this.shared.leftData(this.id)
     void goodbye(this.transport, this.outlet, this.shared.platform.clock, this.inlet.over).then(this.resolve)
   }

@@ -10,6 +10,7 @@ import type { Transport } from '../platform.ts'
 import { Refusal } from '../refusal.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
+import { isLater } from '../thrown.ts'
 import { Called } from './called.ts'
 import { Inlet } from './inlet.ts'
 import { Pace, inflated } from './pace.ts'
@@ -19,7 +20,7 @@ import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
 import type { ConnectionId } from './types.ts'
 
-/** Beyond this much unsent, in bytes, nothing is read or taken up. */
+/** Beyond this much unsent, or being compressed, in bytes, nothing is read or taken up. */
 const HIGH_WATER = 256 * 1024
 
 /** Who holds no more, in bytes, is not weighed when it gets more. */
@@ -52,6 +53,8 @@ export class Peer {
   private readonly session: Session<Queued>
   private readonly queue: Queued[] = []
   private queuedBytes = 0
+  /** Bytes that the platform is compressing. */
+  private packing = 0
   private readonly effects: 'all' | readonly Effect[]
   private readonly works = new Set<Work>()
   private readonly pace = new Pace()
@@ -127,7 +130,7 @@ export class Peer {
 
   /** Bytes that are held for it. */
   get held(): number {
-    let sum = this.inlet.pending + this.outlet.unsent + this.queuedBytes
+    let sum = this.inlet.pending + this.outlet.unsent + this.packing + this.queuedBytes
     for (const { weight } of this.works) sum += weight
     return sum
   }
@@ -139,11 +142,11 @@ export class Peer {
     const rest = this.deal(frame)
     if (this.works.size >= settings.limits.inFlight) {
       shared.counters.inFlightReached++
-      shared.tellThinly('info', 'not read: too many requests', {
+      shared.log.tellThinly('info', 'not read: too many requests', {
         connection: this.id,
         inFlight: settings.limits.inFlight,
       })
-    } else if (rest === 0 && this.outlet.unsent < HIGH_WATER) return
+    } else if (rest === 0 && this.outlet.unsent < HIGH_WATER && this.packing < HIGH_WATER) return
     return this.pause(rest)
   }
 
@@ -155,7 +158,7 @@ export class Peer {
     const { id } = frame
     if (frame.fault !== null || frame.data === null) {
       shared.counters.badFrames++
-      shared.tellThinly('warn', 'bad frame', { connection: this.id, error: frame.fault, code: id.code })
+      shared.log.tellThinly('warn', 'bad frame', { connection: this.id, error: frame.fault, code: id.code })
       if (id.response) return pace.unusable(now)
       return this.refuse(id, results.protocol)
     }
@@ -179,6 +182,7 @@ export class Peer {
     while (!this.isDraining && !this.isGone) {
       if (this.works.size >= inFlight) await this.changed.wait()
       else if (this.outlet.unsent >= HIGH_WATER) await this.outlet.below(HIGH_WATER)
+      else if (this.packing >= HIGH_WATER) await this.changed.wait()
       else return
     }
   }
@@ -211,7 +215,7 @@ export class Peer {
     if (!route) return this.refuse(id, results.protocol)
     if (this.effects !== 'all' && !this.effects.includes(route.effect)) {
       shared.counters.callsForbidden++
-      shared.tellThinly('warn', 'refused: not allowed from this address', { connection: this.id, code: id.code })
+      shared.log.tellThinly('warn', 'refused: not allowed from this address', { connection: this.id, code: id.code })
       return this.refuse(id, because(results.protocol, 'not allowed from this address'))
     }
     let read: RequestRead
@@ -227,7 +231,7 @@ export class Peer {
     }
     if (route.outlives && shared.abandoned.isFull) {
       shared.counters.abandonedReached++
-      shared.tellThinly('warn', 'too many abandoned handlers', { connection: this.id, code: id.code })
+      shared.log.tellThinly('warn', 'too many abandoned handlers', { connection: this.id, code: id.code })
       return this.refuse(id, because(results.protocol, 'too many handlers are still at work'))
     }
     return this.handle(route, id, read, data.length)
@@ -239,10 +243,10 @@ export class Peer {
     try {
       answer = route.handle(request, context)
     } catch (problem) {
-      return this.fail(id, problem)
+      return this.fail(context, id, problem)
     }
     if (!isLater(answer)) {
-      this.answer(route, id, answer)
+      this.answer(route, context, id, answer)
       return 0
     }
     const work: Work = {
@@ -256,11 +260,12 @@ export class Peer {
     this.deadlines.by(work.deadline)
     void Promise.resolve(answer).then(
       (response: unknown) => {
-        if (this.release(work)) this.answer(route, id, response)
+        if (this.release(work)) this.answer(route, context, id, response)
         this.settled()
       },
       (problem: unknown) => {
-        if (this.release(work)) this.fail(id, problem)
+        if (this.release(work)) this.fail(context, id, problem)
+        else if (!(problem instanceof Refusal) && !isAbort(problem)) this.panicked(context, problem)
         this.settled()
       },
     )
@@ -300,44 +305,56 @@ export class Peer {
     work.context.abandon()
   }
 
-  private fail(id: FrameId, problem: unknown): number {
-    if (problem instanceof Refusal) return this.refuse(id, problem)
-    this.shared.counters.handlersPanicked++
-    // What it says is not logged, for it may quote the body.
-    this.shared.tellThinly('error', 'a handler threw', {
-      connection: this.id,
-      name: this.shared.routes.nameOf(id.code),
-      code: id.code,
-      id: id.id,
-    })
-    this.refuse(id, because(this.shared.protocol.wire.results.protocol, 'the handler threw'))
+  /** A handler has refused, or failed. Returns how long to rest, as `refuse` does. */
+  private fail(context: Called, id: FrameId, problem: unknown): number {
+    const { success, protocol } = this.shared.protocol.wire.results
+    if (problem instanceof Refusal && problem.code !== success.code) {
+      try {
+        return this.refuse(id, problem)
+      } catch (invalid) {
+        if (!(invalid instanceof BodyError)) throw invalid
+        this.invalid(context, id, invalid)
+        return 0
+      }
+    }
+    this.panicked(context, problem)
+    this.refuse(id, because(protocol, 'the handler threw'))
     return 0
   }
 
-  private answer(route: Route, id: FrameId, response: unknown): void {
+  private panicked(context: Called, problem: unknown): void {
+    this.shared.counters.handlersPanicked++
+    this.shared.handlerFailed('a handler threw', problem, context)
+  }
+
+  /** A handler's response breaks the spec: the app is not sent it. */
+  private invalid(context: Called, id: FrameId, problem: BodyError): void {
+    const { kind: error, path, expected } = problem
+    this.shared.handlerFailed("the handler's response breaks the spec", problem, context, { error, path, expected })
+    this.refuse(id, this.shared.protocol.wire.results.protocol)
+  }
+
+  private answer(route: Route, context: Called, id: FrameId, response: unknown): void {
     const { shared } = this
-    const { success, protocol } = shared.protocol.wire.results
     let data: Uint8Array
     try {
-      data = route.write(shared.bodies, success, response)
+      data = route.write(shared.bodies, shared.protocol.wire.results.success, response)
     } catch (problem) {
-      if (!(problem instanceof BodyError)) throw problem
-      shared.tell('error', "the handler's response breaks the spec", {
-        code: id.code,
-        id: id.id,
-        path: problem.path,
-        error: problem.kind,
-      })
-      this.refuse(id, protocol)
+      if (problem instanceof BodyError) this.invalid(context, id, problem)
+      // A property of the response may throw.
+      else this.fail(context, id, problem)
       return
     }
-    if (!shared.framing.fits(data) && shared.settings.gzipFrom === null) {
-      shared.tell('error', 'the response does not fit into a frame', { code: id.code, id: id.id })
-      this.refuse(id, protocol)
-      return
-    }
-    shared.counters.callsSucceeded++
-    this.post({ ...id, response: true }, data)
+    this.post(
+      { ...id, response: true },
+      data,
+      () => shared.counters.callsSucceeded++,
+      () => {
+        const problem = new RangeError('the response does not fit into a frame')
+        shared.handlerFailed(problem.message, problem, context, {})
+        this.refuse(id, shared.protocol.wire.results.protocol)
+      },
+    )
   }
 
   /** Answers with a result alone; not at all where no response can carry one. How long to rest if the request was useless. */
@@ -345,6 +362,8 @@ export class Peer {
     const { shared } = this
     const { results } = shared.protocol.wire
     const { counters } = shared
+    // A handler's own result may be invalid, which throws a `BodyError`.
+    const data = shared.bodies.hasResult ? shared.bodies.writeResponse(result, keys, {}) : null
     let isUsable = false
     switch (result.code) {
       case results.protocol.code:
@@ -365,25 +384,44 @@ export class Peer {
         isUsable = true
     }
     // Its text may quote the body: the code alone is logged.
-    shared.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
-    if (shared.bodies.hasResult) this.post({ ...id, response: true }, shared.bodies.writeResponse(result, keys, {}))
+    shared.log.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
+    if (data) {
+      // The protocol's own result is the shortest response.
+      const tooLong = result === results.protocol ? nothing : (): void => void this.refuse(id, results.protocol)
+      this.post({ ...id, response: true }, data, nothing, tooLong)
+    }
     return isUsable ? 0 : this.pace.unusable(shared.now)
   }
 
-  private post(id: FrameId, data: Uint8Array): void {
+  /** Sends a frame. Calls back when it has been handed over, or when it is too long. */
+  private post(id: FrameId, data: Uint8Array, sent: () => void, tooLong: () => void): void {
     if (this.isGone) return
-    const { framing, settings, counters, protocol } = this.shared
-    const made = framing.encode(id, data, settings.gzipFrom)
+    const { framing, settings, counters } = this.shared
+    if (settings.gzipFrom === null && !framing.fits(data)) {
+      tooLong()
+      return
+    }
     const go = (bytes: Uint8Array): void => {
       if (bytes.length > framing.frameBytes) {
-        if (id.response) this.refuse({ ...id, response: false }, protocol.wire.results.protocol)
+        tooLong()
         return
       }
       counters.bytesOut += bytes.length
+      sent()
       this.outlet.push(bytes)
+      if (this.outlet.unsent > WEIGHTY) this.shared.weigh()
     }
-    if (made instanceof Promise) void made.then(go)
-    else go(made)
+    const made = framing.encode(id, data, settings.gzipFrom)
+    if (!(made instanceof Promise)) {
+      go(made)
+      return
+    }
+    this.packing += data.length
+    void made.then((bytes) => {
+      this.packing -= data.length
+      go(bytes)
+      this.settled()
+    })
   }
 
   /** Queues a report. If the queue is full, the oldest reports in it give way. */
@@ -399,7 +437,10 @@ export class Peer {
     while (!fits()) {
       const oldest = this.queue.shift()
       this.shared.counters.reportsDropped++
-      this.shared.tellThinly('warn', 'report dropped: the app is slow', { connection, code: (oldest ?? report).code })
+      this.shared.log.tellThinly('warn', 'report dropped: the app is slow', {
+        connection,
+        code: (oldest ?? report).code,
+      })
       ;(oldest ?? report).ended({ connection, outcome: 'dropped' })
       if (!oldest) return
       this.queuedBytes -= oldest.data.length
@@ -421,7 +462,7 @@ export class Peer {
       const id = this.session.open(shared.framing.kind('report'), queued.code, policy, shared.now, queued)
       if (!id) return
       shared.counters.reportsSent++
-      this.post(id, queued.data)
+      this.post(id, queued.data, nothing, nothing)
       this.alarm.by(shared.now + policy.timeout)
     }
     if (this.queue.length > 0 && !this.isDraining)
@@ -435,7 +476,7 @@ export class Peer {
     for (const { is, frame, token } of this.session.due(now)) {
       if (is === 'again') {
         counters.reportsRepeated++
-        if (this.outlet.unsent < HIGH_WATER) this.post(frame, token.data)
+        if (this.outlet.unsent < HIGH_WATER) this.post(frame, token.data, nothing, nothing)
       } else {
         counters.reportsTimedOut++
         this.queuedBytes -= token.data.length
@@ -455,7 +496,7 @@ export class Peer {
   }
 
   private leaveIfDone(): void {
-    if (this.isDraining && this.works.size === 0 && !this.isGone) this.end('drained')
+    if (this.isDraining && this.works.size === 0 && this.packing === 0 && !this.isGone) this.end('drained')
   }
 
   /** Nothing more will be answered. What has been is still sent. */
@@ -470,7 +511,7 @@ export class Peer {
     const ended = [...this.session.endIf(() => true).map(({ token }) => token), ...this.queue.splice(0)]
     for (const queued of ended) queued.ended({ connection: this.id, outcome: 'closed' })
     this.changed.tell()
-    this.shared.tell('info', 'connection ended', { connection: this.id, peer: this.address, port: 'command', why })
+    this.shared.log.tell('info', 'connection ended', { connection: this.id, peer: this.address, port: 'command', why })
     this.shared.left(this.id)
     void goodbye(this.transport, this.outlet, this.shared.platform.clock, this.inlet.over).then(this.resolve)
   }
@@ -483,6 +524,7 @@ export class Peer {
   }
 }
 
-/** Whether it comes later, of whatever promise. */
-const isLater = (answer: unknown): boolean =>
-  typeof answer === 'object' && answer !== null && typeof (answer as { then?: unknown }).then === 'function'
+const nothing = (): void => {}
+
+/** A handler whose signal was aborted may end with this error. */
+const isAbort = (problem: unknown): boolean => problem instanceof Error && problem.name === 'AbortError'

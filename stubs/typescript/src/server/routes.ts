@@ -1,13 +1,10 @@
 // Which method of a robot handles a request.
 
-import { keys, textOf } from '../bodies.ts'
+import { keys, keysOf, textOf } from '../bodies.ts'
 import type { Bodies } from '../bodies.ts'
-import { BodyError } from '../fault.ts'
 import type { AnyCommand, Effect, ResultText } from '../operation.ts'
-import { readMessage } from '../read.ts'
 import type { Struct } from '../schema.ts'
 import type { CodeRangeOf, ServiceOf } from '../wire.ts'
-import { bytesOf } from '../write.ts'
 import type { Context } from './types.ts'
 
 /** A request, read. */
@@ -101,9 +98,6 @@ function raw(robot: object, method: Method): Route {
       return { request: { code, json: textOf(message) }, time }
     },
     handle: (request, context) => method.call(robot, request, context),
-    write: (bodies, success, response) => {
-      if (typeof response !== 'string') throw new BodyError('not_an_object', 'JSON text')
-      return bodies.writeResponse(success, keys, readMessage(keys, bytesOf(response), bodies.allowed))
-    },
+    write: (bodies, success, response) => bodies.writeResponse(success, keys, keysOf(response, bodies.allowed)),
   }
 }

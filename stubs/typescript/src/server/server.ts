@@ -1,10 +1,14 @@
 // The robot's side: what a generated robot stands on.
 
+// Projects with an older `lib` have no `Symbol.asyncDispose`.
+/// <reference lib="esnext.disposable" preserve="true" />
+
 import { BodyError } from '../fault.ts'
 import { bytesOfContent } from '../client/data.ts'
 import { DataError } from '../client/error.ts'
 import type { AnyReportOf, Report, Stream } from '../operation.ts'
 import type { Listener, ServerPlatform, Transport } from '../platform.ts'
+import { duration } from '../settings.ts'
 import type { ProtocolOf, ServiceOf } from '../wire.ts'
 import type { ServerConfig } from './config.ts'
 import type { ServerCounters } from './counters.ts'
@@ -133,6 +137,9 @@ export class Server {
    */
   async sendBytes(audience: Audience, code: number, id: number, data: Uint8Array): Promise<number> {
     const { shared } = this
+    shared.framing.checkCode(code)
+    shared.framing.checkId(id)
+    if (!(data instanceof Uint8Array)) throw new PushError('invalid_report', new BodyError('wrong_type', 'bytes'))
     const peers = shared.dataAudience(audience)
     const frame = { response: false, kind: shared.framing.kind('stream'), code, id }
     const bytes = await shared.framing.encode(frame, data, shared.settings.gzipFrom)
@@ -162,9 +169,10 @@ export class Server {
    * on, and cuts off after `grace` milliseconds what is not done by then. Resolves when all is over, never later than that.
    */
   async shutdown(grace: number): Promise<void> {
+    duration('grace', grace)
     const { shared } = this
     for (const listener of this.listeners) listener.close()
-    shared.tell('info', 'shutting down')
+    shared.log.tell('info', 'shutting down')
     let stop = (): void => {}
     const late = new Promise<boolean>((resolve) => {
       const cancel = shared.platform.clock.after(grace, () => {
@@ -174,7 +182,7 @@ export class Server {
     })
     const isCut = await Promise.race([late, shared.stop().then(() => false)])
     stop()
-    if (isCut) shared.tell('warn', 'connections or handlers were cut off at the end of the grace')
+    if (isCut) shared.log.tell('warn', 'connections or handlers were cut off at the end of the grace')
     shared.abort()
     this.over()
   }

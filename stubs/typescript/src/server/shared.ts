@@ -1,14 +1,17 @@
 // What all connections of a robot share: settings, counters, and who is there.
 
 import { Bodies, because, firstIdAt } from '../bodies.ts'
+import { withDefaults } from '../defaults.ts'
 import { Framing } from '../framing.ts'
-import { Thin, silent } from '../log.ts'
-import type { Log, LogFields, LogLevel } from '../log.ts'
+import { Logger } from '../log.ts'
+import type { LogFields } from '../log.ts'
 import type { ServerPlatform, Transport } from '../platform.ts'
 import type { Refusal } from '../refusal.ts'
+import { callUser, thrownFields } from '../thrown.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Change } from '../alarm.ts'
 import { Access } from './allow.ts'
+import { serverCheck } from './config.ts'
 import type { ServerConfig } from './config.ts'
 import { newCounters } from './counters.ts'
 import type { ServerCounters } from './counters.ts'
@@ -18,7 +21,7 @@ import type { Patience } from './inlet.ts'
 import { Peer } from './peer.ts'
 import type { Routes } from './routes.ts'
 import { PushError } from './types.ts'
-import type { Audience, ConnectionId } from './types.ts'
+import type { Audience, ConnectionId, Context } from './types.ts'
 
 /** Settings with nothing left open. */
 export interface ServerSettings {
@@ -74,8 +77,9 @@ export class Abandoned {
 }
 
 function settle({ defaults }: ProtocolOf['wire'], config: ServerConfig): ServerSettings {
+  serverCheck('ServerConfig', config)
   const memory = config.memory ?? 256 << 20
-  const given = { ...defaults.limits, ...config.limits }
+  const given = withDefaults(config.limits ?? {}, defaults.limits)
   // A frame that could not be dealt with even if it were alone is refused: it may take up to four times its text beside itself.
   const limits = { ...given, frameBytes: Math.min(given.frameBytes, Math.floor((memory / 16) * 3)) }
   const stall = config.stallTimeout ?? 30_000
@@ -123,9 +127,9 @@ export class Shared {
   readonly dataPeers: Map<ConnectionId, DataPeer> = new Map()
   /** Where frames of apps go. */
   inbox: AppStreams | null = null
+  /** Lines for people. */
+  readonly log: Logger
   private readonly config: ServerConfig
-  private readonly log: Log
-  private readonly lines = new Map<string, Thin>()
   private readonly ending = new Set<Promise<void>>()
   private next = 1
   private isStopping = false
@@ -135,10 +139,10 @@ export class Shared {
     this.protocol = protocol
     this.platform = platform
     this.routes = routes
-    this.config = config
-    this.log = config.log ?? silent
-    this.access = new Access(config.allow)
     this.settings = settle(protocol.wire, config)
+    this.config = config
+    this.log = new Logger(config.log, protocol.wire.name, () => this.now)
+    this.access = new Access(config.allow)
     this.framing = new Framing(
       protocol.wire.frame,
       this.settings.limits,
@@ -159,23 +163,22 @@ export class Shared {
     return this.config.firstId ?? firstIdAt(this.platform.clock.wallTime())
   }
 
-  /** Tells the log. */
-  tell(level: LogLevel, message: string, fields: LogFields = {}): void {
-    this.log(level, message, { protocol: this.protocol.wire.name, ...fields })
-  }
-
-  /** Tells the log, but not in a flood. */
-  tellThinly(level: LogLevel, message: string, fields: LogFields): void {
-    let thin = this.lines.get(message)
-    if (!thin) this.lines.set(message, (thin = new Thin()))
-    const held = thin.line(this.now)
-    if (held !== null) this.tell(level, message, held > 0 ? { ...fields, held } : fields)
+  /** Notes an error of a handler in the log and for the hook. */
+  handlerFailed(message: string, problem: unknown, context: Context, fields: LogFields = thrownFields(problem)): void {
+    const { connection, id, code } = context
+    const name = this.routes.nameOf(code)
+    this.log.tellThinly('error', message, { connection, name, code, id, ...fields })
+    callUser(
+      () => this.config.onHandlerError?.(problem, context),
+      (failed) =>
+        this.log.tellThinly('error', '`onHandlerError` threw', { connection, code, id, ...thrownFields(failed) }),
+    )
   }
 
   /** The refusal of a command that this robot does not carry out. */
   notImplemented(code: number, connection: ConnectionId): Refusal {
     this.counters.callsNotImplemented++
-    this.tellThinly('warn', 'not implemented', { connection, name: this.routes.nameOf(code), code })
+    this.log.tellThinly('warn', 'not implemented', { connection, name: this.routes.nameOf(code), code })
     return because(this.protocol.wire.results.protocol, 'not implemented')
   }
 
@@ -189,7 +192,7 @@ export class Shared {
     this.peers.set(id, peer)
     for (const data of this.dataPeers.values()) if (data.address === peer.address) data.saw(id)
     this.counters.connections++
-    this.tell('info', 'connected', { connection: id, peer: peer.address, port: 'command' })
+    this.log.tell('info', 'connected', { connection: id, peer: peer.address, port: 'command' })
     this.await(peer.over)
     return id
   }
@@ -211,7 +214,7 @@ export class Shared {
     this.dataPeers.set(id, peer)
     for (const app of this.peers.values()) if (app.address === peer.address) peer.saw(app.id)
     this.counters.dataConnections++
-    this.tell('info', 'connected', { connection: id, peer: peer.address, port: 'data' })
+    this.log.tell('info', 'connected', { connection: id, peer: peer.address, port: 'data' })
     this.await(peer.over)
     return id
   }
@@ -224,7 +227,7 @@ export class Shared {
   ): T | null | undefined {
     if (this.access.effects(transport.remote) === null) {
       this.counters.connectionsForbidden++
-      this.tellThinly('warn', 'refused: the address is not allowed', { peer: transport.remote })
+      this.log.tellThinly('warn', 'refused: the address is not allowed', { peer: transport.remote })
       transport.close()
       return undefined
     }
@@ -241,7 +244,7 @@ export class Shared {
       }
     }
     this.counters.connectionsRefused++
-    this.tellThinly('warn', 'refused: too many connections', { peer: transport.remote })
+    this.log.tellThinly('warn', 'refused: too many connections', { peer: transport.remote })
     transport.close()
     return undefined
   }
@@ -260,7 +263,7 @@ export class Shared {
     const all = [...this.peers.values(), ...this.dataPeers.values()]
     const most = all.reduce((greatest, one) => (one.held > greatest.held ? one : greatest))
     this.counters.connectionsEvicted++
-    this.tellThinly('warn', 'closed: memory is short', { connection: most.id, peer: most.address, held: most.held })
+    this.log.tellThinly('warn', 'closed: memory is short', { connection: most.id, peer: most.address, held: most.held })
     most.cut()
   }
 
