@@ -30,7 +30,7 @@ pub use changelog::{first_section, section, with_section};
 pub use fc_spec::model::Lang;
 pub use finding::{Deployment, Finding, Senders, Spot};
 pub use render::{Format, render, stands_in};
-pub use rule::{Language, Rule, Wire};
+pub use rule::{About, Language, Rule, Wire};
 pub use sunset::gone_early;
 pub use version::{Version, VersionError};
 pub use waive::{Against, is_ours, waive};

@@ -108,7 +108,7 @@ const UNSHOWN: [(&str, &str); 4] = [
 #[test]
 fn each_rule_has_a_mirror_or_says_why_not_and_its_texts() {
     let numbers: Vec<_> = Rule::all().map(|rule| rule.number).collect();
-    assert_eq!(numbers, (0..=67).collect::<Vec<_>>());
+    assert!(numbers.is_sorted_by(|one, other| one < other));
     for rule in Rule::all() {
         let has_reason = rule.no_mirror.iter().all(|text| !text.is_empty());
         assert_ne!(rule.mirror.is_empty(), !has_reason, "{}", rule.name);
