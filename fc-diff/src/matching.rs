@@ -56,13 +56,15 @@ pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Ope
     pairs
 }
 
-/// The old and the new fields of an object, in their order: the same by key, else by name.
+/// Pairs the fields of an object: by key, then by name.
 pub(crate) fn fields<'m>(old: &'m [Field], new: &'m [Field]) -> Vec<Pair<'m, Field>> {
     align(
         old,
         new,
-        |one, other| one.wire == other.wire,
-        |one, other| one.name == other.name,
+        &[
+            &|one, other| one.wire == other.wire,
+            &|one, other| one.name == other.name,
+        ],
     )
 }
 
@@ -71,34 +73,25 @@ pub(crate) fn variants<'m>(old: &'m OneOf, new: &'m OneOf) -> Vec<Pair<'m, Varia
     align(
         &old.variants,
         &new.variants,
-        |one, other| one.name == other.name,
-        |_, _| false,
+        &[&|one, other| one.name == other.name],
     )
 }
 
-/// Pairs by a first way to be the same, and what is left by a second one.
-pub(crate) fn align<'m, T>(
-    old: &'m [T],
-    new: &'m [T],
-    first: impl Fn(&T, &T) -> bool,
-    second: impl Fn(&T, &T) -> bool,
-) -> Vec<Pair<'m, T>> {
+/// Decides by one property if two things are the same.
+pub(crate) type Same<'s, T> = &'s dyn Fn(&T, &T) -> bool;
+
+/// Pairs things in several passes, one for each way to be the same.
+pub(crate) fn align<'m, T>(old: &'m [T], new: &'m [T], ways: &[Same<'_, T>]) -> Vec<Pair<'m, T>> {
     let mut taken = vec![false; new.len()];
     let mut found: Vec<Option<&T>> = vec![None; old.len()];
-    for is_second in [false, true] {
+    for same in ways {
         for (one, found) in old.iter().zip(&mut found) {
             if found.is_some() {
                 continue;
             }
-            let same = |other: &T| {
-                if is_second {
-                    second(one, other)
-                } else {
-                    first(one, other)
-                }
-            };
             let mut others = new.iter().zip(&mut taken);
-            if let Some((other, taken)) = others.find(|(other, taken)| !**taken && same(other)) {
+            if let Some((other, taken)) = others.find(|(other, taken)| !**taken && same(one, other))
+            {
                 *taken = true;
                 *found = Some(other);
             }

@@ -92,12 +92,14 @@ impl<'m> Judge<'m> {
             self.report(finding.source(source));
             self.claim_in(&here.path, &["closed"]);
         }
-        let is_same = |one: &fc_spec::model::EnumValue, other: &fc_spec::model::EnumValue| {
-            one.name == other.name
-        };
-        let pairs = matching::align(&old.values, &new.values, is_same, |one, other| {
-            one.wire == other.wire
-        });
+        let pairs = matching::align(
+            &old.values,
+            &new.values,
+            &[
+                &|one, other| one.name == other.name,
+                &|one, other| one.wire == other.wire,
+            ],
+        );
         let list: Path = here
             .path
             .iter()

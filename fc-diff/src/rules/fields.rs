@@ -120,8 +120,9 @@ rules! {
         mirror: &[34],
         title: ["it has another name in code", "代码中的名称变更"],
         text: [
-            "Messages are the same; programs that name it do not compile.",
-            "报文不变，引用旧名称的代码无法编译。",
+            "The name of a field, enum value, result, header field or the protocol changed. Messages are the same. Programs that \
+             use the old name do not compile. Header fields have names in Rust only.",
+            "字段、枚举取值、结果码、包头字段或协议改名。报文不变，引用旧名称的代码无法编译。包头字段只在 Rust 中有名称。",
         ],
     }
     TYPE_CHANGED {
