@@ -56,13 +56,16 @@ pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Ope
     pairs
 }
 
-/// Pairs the fields of an object: by key, then by name.
+/// Pairs the fields of an object: by key, then by a key in `also`, then by name.
 pub(crate) fn fields<'m>(old: &'m [Field], new: &'m [Field]) -> Vec<Pair<'m, Field>> {
+    let takes = |field: &Field, key: &String| field.details().also.contains(key);
     align(
         old,
         new,
         &[
             &|one, other| one.wire == other.wire,
+            &|one, other| takes(other, &one.wire),
+            &|one, other| takes(one, &other.wire),
             &|one, other| one.name == other.name,
         ],
     )

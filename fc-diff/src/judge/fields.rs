@@ -120,7 +120,7 @@ impl Judge<'_> {
     fn field(&mut self, it: &Fields<'_>) {
         self.key(it);
         let (old, new) = (it.old, it.new);
-        if old.name != new.name && old.wire == new.wire {
+        if old.name != new.name {
             self.report(it.found(&rules::NAME_CHANGED, [&old.name, &new.name], Wire::Fine));
             self.claim_in(&it.path, &["name"]);
         }
@@ -181,7 +181,7 @@ impl Judge<'_> {
             // A required one is missed.
             let silent = old.optional || new.optional;
             self.report(it.found(rule, [&old.wire, &new.wire], wire).silent(silent));
-            for key in ["path", "wire", "also", "name"] {
+            for key in ["path", "wire", "also"] {
                 self.claim_in(&it.path, &[key]);
             }
         }
