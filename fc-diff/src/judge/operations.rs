@@ -113,9 +113,14 @@ impl<'m> Judge<'m> {
             self.claim(&["operations", name, "port_role"]);
         }
         if let (Some(one), Some(other)) = (old.effect(), new.effect())
-            && other > one
+            && other != one
         {
-            let finding = Finding::new(&rules::EFFECT_RAISED, name, [one.name(), other.name()]);
+            let rule = if other > one {
+                &rules::EFFECT_RAISED
+            } else {
+                &rules::EFFECT_LOWERED
+            };
+            let finding = Finding::new(rule, name, [one.name(), other.name()]);
             self.report(at(finding));
             self.claim(&["operations", name, "effect"]);
         }

@@ -135,10 +135,7 @@ rules! {
         number: 23,
         name: "effect-raised",
         behaviour: true,
-        no_mirror: [
-            "a command that does less than its callers guard against breaks none of them",
-            "影响变小，调用方原有的防护依然够用",
-        ],
+        mirror: &[73],
         title: ["a command does more to the robot", "指令对机器人的影响变大"],
         text: [
             "Programs that repeat it at will, or allow it without a permission, were written for a command that did less.",
@@ -154,6 +151,18 @@ rules! {
         text: [
             "In languages whose modules follow the groups its path changes.",
             "在按分组生成模块的语言里，引用路径会变。",
+        ],
+    }
+    EFFECT_LOWERED {
+        number: 73,
+        name: "effect-lowered",
+        behaviour: true,
+        mirror: &[23],
+        title: ["a command does less to the robot", "指令对机器人的影响变小"],
+        text: [
+            "New apps repeat a `read` automatically when they get no response. New robots stop the handler of a command that moves \
+             nothing when no app waits for it. With an old robot, repeating the command may be unsafe.",
+            "没有收到响应时，新 app 会自动重发 `read` 指令。没有 app 等待时，新机器人会中断不引起动作的处理程序。对旧机器人重发，可能不安全。",
         ],
     }
 }
