@@ -222,6 +222,29 @@ fn a_release_takes_out_the_waivers_that_have_served() {
         .expect(0);
 }
 
+#[test]
+fn unit_changed_needs_a_major_release() {
+    let project = released();
+    change(
+        &project,
+        "types.yaml",
+        "size: { type: u16, unit: mm",
+        "size: { type: u16, unit: m",
+    );
+    project.fc(&["diff", "--fail-on", "breaking"]).expect(1);
+    let run = project.fc(&["release", "7.1"]).expect(1);
+    assert!(
+        run.stderr
+            .contains("the first part of the number has to rise"),
+        "{run:#?}"
+    );
+    let changelog = project.fc(&["changelog"]).expect(0).stdout;
+    assert!(
+        changelog.contains("### Breaking\n\n- Spot.size: a number is in another unit (mm → m)"),
+        "{changelog}"
+    );
+}
+
 /// A file of waivers alone stays a file that can be read.
 #[test]
 fn the_last_waiver_leaves_an_empty_list() {

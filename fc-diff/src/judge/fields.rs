@@ -9,7 +9,7 @@ use crate::rule::{Rule, Wire};
 use crate::rules::fields as rules;
 use crate::rules::process::DOCS;
 use crate::rules::results::QUIRK_REMOVED;
-use fc_spec::model::{Field, FloatKind, Type};
+use fc_spec::model::{Field, FloatKind, Model, Type};
 
 /// An old and a new field that are the same.
 pub(super) struct Fields<'f> {
@@ -148,8 +148,20 @@ impl Judge<'_> {
         if details.unit != others.unit {
             let values =
                 [&details.unit, &others.unit].map(|unit| unit.as_deref().unwrap_or_default());
-            self.report(it.found(&rules::UNIT, values, Wire::Fine));
+            // A missing unit is unknown, so the change may be a clarification.
+            let is_known = details.unit.is_some() && others.unit.is_some();
+            let wire = Wire::of(is_known, is_known);
+            self.report(it.found(&rules::UNIT, values, wire));
             self.claim_in(&it.path, &["unit"]);
+        }
+        let subject = format!("{}.{}", it.here.subject, new.wire);
+        let systems = [&details.coordinates, &others.coordinates];
+        if let Some(finding) = self.coordinates(subject, systems) {
+            let [one, other] = &it.here.owners;
+            let finding = finding.was("field", format!("{one}.{}", old.wire));
+            let finding = finding.is("field", format!("{other}.{}", new.wire));
+            self.report(finding.on(it.here.senders, Wire::Both));
+            self.claim_in(&it.path, &["coordinates"]);
         }
         for quirk in details
             .quirks
@@ -216,7 +228,7 @@ impl Judge<'_> {
         );
         let finding = match (types, intervals) {
             ((Type::TimestampMs, Type::TimestampS) | (Type::TimestampS, Type::TimestampMs), _) => {
-                it.found(&rules::TIME_UNIT, values, Wire::Fine)
+                it.found(&rules::TIME_UNIT, values, Wire::Both)
             }
             ((Type::Int(one), Type::Int(other)), (Some(old), Some(new))) => {
                 let (from, to) = (one.range(), other.range());
@@ -243,5 +255,21 @@ impl Judge<'_> {
             ((one, other), _) => it.found(&rules::TYPE_CHANGED, values, accept::types(one, other)),
         };
         self.report(finding);
+    }
+
+    /// Returns a finding if positions are in another coordinate system. A renamed system is the same.
+    pub(super) fn coordinates(
+        &self,
+        subject: String,
+        systems: [&Option<String>; 2],
+    ) -> Option<Finding> {
+        let [Some(old), Some(new)] = systems else {
+            return None;
+        };
+        let has =
+            |model: &Model, name: &String| model.coordinates.iter().any(|it| it.name == *name);
+        let is_renamed = !has(self.new, old) && !has(self.old, new);
+        let is_other = old != new && !is_renamed;
+        is_other.then(|| Finding::new(&rules::COORDINATES, subject, [old, new]))
     }
 }

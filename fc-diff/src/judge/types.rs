@@ -43,6 +43,12 @@ impl<'m> Judge<'m> {
             }
             match (&old.shape, &new.shape) {
                 (TypeShape::Struct(old), TypeShape::Struct(new)) => {
+                    let systems = [&old.coordinates, &new.coordinates];
+                    if let Some(finding) = self.coordinates(here.subject.clone(), systems) {
+                        let finding = finding.was("", &here.owners[0]).is("", &here.owners[1]);
+                        self.report(finding.on(senders, Wire::Both));
+                        self.claim_in(&here.path, &["coordinates"]);
+                    }
                     self.object(&here, &old.fields, &new.fields);
                 }
                 (TypeShape::Enum(old), TypeShape::Enum(new)) => self.enumeration(&here, old, new),

@@ -190,7 +190,7 @@ rules! {
     TIME_UNIT {
         number: 40,
         name: "time-unit-changed",
-        source: EVERY,
+        wire: Wire::Both,
         behaviour: true,
         silent: true,
         mirror: &[40],
@@ -203,13 +203,15 @@ rules! {
     UNIT {
         number: 41,
         name: "unit-changed",
+        wire: Wire::Both,
         behaviour: true,
         silent: true,
         mirror: &[41],
         title: ["a number is in another unit", "单位变更"],
         text: [
-            "The number is read as before and means something else. If only the text was wrong, say so in the changelog.",
-            "数值照常读取，但含义变了。如果只是更正文字，请在变更记录中说明。",
+            "The receiver reads the number in its own unit, and no error occurs. A robot may move 1000 times too far. If the unit \
+             in the spec was wrong, accept the change with a waiver. If only one version has a unit, messages do not count as broken.",
+            "接收方按自己的单位理解数值，不会报错，机器人移动的距离可能差 1000 倍。如果只是更正规范中的单位，请豁免。若只有一个版本写明单位，不计为报文不兼容。",
         ],
     }
     TYPE_RENAMED {
@@ -234,6 +236,20 @@ rules! {
         text: [
             "Old senders may send any JSON, and new receivers refuse what is not of the type.",
             "旧发送方可能发送任意 JSON，新接收方会拒绝不符合类型的值。",
+        ],
+    }
+    COORDINATES {
+        number: 74,
+        name: "coordinates-changed",
+        wire: Wire::Both,
+        behaviour: true,
+        silent: true,
+        mirror: &[74],
+        title: ["a position is given in other coordinates", "坐标系变更"],
+        text: [
+            "The receiver reads the position in its own coordinate system, and no error occurs. If the spec was wrong, accept the \
+             change with a waiver. Renaming a coordinate system is not a change of this kind.",
+            "接收方按自己的坐标系理解位置，不会报错。如果只是更正规范，请豁免。坐标系改名不属于这种变更。",
         ],
     }
 }
