@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fc_diff::release::Releases;
-use fc_diff::{Against, Finding, Version, VersionError, diff, gone_early, waive};
+use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_for, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{lang, said};
@@ -21,12 +21,15 @@ pub struct Shelf {
     pub spec: PathBuf,
     /// The frozen versions of it.
     pub releases: Releases,
+    /// Settings of its packages.
+    packages: Packages,
 }
 
 impl Shelf {
     /// Of the project that is named or found.
     pub fn of(project: &Project) -> Result<Self, Failure> {
-        Self::at(project.root.clone(), project.spec.clone())
+        let packages = packages(project);
+        Self::at(project.root.clone(), project.spec.clone(), packages)
     }
 
     /// Of the project, or of the current directory where none is needed and there is none.
@@ -34,11 +37,11 @@ impl Shelf {
         match Project::find(place) {
             Ok(project) => Self::of(&project),
             Err(error) if is_needed => Err(error),
-            Err(_) => Self::at(".".into(), "spec".into()),
+            Err(_) => Self::at(".".into(), "spec".into(), Packages::default()),
         }
     }
 
-    fn at(root: PathBuf, spec: PathBuf) -> Result<Self, Failure> {
+    fn at(root: PathBuf, spec: PathBuf, packages: Packages) -> Result<Self, Failure> {
         let releases = Releases::beside(&root.join(&spec)).map_err(|error| {
             let directory = root.join(&spec).join(fc_diff::release::DIRECTORY);
             {
@@ -53,6 +56,7 @@ impl Shelf {
             root,
             spec,
             releases,
+            packages,
         })
     }
 
@@ -105,7 +109,7 @@ impl Shelf {
     /// What differs, with the waivers of the new version applied.
     pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
         progress::doing("comparing");
-        let mut findings = diff(&old.model, &new.model);
+        let mut findings = diff_for(&old.model, &new.model, self.packages);
         findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());
         let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
@@ -121,6 +125,13 @@ impl Shelf {
     /// The path of a file of the spec, from the root.
     pub fn file(&self, path: &str) -> PathBuf {
         Path::new(&self.spec).join(path)
+    }
+}
+
+/// Returns the settings of a project's packages.
+pub fn packages(project: &Project) -> Packages {
+    Packages {
+        id_types: project.targets.has_id_types(),
     }
 }
 

@@ -37,10 +37,24 @@ pub use waive::{Against, is_ours, waive};
 
 use fc_spec::model::Model;
 
+/// Settings of a project that change its generated packages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Packages {
+    /// Rust and Python have a type for the IDs of each entity: `newtypes: true` in `fc.yaml`.
+    pub id_types: bool,
+}
+
 /// Everything that differs between two models, judged, in the order of the rules.
 #[must_use]
 pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
-    let mut found = judge::judge(old, new);
+    diff_for(old, new, Packages::default())
+}
+
+/// Compares two models as [`diff`] does, for a project with these settings.
+#[must_use]
+pub fn diff_for(old: &Model, new: &Model, packages: Packages) -> Vec<Finding> {
+    let mut found = judge::judge(old, new, packages);
+    found.extend(judge::unannounced(old, new, &found));
     found.sort_by_key(|finding| (finding.rule.number == 0, finding.rule.number));
     let mut seen = std::collections::HashSet::new();
     found.retain(|finding| seen.insert(finding.fingerprint.clone()));

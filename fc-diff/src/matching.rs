@@ -6,8 +6,8 @@
 use crate::finding::Senders;
 use fc_spec::model::{Direction, WireForm};
 use fc_spec::model::{
-    EnvelopeField, Example, Field, Model, OneOf, Operation, Side, StructType, Type, TypeDef,
-    TypeId, TypeShape, Value, Variant,
+    EnvelopeField, Example, Field, Model, OneOf, Operation, ResultCode, Side, StructType, Type,
+    TypeDef, TypeId, TypeShape, Value, Variant,
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -77,6 +77,17 @@ pub(crate) fn variants<'m>(old: &'m OneOf, new: &'m OneOf) -> Vec<Pair<'m, Varia
         &old.variants,
         &new.variants,
         &[&|one, other| one.name == other.name],
+    )
+}
+
+/// Pairs the results: by name, then by code.
+pub(crate) fn results<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, ResultCode>> {
+    align(
+        &old.results,
+        &new.results,
+        &[&|one, other| one.name == other.name, &|one, other| {
+            one.code == other.code
+        }],
     )
 }
 
@@ -191,6 +202,12 @@ pub(crate) fn types<'m>(
         (&old.envelope.response, &new.envelope.response),
     ] {
         walk.meet_fields(&envelope(one), &envelope(other), Senders::BOTH);
+    }
+    // Rows of tables are never sent.
+    for table in &old.tables {
+        if let Some(other) = new.tables.iter().find(|it| it.id == table.id) {
+            walk.meet(table.row.id(), other.row.id(), Senders::default());
+        }
     }
     walk.run();
     let mut by_name: HashMap<&str, usize> = HashMap::new();

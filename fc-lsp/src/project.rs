@@ -1,7 +1,7 @@
 //! The project whose spec is edited, and who finds it.
 
 use fc_codegen::target::{FILE, Targets};
-use fc_diff::Version;
+use fc_diff::{Packages, Version};
 use fc_diff::release::{DIRECTORY, Releases};
 use fc_spec::diagnostic::Faults;
 use fc_spec::lint::{self, faults, lint, waive};
@@ -108,6 +108,14 @@ impl Project {
     #[must_use]
     pub fn is_unreleased(&self) -> bool {
         matches!(self.release.get(), Some(None))
+    }
+
+    /// Returns the settings of the packages for a comparison.
+    #[must_use]
+    pub fn packages(&self) -> Packages {
+        Packages {
+            id_types: self.targets.has_id_types(),
+        }
     }
 
     fn read_release(&self) -> Option<Release> {

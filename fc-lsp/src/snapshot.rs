@@ -3,7 +3,7 @@
 use crate::project::Project;
 use crate::settings::Settings;
 use fc_codegen::check::check_trees;
-use fc_diff::{Against, Finding, diff, waive};
+use fc_diff::{Against, Finding, diff_for, waive};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
 use fc_spec::model::{Model, Operation, RangeUse, Text, Types};
@@ -102,7 +102,8 @@ impl State {
             else {
                 return Vec::new();
             };
-            let mut findings = diff(&release.model, model);
+            let packages = self.project.packages();
+            let mut findings = diff_for(&release.model, model, packages);
             waive(&mut findings, &model.waivers, &self.today, Against::Release);
             findings
         })

@@ -2,10 +2,10 @@
 
 use super::frame::both;
 use super::types::Here;
-use super::{Judge, Path, accept};
+use super::{Judge, Path, accept, sources};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
-use crate::rule::{Rule, Wire};
+use crate::rule::{Language, Rule, Wire};
 use crate::rules::fields as rules;
 use crate::rules::process::DOCS;
 use crate::rules::results::QUIRK_REMOVED;
@@ -45,11 +45,48 @@ impl Judge<'_> {
             .chain(["fields".to_owned()])
             .collect();
         self.fields_in(here, &list, old, new);
+        self.member_order(here, &list, old, new);
+    }
+
+    /// Reports members of a C++ struct that change their position. Removed fields already break sources in C++.
+    fn member_order(&mut self, here: &Here, list: &Path, old: &[Field], new: &[Field]) {
+        let pairs = matching::fields(old, new);
+        let kept = pairs.iter().filter_map(|pair| match pair {
+            Pair::Both(_, field) => Some(field.wire.as_str()),
+            Pair::Removed(_) | Pair::Added(_) => None,
+        });
+        let kept: Vec<&str> = kept.collect();
+        let is_kept = |wire: &&str| kept.contains(wire);
+        let wires = || new.iter().map(|it| it.wire.as_str());
+        let now: Vec<&str> = wires().filter(is_kept).collect();
+        let is_told = pairs.iter().any(|pair| matches!(pair, Pair::Removed(_)));
+        let first: Vec<&str> = wires().take(kept.len()).collect();
+        if now == kept && (is_told || first == kept) {
+            return;
+        }
+        // Fields at another place, in the old and in the new order.
+        let is_moved = |wire: &&str| {
+            let was = pairs.iter().position(|pair| {
+                let (Pair::Both(_, field) | Pair::Added(field) | Pair::Removed(field)) = pair;
+                field.wire == *wire
+            });
+            was != wires().position(|it| it == *wire)
+        };
+        let moved = |order: &[&str]| {
+            let moved = order.iter().copied().filter(is_moved);
+            moved.collect::<Vec<_>>().join(", ")
+        };
+        let values = [moved(&kept), moved(&now)];
+        let finding = Finding::new(&rules::MEMBER_ORDER, &here.subject, both(&values));
+        let [one, other] = &here.owners;
+        self.report(finding.was("", one).is("", other));
+        self.claim_in(list, &["#order"]);
     }
 
     /// The keys of the envelope, which every message has.
     pub(super) fn envelope(&mut self) {
         let (old, new) = (&self.old.envelope, &self.new.envelope);
+        let first = self.found.len();
         for (key, old, new) in [
             ("request", &old.request, &new.request),
             ("response", &old.response, &new.response),
@@ -68,6 +105,13 @@ impl Judge<'_> {
                 &matching::envelope(old),
                 &matching::envelope(new),
             );
+        }
+        // The runtime makes the envelopes, and C++ has no types for them.
+        for finding in self.found.iter_mut().skip(first) {
+            match finding.rule.number {
+                number if number == rules::REQUIRED_ADDED.number => finding.source.clear(),
+                _ => finding.source.retain(|it| *it != Language::Cpp),
+            }
         }
     }
 
@@ -131,7 +175,8 @@ impl Judge<'_> {
                 (&rules::BECAME_REQUIRED, Wire::OldSender)
             };
             let word = |optional| if optional { "optional" } else { "required" };
-            self.report(it.found(rule, [word(old.optional), word(new.optional)], wire));
+            let finding = it.found(rule, [word(old.optional), word(new.optional)], wire);
+            self.report(finding.source(sources::changed(old, new)));
             self.claim_in(&it.path, &["optional"]);
         }
         if old.ty != new.ty {
@@ -163,6 +208,7 @@ impl Judge<'_> {
             self.report(finding.on(it.here.senders, Wire::Both));
             self.claim_in(&it.path, &["coordinates"]);
         }
+        self.reference(it);
         for quirk in details
             .quirks
             .iter()
@@ -226,6 +272,7 @@ impl Judge<'_> {
             accept::interval(types.0, old.details()),
             accept::interval(types.1, new.details()),
         );
+        let source = sources::changed(old, new);
         let finding = match (types, intervals) {
             ((Type::TimestampMs, Type::TimestampS) | (Type::TimestampS, Type::TimestampMs), _) => {
                 it.found(&rules::TIME_UNIT, values, Wire::Both)
@@ -252,9 +299,14 @@ impl Judge<'_> {
                 it.found(&rules::INTEGER_FLOAT, values, Wire::OldSender)
             }
             ((Type::Json, _), _) => it.found(&rules::JSON_TYPED, values, Wire::OldSender),
+            // A timestamp and an integer.
+            (_, (Some(one), Some(other))) => {
+                let wire = Wire::of(!accept::within(&one, &other), !accept::within(&other, &one));
+                it.found(&rules::TYPE_CHANGED, values, wire)
+            }
             ((one, other), _) => it.found(&rules::TYPE_CHANGED, values, accept::types(one, other)),
         };
-        self.report(finding);
+        self.report(finding.source(source));
     }
 
     /// Returns a finding if positions are in another coordinate system. A renamed system is the same.
@@ -272,4 +324,43 @@ impl Judge<'_> {
         let is_other = old != new && !is_renamed;
         is_other.then(|| Finding::new(&rules::COORDINATES, subject, [old, new]))
     }
+
+    /// Judges the entity to which a field refers.
+    fn reference(&mut self, it: &Fields<'_>) {
+        let (one, other) = (&it.old.details().refers, &it.new.details().refers);
+        if one == other {
+            return;
+        }
+        let source = self.id_type_changed(it.old, it.new);
+        let is_known = |model: &Model, name: &str| model.entity(name).is_some();
+        let is_other = match (one, other) {
+            (Some(one), Some(other)) => is_known(self.new, one) || is_known(self.old, other),
+            _ => false,
+        };
+        // Adding or removing `refers` changes nothing but the documentation.
+        if source.is_empty() && !is_other {
+            return;
+        }
+        let values = [one, other].map(|it| it.as_deref().unwrap_or_default());
+        let finding = it.found(&rules::REFERENCE, values, Wire::Fine);
+        self.report(finding.source(source).behaviour(is_other).silent(is_other));
+        self.claim_in(&it.path, &["refers"]);
+    }
+
+    /// Returns the languages in which the ID type of a field changes.
+    pub(super) fn id_type_changed(&self, old: &Field, new: &Field) -> Vec<Language> {
+        if self.packages.id_types && id_type(old) != id_type(new) {
+            vec![Language::Rust, Language::Python]
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+/// Returns the entity whose ID type a field has. A string with a default stays a string.
+fn id_type(field: &Field) -> Option<&str> {
+    let details = field.details();
+    let is_text = *field.ty.item() == Type::String;
+    let refers = details.refers.as_deref();
+    refers.filter(|_| !(is_text && details.default.is_some()))
 }

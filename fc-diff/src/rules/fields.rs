@@ -2,30 +2,33 @@
 
 use super::{BASE, EVERY, rules};
 use crate::rule::Language::{Cpp, JvmBinary, Kotlin, Python, Rust, Typescript};
-use crate::rule::{Rule, Wire};
+use crate::rule::{Language, Rule, Wire};
+
+/// Languages with several number types.
+const NUMBERS: &[Language] = &[Rust, Kotlin, JvmBinary, Cpp, Typescript];
 
 rules! {
     REQUIRED_ADDED {
         number: 25,
         name: "required-field-added",
         wire: Wire::OldSender,
-        source: EVERY,
+        source: &[Rust, Python, Typescript],
         mirror: &[27],
         title: ["a required field is new", "新增必填字段"],
         text: [
-            "Old senders do not send it, and new receivers refuse the message. Make it optional, with a default.",
-            "旧发送方不发这个字段，新接收方会拒绝。请改为可选，并说明缺省含义。",
+            "Old senders do not send it, and new receivers refuse the message. Programs in Kotlin and C++ compile without the \
+             field. In Kotlin the message cannot be built, and in C++ the field is empty or zero. Make it optional, with a default.",
+            "旧发送方不发这个字段，新接收方会拒绝。Kotlin 和 C++ 的代码不写这个字段也能编译：Kotlin 在构造消息时报错，C++ 中字段为空或零。请改为可选，并说明缺省含义。",
         ],
     }
     OPTIONAL_ADDED {
         number: 26,
         name: "optional-field-added",
-        source: &[Rust, JvmBinary],
         mirror: &[28],
         title: ["an optional field is new", "新增可选字段"],
         text: [
-            "Messages are read as before. Rust literals without `..` and compiled JVM constructors name every field.",
-            "报文不受影响。不带 `..` 的 Rust 结构体字面量，以及已编译的 JVM 构造函数，会受影响。",
+            "Messages and programs work as before. In C++, a new field before other fields moves them; FC0777 reports that.",
+            "报文不受影响，代码照常编译。C++ 中新字段若在其他字段之前，会改变它们的位置，由 FC0777 提示。",
         ],
     }
     REQUIRED_REMOVED {
@@ -68,7 +71,7 @@ rules! {
         number: 30,
         name: "field-became-optional",
         wire: Wire::NewSender,
-        source: &[Rust, Kotlin, Cpp, Typescript],
+        source: EVERY,
         mirror: &[29],
         title: ["a required field is optional now", "必填字段改为可选"],
         text: [
@@ -142,7 +145,7 @@ rules! {
         number: 36,
         name: "integer-widened",
         wire: Wire::NewSender,
-        source: &[Rust, Kotlin, Cpp],
+        source: NUMBERS,
         mirror: &[37],
         title: ["a number type is wider", "数值类型变宽"],
         text: [
@@ -154,7 +157,7 @@ rules! {
         number: 37,
         name: "integer-narrowed",
         wire: Wire::Both,
-        source: &[Rust, Kotlin, Cpp],
+        source: NUMBERS,
         mirror: &[36, 37],
         title: ["a number type is narrower or has another sign", "数值类型变窄或符号变更"],
         text: [
@@ -167,7 +170,7 @@ rules! {
         number: 38,
         name: "integer-became-float",
         wire: Wire::Both,
-        source: &[Rust, Kotlin, Cpp, Python],
+        source: EVERY,
         mirror: &[38],
         title: ["an integer became a float, or the reverse", "整数与浮点数互换"],
         text: [
@@ -250,6 +253,33 @@ rules! {
             "The receiver reads the position in its own coordinate system, and no error occurs. If the spec was wrong, accept the \
              change with a waiver. Renaming a coordinate system is not a change of this kind.",
             "接收方按自己的坐标系理解位置，不会报错。如果只是更正规范，请豁免。坐标系改名不属于这种变更。",
+        ],
+    }
+    REFERENCE {
+        number: 75,
+        name: "reference-changed",
+        source: &[Rust, Python],
+        behaviour: true,
+        silent: true,
+        mirror: &[75],
+        title: ["a field has the ID of something else", "字段改为另一种实体的 ID"],
+        text: [
+            "The receiver takes the ID for that of another entity, and no error occurs. With `newtypes: true` in `fc.yaml`, the \
+             type of the field changes in Rust and Python. If the entity was only renamed, the behaviour is the same.",
+            "接收方会把 ID 当作另一种实体的 ID，不会报错。若 `fc.yaml` 中设置了 `newtypes: true`，Rust 和 Python 中字段的类型会变。只是实体改名时，行为不变。",
+        ],
+    }
+    MEMBER_ORDER {
+        number: 77,
+        name: "member-order-changed",
+        source: &[Cpp],
+        // Taking out the field that moved the others is judged as a removal.
+        mirror: &[77, 27, 28],
+        title: ["fields of a struct have other positions", "结构体字段的位置变更"],
+        text: [
+            "Structs in C++ are aggregates. A program that initialises one by position assigns its values to other fields, often \
+             without an error. Other languages use names, and keys in messages have no order. Add new fields at the end.",
+            "C++ 的结构体是聚合类型，按位置初始化的代码会把值赋给别的字段，往往不会报错。其他语言按名称赋值，报文中的键没有顺序。新字段请加在最后。",
         ],
     }
 }
