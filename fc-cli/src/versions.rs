@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use fc_diff::release::Releases;
-use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_for, gone_early, waive};
+use fc_diff::release::{Number, Releases};
+use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{lang, said};
@@ -107,9 +107,16 @@ impl Shelf {
     }
 
     /// What differs, with the waivers of the new version applied.
-    pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
+    pub fn compare(
+        &self,
+        old: &Version,
+        new: &Version,
+        today: &str,
+    ) -> Result<Vec<Finding>, Failure> {
         progress::doing("comparing");
-        let mut findings = diff_for(&old.model, &new.model, self.packages);
+        let earlier = self.earlier(old, new)?;
+        let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
+        let mut findings = diff_since(earlier, &old.model, &new.model, self.packages);
         findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());
         let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
@@ -119,7 +126,27 @@ impl Shelf {
             Against::Other
         };
         waive(&mut findings, &new.model.waivers, today, against);
-        findings
+        Ok(findings)
+    }
+
+    /// Reads the releases before both versions, the last one first. A version that is not a release comes after all releases.
+    fn earlier(&self, old: &Version, new: &Version) -> Result<Vec<Version>, Failure> {
+        let number = |name: &str| {
+            let mut numbers = self.releases.numbers();
+            numbers.find(|number| number.to_string() == name)
+        };
+        let bounds = [number(&old.name), number(&new.name)];
+        let is_before = |it: &&Number| bounds.into_iter().flatten().all(|bound| *it < bound);
+        let mut names: Vec<String> = self
+            .releases
+            .numbers()
+            .filter(is_before)
+            .map(ToString::to_string)
+            .collect();
+        names.reverse();
+        let read = |name: &String| self.read(name);
+        let versions = names.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+        Ok(versions.into_iter().flatten().collect())
     }
 
     /// The path of a file of the spec, from the root.

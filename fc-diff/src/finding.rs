@@ -49,7 +49,7 @@ impl Senders {
     }
 
     /// Where their messages break.
-    fn broken(self, wire: Wire) -> Vec<Deployment> {
+    pub(crate) fn broken(self, wire: Wire) -> Vec<Deployment> {
         let (old, new) = (wire.breaks_old_sender(), wire.breaks_new_sender());
         let old_app = (self.app && old) || (self.robot && new);
         let new_app = (self.app && new) || (self.robot && old);

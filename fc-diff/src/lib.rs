@@ -15,6 +15,7 @@
 
 mod changelog;
 mod finding;
+mod history;
 mod judge;
 mod matching;
 pub mod release;
@@ -53,7 +54,20 @@ pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
 /// Compares two models as [`diff`] does, for a project with these settings.
 #[must_use]
 pub fn diff_for(old: &Model, new: &Model, packages: Packages) -> Vec<Finding> {
+    diff_since([], old, new, packages)
+}
+
+/// Compares two models as [`diff_for`] does, and the new one with earlier releases, by name and the last one first. A key
+/// that was removed before `old` and has another meaning in `new` is a finding.
+#[must_use]
+pub fn diff_since<'m>(
+    earlier: impl IntoIterator<Item = (&'m str, &'m Model)>,
+    old: &Model,
+    new: &Model,
+    packages: Packages,
+) -> Vec<Finding> {
     let mut found = judge::judge(old, new, packages);
+    found.extend(history::reused(earlier, old, new));
     found.extend(judge::unannounced(old, new, &found));
     found.sort_by_key(|finding| (finding.rule.number == 0, finding.rule.number));
     let mut seen = std::collections::HashSet::new();

@@ -250,6 +250,46 @@ fn optional_field_added_breaks_nothing() {
 }
 
 #[test]
+fn key_back_with_another_type_breaks_an_earlier_release() {
+    let project = Project::new();
+    let heat = "        heat: { type: \"u8?\", example: 3, zh: 热度, en: Heat }\n";
+    add_field(&project, heat);
+    project
+        .fc(&["release", "7", "--today", "2026-09-01"])
+        .expect(0);
+    change(&project, "commands/lamp.yaml", heat, "");
+    project
+        .fc(&["release", "7.1", "--today", "2026-10-01"])
+        .expect(0);
+    project.fc(&["diff", "--fail-on", "breaking"]).expect(0);
+
+    add_field(
+        &project,
+        "        heat: { type: \"string?\", example: a, zh: 热度, en: Heat }\n",
+    );
+    let run = project.fc(&["diff", "--fail-on", "breaking"]).expect(1);
+    let found = "FC0776 set_level.request.data.heat: an earlier release used this for something else (u8 (7) → string)\n";
+    assert!(run.stdout.contains(found), "{run:#?}");
+    assert!(run.stdout.contains("FC0763"), "{run:#?}");
+    // A comparison of earlier releases ignores later ones.
+    project
+        .fc(&["diff", "7", "7.1", "--fail-on", "breaking"])
+        .expect(0);
+    let run = project.fc(&["release", "7.2"]).expect(1);
+    assert!(
+        run.stderr
+            .contains("the first part of the number has to rise"),
+        "{run:#?}"
+    );
+    let changelog = project.fc(&["changelog"]).expect(0).stdout;
+    assert!(
+        changelog.contains("### Breaking\n\n- set_level.request.data.heat"),
+        "{changelog}"
+    );
+    project.fc(&["release", "8", "--dry-run"]).expect(0);
+}
+
+#[test]
 fn unit_changed_needs_a_major_release() {
     let project = released();
     change(

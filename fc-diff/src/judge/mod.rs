@@ -54,6 +54,13 @@ pub(crate) fn judge(old: &Model, new: &Model, packages: Packages) -> Vec<Finding
     judge.found
 }
 
+/// Returns the findings of the rules alone.
+pub(crate) fn judged(old: &Model, new: &Model) -> Vec<Finding> {
+    let mut judge = Judge::of(old, new, Packages::default());
+    judge.rules();
+    judge.found
+}
+
 impl<'m> Judge<'m> {
     fn of(old: &'m Model, new: &'m Model, packages: Packages) -> Self {
         let operations = matching::operations(old, new);

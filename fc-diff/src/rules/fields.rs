@@ -269,6 +269,24 @@ rules! {
             "接收方会把 ID 当作另一种实体的 ID，不会报错。若 `fc.yaml` 中设置了 `newtypes: true`，Rust 和 Python 中字段的类型会变。只是实体改名时，行为不变。",
         ],
     }
+    REUSED {
+        number: 76,
+        name: "retired-key-reused",
+        wire: Wire::Both,
+        silent: true,
+        no_mirror: [
+            "to give it up again is to remove the field (FC0727, FC0728) or the value (FC0753)",
+            "再次放弃，即删除字段（FC0727、FC0728）或枚举取值（FC0753）",
+        ],
+        title: ["an earlier release used this for something else", "在更早的发布版本中含义不同"],
+        text: [
+            "An earlier release had this key, enum value or result code. A later release removed it, and now it returns with \
+             another meaning. Apps and robots of the earlier release still use the old meaning. Choose another name. If no app and no \
+             robot has that release, accept the change with a waiver.",
+            "更早的发布版本中用过这个键名、枚举取值或结果码，之后删除，现在以另一种含义恢复。仍在使用那个版本的 app 和机器人会按旧含义处理。\
+             请换一个名称。如果已没有 app 和机器人使用那个版本，可以豁免。",
+        ],
+    }
     MEMBER_ORDER {
         number: 77,
         name: "member-order-changed",

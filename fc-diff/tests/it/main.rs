@@ -11,6 +11,7 @@
 mod declared;
 mod edits;
 mod execution;
+mod history;
 mod moves;
 mod packages;
 mod release;
