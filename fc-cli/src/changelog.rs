@@ -81,7 +81,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Some(audience) => of_audience(old, new, audience)?,
         None => (old, new),
     };
-    let findings = shelf.compare(&old, &new, &today(None));
+    let findings = shelf.compare(&old, &new, &today(None))?;
     print::result(&section(&title, &findings, &new.model, lang))?;
     Ok(Status::Fine)
 }

@@ -221,7 +221,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Github => fc_diff::Format::Github,
         Shown::Sarif => fc_diff::Format::Sarif,
     };
-    let findings = shelf.compare(&old, &new, &today(options.today.as_deref()));
+    let findings = shelf.compare(&old, &new, &today(options.today.as_deref()))?;
     if matches!(options.format, Shown::Github | Shown::Sarif) {
         new.sources = new.sources.below(&in_repository(&shelf.root));
     }

@@ -250,7 +250,7 @@ fn changes(shelf: &Shelf, project: &Project, model: &Model, today: &str) -> Resu
         return Ok(Since::Faulty);
     };
     new.model = model.clone();
-    Ok(Since::Release(shelf.compare(&old, &new, today)))
+    Ok(Since::Release(shelf.compare(&old, &new, today)?))
 }
 
 /// Says why there is no such release.

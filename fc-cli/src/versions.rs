@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use fc_diff::release::Releases;
-use fc_diff::{Against, Finding, Version, VersionError, diff, gone_early, waive};
+use fc_diff::release::{Number, Releases};
+use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{lang, said};
@@ -21,12 +21,15 @@ pub struct Shelf {
     pub spec: PathBuf,
     /// The frozen versions of it.
     pub releases: Releases,
+    /// Settings of its packages.
+    packages: Packages,
 }
 
 impl Shelf {
     /// Of the project that is named or found.
     pub fn of(project: &Project) -> Result<Self, Failure> {
-        Self::at(project.root.clone(), project.spec.clone())
+        let packages = packages(project);
+        Self::at(project.root.clone(), project.spec.clone(), packages)
     }
 
     /// Of the project, or of the current directory where none is needed and there is none.
@@ -34,11 +37,11 @@ impl Shelf {
         match Project::find(place) {
             Ok(project) => Self::of(&project),
             Err(error) if is_needed => Err(error),
-            Err(_) => Self::at(".".into(), "spec".into()),
+            Err(_) => Self::at(".".into(), "spec".into(), Packages::default()),
         }
     }
 
-    fn at(root: PathBuf, spec: PathBuf) -> Result<Self, Failure> {
+    fn at(root: PathBuf, spec: PathBuf, packages: Packages) -> Result<Self, Failure> {
         let releases = Releases::beside(&root.join(&spec)).map_err(|error| {
             let directory = root.join(&spec).join(fc_diff::release::DIRECTORY);
             {
@@ -53,6 +56,7 @@ impl Shelf {
             root,
             spec,
             releases,
+            packages,
         })
     }
 
@@ -103,9 +107,16 @@ impl Shelf {
     }
 
     /// What differs, with the waivers of the new version applied.
-    pub fn compare(&self, old: &Version, new: &Version, today: &str) -> Vec<Finding> {
+    pub fn compare(
+        &self,
+        old: &Version,
+        new: &Version,
+        today: &str,
+    ) -> Result<Vec<Finding>, Failure> {
         progress::doing("comparing");
-        let mut findings = diff(&old.model, &new.model);
+        let earlier = self.earlier(old, new)?;
+        let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
+        let mut findings = diff_since(earlier, &old.model, &new.model, self.packages);
         findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());
         let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
@@ -115,12 +126,39 @@ impl Shelf {
             Against::Other
         };
         waive(&mut findings, &new.model.waivers, today, against);
-        findings
+        Ok(findings)
+    }
+
+    /// Reads the releases before both versions, the last one first. A version that is not a release comes after all releases.
+    fn earlier(&self, old: &Version, new: &Version) -> Result<Vec<Version>, Failure> {
+        let number = |name: &str| {
+            let mut numbers = self.releases.numbers();
+            numbers.find(|number| number.to_string() == name)
+        };
+        let bounds = [number(&old.name), number(&new.name)];
+        let is_before = |it: &&Number| bounds.into_iter().flatten().all(|bound| *it < bound);
+        let mut names: Vec<String> = self
+            .releases
+            .numbers()
+            .filter(is_before)
+            .map(ToString::to_string)
+            .collect();
+        names.reverse();
+        let read = |name: &String| self.read(name);
+        let versions = names.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+        Ok(versions.into_iter().flatten().collect())
     }
 
     /// The path of a file of the spec, from the root.
     pub fn file(&self, path: &str) -> PathBuf {
         Path::new(&self.spec).join(path)
+    }
+}
+
+/// Returns the settings of a project's packages.
+pub fn packages(project: &Project) -> Packages {
+    Packages {
+        id_types: project.targets.has_id_types(),
     }
 }
 

@@ -433,6 +433,12 @@ impl Targets {
         }
     }
 
+    /// Returns `true` if Rust and Python have a type for the IDs of each entity.
+    #[must_use]
+    pub fn has_id_types(&self) -> bool {
+        self.newtypes
+    }
+
     /// The same, with a type of its own for the ids of each entity.
     #[must_use]
     pub fn with_newtypes(self) -> Self {

@@ -2,7 +2,7 @@
 
 use crate::finding::{Deployment, Finding};
 use crate::release::VERSION;
-use crate::rule::pick;
+use crate::rule::{About, pick};
 use fc_spec::model::Lang;
 use fc_spec::model::Model;
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> St
     };
     let added: Vec<&Finding> = take(&Finding::is_new_operation);
     let breaking: Vec<&Finding> = take(&|it| !it.wire.is_empty());
-    let changed: Vec<&Finding> = take(&|it| !it.source.is_empty() || it.behaviour);
+    let changed: Vec<&Finding> = take(&|it| it.rule.about != About::Text);
     let texts = left.len();
 
     let mut out = format!("## {title}\n");

@@ -1,6 +1,6 @@
 //! What was found: a change, the rule that judges it, and for whom it breaks.
 
-use crate::rule::{Language, Rule, Wire};
+use crate::rule::{About, Language, Rule, Wire};
 use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
 use fc_spec::model::{Side, Text, Waiver, fingerprint};
 use serde::{Serialize, Serializer, ser::SerializeStruct as _};
@@ -49,7 +49,7 @@ impl Senders {
     }
 
     /// Where their messages break.
-    fn broken(self, wire: Wire) -> Vec<Deployment> {
+    pub(crate) fn broken(self, wire: Wire) -> Vec<Deployment> {
         let (old, new) = (wire.breaks_old_sender(), wire.breaks_new_sender());
         let old_app = (self.app && old) || (self.robot && new);
         let new_app = (self.app && new) || (self.robot && old);
@@ -81,7 +81,7 @@ pub struct Finding {
     /// Where versions that meet do not understand each other.
     pub wire: Vec<Deployment>,
     /// In which languages programs stop compiling.
-    pub source: &'static [Language],
+    pub source: Vec<Language>,
     /// Whether programs behave differently although messages are read.
     pub behaviour: bool,
     /// Whether nothing fails although a value is wrong.
@@ -112,7 +112,7 @@ impl Finding {
         Self {
             rule,
             wire: Vec::new(),
-            source: rule.source,
+            source: rule.source.to_vec(),
             behaviour: rule.behaviour,
             silent: rule.silent,
             message: Text {
@@ -150,7 +150,7 @@ impl Finding {
     /// Whether it is about a waiver and not about a change: such a one fails whatever is asked for.
     #[must_use]
     pub fn is_fault(&self) -> bool {
-        self.rule.number > crate::rules::LAST_OF_CHANGES
+        self.rule.about == About::Waiver
     }
 
     /// Which messages of whom break.
@@ -160,8 +160,8 @@ impl Finding {
     }
 
     /// In which languages, where these are not all that the rule names.
-    pub(crate) fn source(mut self, source: &'static [Language]) -> Self {
-        self.source = source;
+    pub(crate) fn source(mut self, source: impl Into<Vec<Language>>) -> Self {
+        self.source = source.into();
         self
     }
 

@@ -6,8 +6,8 @@
 use crate::finding::Senders;
 use fc_spec::model::{Direction, WireForm};
 use fc_spec::model::{
-    EnvelopeField, Example, Field, Model, OneOf, Operation, Side, StructType, Type, TypeDef,
-    TypeId, TypeShape, Value, Variant,
+    EnvelopeField, Example, Field, Model, OneOf, Operation, ResultCode, Side, StructType, Type,
+    TypeDef, TypeId, TypeShape, Value, Variant,
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -56,13 +56,18 @@ pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Ope
     pairs
 }
 
-/// The old and the new fields of an object, in their order: the same by key, else by name.
+/// Pairs the fields of an object: by key, then by a key in `also`, then by name.
 pub(crate) fn fields<'m>(old: &'m [Field], new: &'m [Field]) -> Vec<Pair<'m, Field>> {
+    let takes = |field: &Field, key: &String| field.details().also.contains(key);
     align(
         old,
         new,
-        |one, other| one.wire == other.wire,
-        |one, other| one.name == other.name,
+        &[
+            &|one, other| one.wire == other.wire,
+            &|one, other| takes(other, &one.wire),
+            &|one, other| takes(one, &other.wire),
+            &|one, other| one.name == other.name,
+        ],
     )
 }
 
@@ -71,34 +76,36 @@ pub(crate) fn variants<'m>(old: &'m OneOf, new: &'m OneOf) -> Vec<Pair<'m, Varia
     align(
         &old.variants,
         &new.variants,
-        |one, other| one.name == other.name,
-        |_, _| false,
+        &[&|one, other| one.name == other.name],
     )
 }
 
-/// Pairs by a first way to be the same, and what is left by a second one.
-pub(crate) fn align<'m, T>(
-    old: &'m [T],
-    new: &'m [T],
-    first: impl Fn(&T, &T) -> bool,
-    second: impl Fn(&T, &T) -> bool,
-) -> Vec<Pair<'m, T>> {
+/// Pairs the results: by name, then by code.
+pub(crate) fn results<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, ResultCode>> {
+    align(
+        &old.results,
+        &new.results,
+        &[&|one, other| one.name == other.name, &|one, other| {
+            one.code == other.code
+        }],
+    )
+}
+
+/// Decides by one property if two things are the same.
+pub(crate) type Same<'s, T> = &'s dyn Fn(&T, &T) -> bool;
+
+/// Pairs things in several passes, one for each way to be the same.
+pub(crate) fn align<'m, T>(old: &'m [T], new: &'m [T], ways: &[Same<'_, T>]) -> Vec<Pair<'m, T>> {
     let mut taken = vec![false; new.len()];
     let mut found: Vec<Option<&T>> = vec![None; old.len()];
-    for is_second in [false, true] {
+    for same in ways {
         for (one, found) in old.iter().zip(&mut found) {
             if found.is_some() {
                 continue;
             }
-            let same = |other: &T| {
-                if is_second {
-                    second(one, other)
-                } else {
-                    first(one, other)
-                }
-            };
             let mut others = new.iter().zip(&mut taken);
-            if let Some((other, taken)) = others.find(|(other, taken)| !**taken && same(other)) {
+            if let Some((other, taken)) = others.find(|(other, taken)| !**taken && same(one, other))
+            {
                 *taken = true;
                 *found = Some(other);
             }
@@ -195,6 +202,12 @@ pub(crate) fn types<'m>(
         (&old.envelope.response, &new.envelope.response),
     ] {
         walk.meet_fields(&envelope(one), &envelope(other), Senders::BOTH);
+    }
+    // Rows of tables are never sent.
+    for table in &old.tables {
+        if let Some(other) = new.tables.iter().find(|it| it.id == table.id) {
+            walk.meet(table.row.id(), other.row.id(), Senders::default());
+        }
     }
     walk.run();
     let mut by_name: HashMap<&str, usize> = HashMap::new();

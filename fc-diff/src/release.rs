@@ -1,6 +1,7 @@
 //! Releases: versions of a spec that are frozen as dumps beside it, and what the next one has to be called.
 
 use crate::finding::Finding;
+use crate::rule::About;
 use fc_spec::model::Text;
 use fc_spec::text;
 use std::cmp::Ordering;
@@ -296,7 +297,7 @@ impl Step {
     fn of(finding: &Finding) -> Self {
         if finding.is_break() {
             Self::Break
-        } else if !finding.wire.is_empty() || !finding.source.is_empty() || finding.behaviour {
+        } else if finding.rule.about != About::Text {
             Self::Change
         } else {
             Self::Text

@@ -7,7 +7,8 @@ use serde::{Serialize, Serializer};
 /// A kind of change, and the most that it can break.
 #[derive(Debug)]
 pub struct Rule {
-    /// Its number: from 1 to 64 changes, from 65 on waivers; 0 is what no rule judges. Its code is `FC07` and this.
+    /// Number. The code is `FC07` and this number. 0 is for differences without a rule, 65 to 67 are for waivers, all others
+    /// for changes. A new rule takes the next number, in any section.
     pub number: u8,
     /// Its name, such as `port-number-changed`.
     pub name: &'static str,
@@ -21,6 +22,8 @@ pub struct Rule {
     pub silent: bool,
     /// Whether a release must not have it, even where no message breaks.
     pub is_error: bool,
+    /// The subject of its findings.
+    pub about: About,
     /// Numbers of the rules of which one finds the opposite change.
     pub mirror: &'static [u8],
     /// Why no rule finds the opposite change, in English and in Chinese; empty where one does.
@@ -29,6 +32,17 @@ pub struct Rule {
     pub title: [&'static str; 2],
     /// What it means and what to do, in English and in Chinese.
     pub text: [&'static str; 2],
+}
+
+/// The subject of a rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// A change that matters to a program or a peer.
+    Change,
+    /// A change of texts, examples and notes, or one without a rule.
+    Text,
+    /// A waiver.
+    Waiver,
 }
 
 /// Which messages a change breaks: those of a sender of the old version at a receiver of the new one, or the reverse.
@@ -110,9 +124,10 @@ pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
 impl Rule {
     /// Every rule, by number; what no rule judges comes first.
     pub fn all() -> impl Iterator<Item = &'static Self> {
-        rules::ALL
-            .iter()
-            .flat_map(|section| section.iter().copied())
+        let sections = rules::ALL.iter();
+        let mut rules: Vec<&Self> = sections.flat_map(|it| it.iter().copied()).collect();
+        rules.sort_by_key(|rule| rule.number);
+        rules.into_iter()
     }
 
     /// Its code, such as `FC0701`.

@@ -1,8 +1,8 @@
 //! The project whose spec is edited, and who finds it.
 
 use fc_codegen::target::{FILE, Targets};
-use fc_diff::Version;
 use fc_diff::release::{DIRECTORY, Releases};
+use fc_diff::{Packages, Version};
 use fc_spec::diagnostic::Faults;
 use fc_spec::lint::{self, faults, lint, waive};
 use fc_spec::load::Places;
@@ -33,7 +33,7 @@ pub struct Project {
     /// What is made of the spec.
     pub targets: Targets,
     lint: Lint,
-    release: OnceLock<Option<Release>>,
+    releases: OnceLock<Vec<Release>>,
 }
 
 /// What the project says of the lint, and where.
@@ -71,7 +71,7 @@ impl Project {
             spec,
             targets,
             lint,
-            release: OnceLock::new(),
+            releases: OnceLock::new(),
         }
     }
 
@@ -101,23 +101,44 @@ impl Project {
     /// The last release, if there is one that can be read. It is read when it is asked for first.
     #[must_use]
     pub fn release(&self) -> Option<&Release> {
-        self.release.get_or_init(|| self.read_release()).as_ref()
+        self.releases().first()
+    }
+
+    /// Returns the readable releases, the last one first. Returns none if the last release is unreadable. The first call
+    /// reads them.
+    #[must_use]
+    pub fn releases(&self) -> &[Release] {
+        self.releases
+            .get_or_init(|| self.read_releases().unwrap_or_default())
     }
 
     /// Whether it is known that there is none.
     #[must_use]
     pub fn is_unreleased(&self) -> bool {
-        matches!(self.release.get(), Some(None))
+        self.releases.get().is_some_and(Vec::is_empty)
     }
 
-    fn read_release(&self) -> Option<Release> {
+    /// Returns the settings of the packages for a comparison.
+    #[must_use]
+    pub fn packages(&self) -> Packages {
+        Packages {
+            id_types: self.targets.has_id_types(),
+        }
+    }
+
+    fn read_releases(&self) -> Option<Vec<Release>> {
         let releases = Releases::beside(&self.root.join(&self.spec)).ok()?;
-        let number = releases.last()?.0.to_string();
-        let version = Version::read(&number, &self.root, &self.spec).ok()?;
-        Some(Release {
-            number,
-            model: version.model,
-        })
+        let mut numbers: Vec<String> = releases.numbers().map(ToString::to_string).collect();
+        let read = |number: String| {
+            let version = Version::read(&number, &self.root, &self.spec).ok()?;
+            Some(Release {
+                number,
+                model: version.model,
+            })
+        };
+        let last = read(numbers.pop()?)?;
+        let earlier = numbers.into_iter().rev().filter_map(read);
+        Some(std::iter::once(last).chain(earlier).collect())
     }
 
     /// Whether a file says something of the project beside its spec: what is made of it, what the lint looks for, what is released.

@@ -3,7 +3,7 @@
 use crate::project::Project;
 use crate::settings::Settings;
 use fc_codegen::check::check_trees;
-use fc_diff::{Against, Finding, diff, waive};
+use fc_diff::{Against, Finding, diff_since, waive};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
 use fc_spec::model::{Model, Operation, RangeUse, Text, Types};
@@ -98,11 +98,14 @@ impl State {
     /// What differs from the last release; nothing where there is none, or while the spec has errors.
     pub fn findings(&self) -> &[Finding] {
         self.findings.get_or_init(|| {
-            let (Some(model), Some(release)) = (self.analysis().model(), self.project.release())
+            let (Some(model), [release, earlier @ ..]) =
+                (self.analysis().model(), self.project.releases())
             else {
                 return Vec::new();
             };
-            let mut findings = diff(&release.model, model);
+            let earlier = earlier.iter().map(|it| (it.number.as_str(), &it.model));
+            let packages = self.project.packages();
+            let mut findings = diff_since(earlier, &release.model, model, packages);
             waive(&mut findings, &model.waivers, &self.today, Against::Release);
             findings
         })

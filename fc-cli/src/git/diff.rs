@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::output::unified;
-use fc_diff::{Against, Format, Version, diff, render, stands_in, waive};
+use fc_diff::{Against, Format, Version, diff_for, render, stands_in, waive};
 use fc_spec::diagnostic::Faults;
 use fc_spec::syntax::{Sources, read_dir};
 
@@ -15,7 +15,7 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
-use crate::versions::today;
+use crate::versions::{packages, today};
 
 /// Commits in whose files a version is looked for.
 const COMMITS: &str = "--max-count=200";
@@ -207,7 +207,7 @@ fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Fai
         let after = of('b', &mut rests, &new_rest, new.text.as_ref());
         let Some(after) = after else { continue };
         let versions = [&before, &after];
-        let mut findings = diff(&before.model, &after.model);
+        let mut findings = diff_for(&before.model, &after.model, packages(&project));
         if old_rest != new_rest {
             // The other files differ as well, which is said of them.
             findings.retain(|finding| {

@@ -222,6 +222,128 @@ fn a_release_takes_out_the_waivers_that_have_served() {
         .expect(0);
 }
 
+/// Adds a field to the request of `set_level`.
+fn add_field(project: &Project, field: &str) {
+    let last = "          deprecated: { since: 2024-06, zh: 不再使用, en: No longer used }\n";
+    change(
+        project,
+        "commands/lamp.yaml",
+        last,
+        &format!("{last}{field}"),
+    );
+}
+
+#[test]
+fn optional_field_added_breaks_nothing() {
+    let project = released();
+    add_field(
+        &project,
+        "        heat: { type: \"u8?\", example: 3, zh: 热度, en: Heat }\n",
+    );
+    project
+        .fc(&["diff", "--fail-on", "wire,source,behaviour"])
+        .expect(0);
+    let changelog = project.fc(&["changelog"]).expect(0).stdout;
+    let changed = "### Changed\n\n- set_level.request.data.heat: an optional field is new (heat)\n";
+    assert!(changelog.contains(changed), "{changelog}");
+    project.fc(&["release", "7.1", "--dry-run"]).expect(0);
+}
+
+#[test]
+fn key_back_with_another_type_breaks_an_earlier_release() {
+    let project = Project::new();
+    let heat = "        heat: { type: \"u8?\", example: 3, zh: 热度, en: Heat }\n";
+    add_field(&project, heat);
+    project
+        .fc(&["release", "7", "--today", "2026-09-01"])
+        .expect(0);
+    change(&project, "commands/lamp.yaml", heat, "");
+    project
+        .fc(&["release", "7.1", "--today", "2026-10-01"])
+        .expect(0);
+    project.fc(&["diff", "--fail-on", "breaking"]).expect(0);
+
+    add_field(
+        &project,
+        "        heat: { type: \"string?\", example: a, zh: 热度, en: Heat }\n",
+    );
+    let run = project.fc(&["diff", "--fail-on", "breaking"]).expect(1);
+    let found = "FC0776 set_level.request.data.heat: an earlier release used this for something else (u8 (7) → string)\n";
+    assert!(run.stdout.contains(found), "{run:#?}");
+    assert!(run.stdout.contains("FC0763"), "{run:#?}");
+    // A comparison of earlier releases ignores later ones.
+    project
+        .fc(&["diff", "7", "7.1", "--fail-on", "breaking"])
+        .expect(0);
+    let run = project.fc(&["release", "7.2"]).expect(1);
+    assert!(
+        run.stderr
+            .contains("the first part of the number has to rise"),
+        "{run:#?}"
+    );
+    let changelog = project.fc(&["changelog"]).expect(0).stdout;
+    assert!(
+        changelog.contains("### Breaking\n\n- set_level.request.data.heat"),
+        "{changelog}"
+    );
+    project.fc(&["release", "8", "--dry-run"]).expect(0);
+}
+
+#[test]
+fn unit_changed_needs_a_major_release() {
+    let project = released();
+    change(
+        &project,
+        "types.yaml",
+        "size: { type: u16, unit: mm",
+        "size: { type: u16, unit: m",
+    );
+    project.fc(&["diff", "--fail-on", "breaking"]).expect(1);
+    let run = project.fc(&["release", "7.1"]).expect(1);
+    assert!(
+        run.stderr
+            .contains("the first part of the number has to rise"),
+        "{run:#?}"
+    );
+    let changelog = project.fc(&["changelog"]).expect(0).stdout;
+    assert!(
+        changelog.contains("### Breaking\n\n- Spot.size: a number is in another unit (mm → m)"),
+        "{changelog}"
+    );
+}
+
+#[test]
+fn refers_changed_breaks_sources_with_newtypes() {
+    let project = Project::new();
+    change(
+        &project,
+        "protocol.yaml",
+        "  person: {",
+        "  shade: { zh: 灯罩, en: Shade }\n  person: {",
+    );
+    let scene = "scene: { type: \"u32?\", refers: scene, example: 7";
+    let shade = "shade: { type: \"u32?\", refers: shade, example: 8, zh: 灯罩, en: Shade }";
+    change(
+        &project,
+        "commands/lamp.yaml",
+        scene,
+        &format!("{shade}\n      {scene}"),
+    );
+    project
+        .fc(&["release", "7", "--today", "2026-09-01"])
+        .expect(0);
+    let shade = scene.replace("refers: scene", "refers: shade");
+    change(&project, "commands/lamp.yaml", scene, &shade);
+    project.fc(&["diff", "--fail-on", "source"]).expect(0);
+    project.write("fc.yaml", "targets:\n  rust: { newtypes: true }\n");
+    let run = project.fc(&["diff", "--fail-on", "source"]).expect(1);
+    assert!(
+        run.stdout.contains("FC0775 get_level.response.scene: "),
+        "{run:#?}"
+    );
+    assert!(run.stdout.contains("sources in Rust, Python"), "{run:#?}");
+}
+
 /// A file of waivers alone stays a file that can be read.
 #[test]
 fn the_last_waiver_leaves_an_empty_list() {

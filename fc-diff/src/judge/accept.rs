@@ -1,19 +1,18 @@
 //! Which values a field takes: whether all that one version may send is taken by the other.
 
 use crate::rule::Wire;
-use fc_spec::model::{Field, FieldDetails, Number, Quirk, Scalar, Type, WireForm};
+use fc_spec::model::{Field, FieldDetails, IntKind, Number, Quirk, Scalar, Type, WireForm};
 use std::cmp::Ordering;
 
 /// The smallest and the largest number; `None` where there is no end.
 pub(super) type Interval = (Option<Number>, Option<Number>);
 
-/// The numbers that a type holds, within the limits of a field; `None` of anything else.
+/// The numbers that a type holds, within the limits of a field; `None` for other types.
 pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
     let (mut least, mut most) = match ty {
-        Type::Int(kind) => {
-            let (least, most) = kind.range();
-            (Some(Number::Int(least)), Some(Number::Int(most)))
-        }
+        Type::Int(kind) => of_integers(*kind),
+        // Timestamps are integers in messages.
+        Type::TimestampMs | Type::TimestampS => of_integers(IntKind::I64),
         Type::Float(_) => (None, None),
         _ => return None,
     };
@@ -28,6 +27,11 @@ pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
         }
     }
     Some((least, most))
+}
+
+fn of_integers(kind: IntKind) -> Interval {
+    let (least, most) = kind.range();
+    (Some(Number::Int(least)), Some(Number::Int(most)))
 }
 
 /// Whether all of one interval lies in another.

@@ -1,7 +1,7 @@
 //! What a field takes within its type.
 
 use super::fields::Fields;
-use super::{Judge, accept, json};
+use super::{Judge, accept, json, sources};
 use crate::rule::Wire;
 use crate::rules::constraints as rules;
 use fc_spec::model::{FieldDetails, Scalar};
@@ -19,13 +19,16 @@ impl Judge<'_> {
                     accept::within(&one, &other) && accept::only_within(&old.only, &new.only);
                 let held =
                     accept::within(&other, &one) && accept::only_within(&new.only, &old.only);
+                let source = sources::changed(it.old, it.new);
                 let values = [range(old), range(new)];
                 let values = super::frame::both(&values);
                 if !holds {
-                    self.report(it.found(&rules::RANGE_TIGHTENED, values, Wire::OldSender));
+                    let finding = it.found(&rules::RANGE_TIGHTENED, values, Wire::OldSender);
+                    self.report(finding.source(source.clone()));
                 }
                 if !held {
-                    self.report(it.found(&rules::RANGE_WIDENED, values, Wire::NewSender));
+                    let finding = it.found(&rules::RANGE_WIDENED, values, Wire::NewSender);
+                    self.report(finding.source(source));
                 }
             }
             for key in ["min", "max", "only"] {
@@ -59,7 +62,14 @@ impl Judge<'_> {
         if old.default != new.default {
             let shown = |it: &Option<Scalar>| it.as_ref().map(json).unwrap_or_default();
             let values = [shown(&old.default), shown(&new.default)];
-            self.report(it.found(&rules::DEFAULT, super::frame::both(&values), Wire::Fine));
+            let source = match &new.default {
+                // The packages lose the default value.
+                None => rules::DEFAULT.source.to_vec(),
+                Some(_) if old.refers == new.refers => self.id_type_changed(it.old, it.new),
+                Some(_) => Vec::new(),
+            };
+            let finding = it.found(&rules::DEFAULT, super::frame::both(&values), Wire::Fine);
+            self.report(finding.source(source));
             self.claim_in(&it.path, &["default"]);
         }
         if it.old.sensitive && !it.new.sensitive {

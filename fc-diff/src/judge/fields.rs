@@ -2,14 +2,14 @@
 
 use super::frame::both;
 use super::types::Here;
-use super::{Judge, Path, accept};
+use super::{Judge, Path, accept, sources};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
-use crate::rule::{Rule, Wire};
+use crate::rule::{Language, Rule, Wire};
 use crate::rules::fields as rules;
 use crate::rules::process::DOCS;
 use crate::rules::results::QUIRK_REMOVED;
-use fc_spec::model::{Field, FloatKind, Type};
+use fc_spec::model::{Field, FloatKind, Model, Type};
 
 /// An old and a new field that are the same.
 pub(super) struct Fields<'f> {
@@ -45,11 +45,48 @@ impl Judge<'_> {
             .chain(["fields".to_owned()])
             .collect();
         self.fields_in(here, &list, old, new);
+        self.member_order(here, &list, old, new);
+    }
+
+    /// Reports members of a C++ struct that change their position. Removed fields already break sources in C++.
+    fn member_order(&mut self, here: &Here, list: &Path, old: &[Field], new: &[Field]) {
+        let pairs = matching::fields(old, new);
+        let kept = pairs.iter().filter_map(|pair| match pair {
+            Pair::Both(_, field) => Some(field.wire.as_str()),
+            Pair::Removed(_) | Pair::Added(_) => None,
+        });
+        let kept: Vec<&str> = kept.collect();
+        let is_kept = |wire: &&str| kept.contains(wire);
+        let wires = || new.iter().map(|it| it.wire.as_str());
+        let now: Vec<&str> = wires().filter(is_kept).collect();
+        let is_told = pairs.iter().any(|pair| matches!(pair, Pair::Removed(_)));
+        let first: Vec<&str> = wires().take(kept.len()).collect();
+        if now == kept && (is_told || first == kept) {
+            return;
+        }
+        // Fields at another place, in the old and in the new order.
+        let is_moved = |wire: &&str| {
+            let was = pairs.iter().position(|pair| {
+                let (Pair::Both(_, field) | Pair::Added(field) | Pair::Removed(field)) = pair;
+                field.wire == *wire
+            });
+            was != wires().position(|it| it == *wire)
+        };
+        let moved = |order: &[&str]| {
+            let moved = order.iter().copied().filter(is_moved);
+            moved.collect::<Vec<_>>().join(", ")
+        };
+        let values = [moved(&kept), moved(&now)];
+        let finding = Finding::new(&rules::MEMBER_ORDER, &here.subject, both(&values));
+        let [one, other] = &here.owners;
+        self.report(finding.was("", one).is("", other));
+        self.claim_in(list, &["#order"]);
     }
 
     /// The keys of the envelope, which every message has.
     pub(super) fn envelope(&mut self) {
         let (old, new) = (&self.old.envelope, &self.new.envelope);
+        let first = self.found.len();
         for (key, old, new) in [
             ("request", &old.request, &new.request),
             ("response", &old.response, &new.response),
@@ -68,6 +105,13 @@ impl Judge<'_> {
                 &matching::envelope(old),
                 &matching::envelope(new),
             );
+        }
+        // The runtime makes the envelopes, and C++ has no types for them.
+        for finding in self.found.iter_mut().skip(first) {
+            match finding.rule.number {
+                number if number == rules::REQUIRED_ADDED.number => finding.source.clear(),
+                _ => finding.source.retain(|it| *it != Language::Cpp),
+            }
         }
     }
 
@@ -120,7 +164,7 @@ impl Judge<'_> {
     fn field(&mut self, it: &Fields<'_>) {
         self.key(it);
         let (old, new) = (it.old, it.new);
-        if old.name != new.name && old.wire == new.wire {
+        if old.name != new.name {
             self.report(it.found(&rules::NAME_CHANGED, [&old.name, &new.name], Wire::Fine));
             self.claim_in(&it.path, &["name"]);
         }
@@ -131,7 +175,8 @@ impl Judge<'_> {
                 (&rules::BECAME_REQUIRED, Wire::OldSender)
             };
             let word = |optional| if optional { "optional" } else { "required" };
-            self.report(it.found(rule, [word(old.optional), word(new.optional)], wire));
+            let finding = it.found(rule, [word(old.optional), word(new.optional)], wire);
+            self.report(finding.source(sources::changed(old, new)));
             self.claim_in(&it.path, &["optional"]);
         }
         if old.ty != new.ty {
@@ -148,9 +193,22 @@ impl Judge<'_> {
         if details.unit != others.unit {
             let values =
                 [&details.unit, &others.unit].map(|unit| unit.as_deref().unwrap_or_default());
-            self.report(it.found(&rules::UNIT, values, Wire::Fine));
+            // A missing unit is unknown, so the change may be a clarification.
+            let is_known = details.unit.is_some() && others.unit.is_some();
+            let wire = Wire::of(is_known, is_known);
+            self.report(it.found(&rules::UNIT, values, wire));
             self.claim_in(&it.path, &["unit"]);
         }
+        let subject = format!("{}.{}", it.here.subject, new.wire);
+        let systems = [&details.coordinates, &others.coordinates];
+        if let Some(finding) = self.coordinates(subject, systems) {
+            let [one, other] = &it.here.owners;
+            let finding = finding.was("field", format!("{one}.{}", old.wire));
+            let finding = finding.is("field", format!("{other}.{}", new.wire));
+            self.report(finding.on(it.here.senders, Wire::Both));
+            self.claim_in(&it.path, &["coordinates"]);
+        }
+        self.reference(it);
         for quirk in details
             .quirks
             .iter()
@@ -181,7 +239,7 @@ impl Judge<'_> {
             // A required one is missed.
             let silent = old.optional || new.optional;
             self.report(it.found(rule, [&old.wire, &new.wire], wire).silent(silent));
-            for key in ["path", "wire", "also", "name"] {
+            for key in ["path", "wire", "also"] {
                 self.claim_in(&it.path, &[key]);
             }
         }
@@ -214,9 +272,10 @@ impl Judge<'_> {
             accept::interval(types.0, old.details()),
             accept::interval(types.1, new.details()),
         );
+        let source = sources::changed(old, new);
         let finding = match (types, intervals) {
             ((Type::TimestampMs, Type::TimestampS) | (Type::TimestampS, Type::TimestampMs), _) => {
-                it.found(&rules::TIME_UNIT, values, Wire::Fine)
+                it.found(&rules::TIME_UNIT, values, Wire::Both)
             }
             ((Type::Int(one), Type::Int(other)), (Some(old), Some(new))) => {
                 let (from, to) = (one.range(), other.range());
@@ -240,8 +299,68 @@ impl Judge<'_> {
                 it.found(&rules::INTEGER_FLOAT, values, Wire::OldSender)
             }
             ((Type::Json, _), _) => it.found(&rules::JSON_TYPED, values, Wire::OldSender),
+            // A timestamp and an integer.
+            (_, (Some(one), Some(other))) => {
+                let wire = Wire::of(!accept::within(&one, &other), !accept::within(&other, &one));
+                it.found(&rules::TYPE_CHANGED, values, wire)
+            }
             ((one, other), _) => it.found(&rules::TYPE_CHANGED, values, accept::types(one, other)),
         };
-        self.report(finding);
+        self.report(finding.source(source));
     }
+
+    /// Returns a finding if positions are in another coordinate system. A renamed system is the same.
+    pub(super) fn coordinates(
+        &self,
+        subject: String,
+        systems: [&Option<String>; 2],
+    ) -> Option<Finding> {
+        let [Some(old), Some(new)] = systems else {
+            return None;
+        };
+        let has =
+            |model: &Model, name: &String| model.coordinates.iter().any(|it| it.name == *name);
+        let is_renamed = !has(self.new, old) && !has(self.old, new);
+        let is_other = old != new && !is_renamed;
+        is_other.then(|| Finding::new(&rules::COORDINATES, subject, [old, new]))
+    }
+
+    /// Judges the entity to which a field refers.
+    fn reference(&mut self, it: &Fields<'_>) {
+        let (one, other) = (&it.old.details().refers, &it.new.details().refers);
+        if one == other {
+            return;
+        }
+        let source = self.id_type_changed(it.old, it.new);
+        let is_known = |model: &Model, name: &str| model.entity(name).is_some();
+        let is_other = match (one, other) {
+            (Some(one), Some(other)) => is_known(self.new, one) || is_known(self.old, other),
+            _ => false,
+        };
+        // Adding or removing `refers` changes nothing but the documentation.
+        if source.is_empty() && !is_other {
+            return;
+        }
+        let values = [one, other].map(|it| it.as_deref().unwrap_or_default());
+        let finding = it.found(&rules::REFERENCE, values, Wire::Fine);
+        self.report(finding.source(source).behaviour(is_other).silent(is_other));
+        self.claim_in(&it.path, &["refers"]);
+    }
+
+    /// Returns the languages in which the ID type of a field changes.
+    pub(super) fn id_type_changed(&self, old: &Field, new: &Field) -> Vec<Language> {
+        if self.packages.id_types && id_type(old) != id_type(new) {
+            vec![Language::Rust, Language::Python]
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+/// Returns the entity whose ID type a field has. A string with a default stays a string.
+fn id_type(field: &Field) -> Option<&str> {
+    let details = field.details();
+    let is_text = *field.ty.item() == Type::String;
+    let refers = details.refers.as_deref();
+    refers.filter(|_| !(is_text && details.default.is_some()))
 }

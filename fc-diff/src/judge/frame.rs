@@ -1,11 +1,13 @@
 //! Frame and transport.
 
-use super::{Judge, by, shown};
+use super::{Judge, shown};
 use crate::finding::{Finding, Senders};
-use crate::rule::Wire;
+use crate::matching::{self, Pair};
+use crate::rule::{Language, Wire};
+use crate::rules::fields::NAME_CHANGED;
 use crate::rules::frame as rules;
+use crate::rules::results::QUIRK_REMOVED;
 use fc_spec::model::{HeaderField, KindRole};
-use std::collections::BTreeMap;
 
 impl Judge<'_> {
     pub(super) fn frame(&mut self) {
@@ -50,49 +52,7 @@ impl Judge<'_> {
                 self.claim(&["protocol", "frame", key]);
             }
         }
-        // A field is what it is used for; one without a use is its name.
-        let key = |field: &HeaderField| {
-            field
-                .role
-                .map_or_else(|| field.name.clone(), |it| it.name().to_owned())
-        };
-        let layout = |fields: &[HeaderField]| -> BTreeMap<String, (String, String)> {
-            let shape = |it: &HeaderField| format!("{}@{}", it.ty, it.offset);
-            fields
-                .iter()
-                .map(|it| (key(it), (it.wire.clone(), shape(it))))
-                .collect()
-        };
-        let (fields, others) = (layout(&old.header), layout(&new.header));
-        let mut keys: Vec<_> = fields.keys().chain(others.keys()).collect();
-        keys.sort();
-        keys.dedup();
-        for key in keys {
-            let (one, other) = (fields.get(key), others.get(key));
-            let values =
-                [one, other].map(|it| it.map(|(_, shape)| shape.as_str()).unwrap_or_default());
-            let [from, to] = values;
-            if from != to {
-                let mut finding =
-                    Finding::new(&rules::HEADER_LAYOUT, format!("frame.header.{key}"), values);
-                if let Some((wire, _)) = one {
-                    finding = finding.was("header field", wire);
-                }
-                if let Some((wire, _)) = other {
-                    finding = finding.is("header field", wire);
-                    self.claim(&["protocol", "frame", "header", wire, "type"]);
-                    self.claim(&["protocol", "frame", "header", wire, "offset"]);
-                    self.claim(&["protocol", "frame", "header", wire, "role"]);
-                }
-                self.claim(&["protocol", "frame", "header", "#order"]);
-                for (wire, gone) in [(one, other.is_none()), (other, one.is_none())] {
-                    if let (Some((wire, _)), true) = (wire, gone) {
-                        self.claim(&["protocol", "frame", "header", wire]);
-                    }
-                }
-                self.report(finding.on(Senders::BOTH, Wire::Both));
-            }
-        }
+        self.layout(&old.header, &new.header);
         let digest = |fields: &[HeaderField]| {
             fields
                 .iter()
@@ -113,21 +73,87 @@ impl Judge<'_> {
             }
             self.report(finding);
         }
-        let others = by(&new.header, |it| it.wire.as_str());
-        for field in &old.header {
-            let Some(other) = others.get(field.wire.as_str()) else {
+    }
+
+    /// Judges the fields of the header, paired by role, then by name, then by position.
+    fn layout(&mut self, old: &[HeaderField], new: &[HeaderField]) {
+        let list = ["protocol", "frame", "header"];
+        let pairs = matching::align(
+            old,
+            new,
+            &[
+                &|one, other| one.role.is_some() && one.role == other.role,
+                &|one, other| (one.role, &one.name) == (other.role, &other.name),
+                &|one, other| (one.role, &one.wire) == (other.role, &other.wire),
+                &|one, other| {
+                    (one.role, one.ty, one.offset) == (other.role, other.ty, other.offset)
+                },
+            ],
+        );
+        for pair in pairs {
+            let (one, other) = match pair {
+                Pair::Both(one, other) => (Some(one), Some(other)),
+                Pair::Removed(one) => (Some(one), None),
+                Pair::Added(other) => (None, Some(other)),
+            };
+            let Some(field) = other.or(one) else {
                 continue;
             };
-            for quirk in field.quirks.iter().filter(|it| !other.quirks.contains(it)) {
-                let subject = format!("frame.header.{}", key(field));
-                let finding = Finding::new(
-                    &crate::rules::results::QUIRK_REMOVED,
-                    subject,
-                    [quirk.name(), ""],
-                );
-                let finding = finding.at("header field", &field.wire);
-                self.report(finding.on(Senders::BOTH, Wire::OldSender));
-                self.claim(&["protocol", "frame", "header", &field.wire, "quirks"]);
+            let called = field.role.map_or(field.name.as_str(), |role| role.name());
+            let subject = format!("frame.header.{called}");
+            let at = |mut finding: Finding| {
+                if let Some(one) = one {
+                    finding = finding.was("header field", &one.wire);
+                }
+                if let Some(other) = other {
+                    finding = finding.is("header field", &other.wire);
+                }
+                finding
+            };
+            let shape = |field: Option<&HeaderField>| {
+                shown(field.map(|it| format!("{}@{}", it.ty, it.offset)))
+            };
+            let values = [shape(one), shape(other)];
+            if values[0] != values[1] {
+                let finding = Finding::new(&rules::HEADER_LAYOUT, &subject, both(&values));
+                // A new field, or another place, changes no field of Rust.
+                let ty = |field: Option<&HeaderField>| field.map(|it| it.ty);
+                let is_other = one.is_some() && ty(one) != ty(other);
+                let source = if is_other {
+                    rules::HEADER_LAYOUT.source
+                } else {
+                    &[]
+                };
+                let finding = finding.source(source);
+                self.report(at(finding).on(Senders::BOTH, Wire::Both));
+                self.claim(&["protocol", "frame", "header", "#order"]);
+                match (one, other) {
+                    (Some(_), Some(other)) => {
+                        for key in ["type", "offset"] {
+                            self.claim(&["protocol", "frame", "header", &other.wire, key]);
+                        }
+                    }
+                    _ => self.claim(&["protocol", "frame", "header", &field.wire]),
+                }
+            }
+            let (Some(one), Some(other)) = (one, other) else {
+                continue;
+            };
+            if one.wire != other.wire {
+                self.renamed(&list, &one.wire, &other.wire);
+            }
+            if one.name != other.name {
+                let finding = Finding::new(&NAME_CHANGED, &subject, [&one.name, &other.name]);
+                self.report(at(finding).source([Language::Rust]));
+                // The code name comes from the wire name.
+                for key in ["name", "wire"] {
+                    self.claim(&["protocol", "frame", "header", &other.wire, key]);
+                }
+            }
+            for quirk in one.quirks.iter().filter(|it| !other.quirks.contains(it)) {
+                let finding = Finding::new(&QUIRK_REMOVED, &subject, [quirk.name(), ""]);
+                self.report(at(finding).on(Senders::BOTH, Wire::OldSender));
+                self.claim(&["protocol", "frame", "header", &other.wire, "quirks"]);
             }
         }
     }

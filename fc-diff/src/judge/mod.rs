@@ -7,8 +7,13 @@ mod frame;
 mod operations;
 mod process;
 mod results;
+mod sources;
+mod states;
 mod types;
 
+pub(crate) use process::unannounced;
+
+use crate::Packages;
 use crate::finding::Finding;
 use crate::matching::{self, Pair, TypePairs};
 use crate::rest;
@@ -31,36 +36,61 @@ pub(crate) struct Account {
 struct Judge<'m> {
     old: &'m Model,
     new: &'m Model,
+    packages: Packages,
+    /// New names of operations by their old names.
+    new_names: HashMap<&'m str, String>,
     operations: Vec<Pair<'m, Operation>>,
     types: TypePairs<'m>,
     found: Vec<Finding>,
     account: Account,
 }
 
-/// All findings, in no order.
-pub(crate) fn judge(old: &Model, new: &Model) -> Vec<Finding> {
-    let operations = matching::operations(old, new);
-    let types = matching::types(old, new, &operations);
-    let mut judge = Judge {
-        old,
-        new,
-        operations,
-        types,
-        found: Vec::new(),
-        account: Account::default(),
-    };
-    judge.frame();
-    judge.operations();
-    judge.types();
-    judge.envelope();
-    judge.results();
+/// Returns the findings of all rules, and the differences without a rule, in no order.
+pub(crate) fn judge(old: &Model, new: &Model, packages: Packages) -> Vec<Finding> {
+    let mut judge = Judge::of(old, new, packages);
+    judge.rules();
     let rest = rest::rest(old, new, &judge.account);
     judge.found.extend(rest);
-    judge.process();
     judge.found
 }
 
-impl Judge<'_> {
+/// Returns the findings of the rules alone.
+pub(crate) fn judged(old: &Model, new: &Model) -> Vec<Finding> {
+    let mut judge = Judge::of(old, new, Packages::default());
+    judge.rules();
+    judge.found
+}
+
+impl<'m> Judge<'m> {
+    fn of(old: &'m Model, new: &'m Model, packages: Packages) -> Self {
+        let operations = matching::operations(old, new);
+        let types = matching::types(old, new, &operations);
+        let names = operations.iter().filter_map(|pair| match pair {
+            Pair::Both(one, other) => Some((one.name.as_str(), other.name.clone())),
+            Pair::Removed(_) | Pair::Added(_) => None,
+        });
+        Self {
+            old,
+            new,
+            packages,
+            new_names: names.collect(),
+            operations,
+            types,
+            found: Vec::new(),
+            account: Account::default(),
+        }
+    }
+
+    fn rules(&mut self) {
+        self.protocol();
+        self.frame();
+        self.operations();
+        self.types();
+        self.envelope();
+        self.results();
+        self.tables();
+    }
+
     fn report(&mut self, finding: Finding) {
         self.found.push(finding);
     }

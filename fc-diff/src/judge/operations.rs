@@ -3,14 +3,16 @@
 use super::frame::both;
 use super::{Judge, by, called};
 use crate::finding::{Finding, Senders};
-use crate::matching::Pair;
-use crate::rule::Wire;
-use crate::rules::fields::TYPE_CHANGED;
+use crate::matching::{self, Pair};
+use crate::rule::{Language, Rule, Wire};
+use crate::rules::fields::{NAME_CHANGED, TYPE_CHANGED};
 use crate::rules::operations as rules;
 use crate::rules::process::DOCS;
-use crate::rules::results::{ACK_TIMING, ERROR_ADDED};
-use fc_spec::model::{Content, Direction, Exchange, Fact, Operation, Side};
-use std::collections::HashMap;
+use crate::rules::results::{ACK_TIMING, ERROR_ADDED, ERROR_REMOVED};
+use fc_spec::model::{
+    CodeRange, Content, Direction, Exchange, Fact, Kind, Model, Operation, RangeUse, Side,
+};
+use std::collections::{BTreeMap, HashMap};
 
 impl<'m> Judge<'m> {
     pub(super) fn operations(&mut self) {
@@ -22,6 +24,17 @@ impl<'m> Judge<'m> {
             }
         }
         self.codes();
+        self.ranges();
+    }
+
+    /// Judges the id of the protocol, from which packages take names.
+    pub(super) fn protocol(&mut self) {
+        let (old, new) = (&self.old.protocol.id, &self.new.protocol.id);
+        if old != new {
+            let finding = Finding::new(&NAME_CHANGED, "protocol.id", [old, new]);
+            self.report(finding.at("protocol", "protocol"));
+            self.claim(&["protocol", "id"]);
+        }
     }
 
     /// What is in one version only.
@@ -40,6 +53,9 @@ impl<'m> Judge<'m> {
             ["", spelling]
         };
         let mut finding = Finding::new(rule, name, values);
+        if !removed {
+            finding = finding.source(asked_by(operation, rule));
+        }
         // Without a code nobody can have sent it.
         if is_asked && operation.code.value.is_some() {
             let senders = Senders::of(operation.sender);
@@ -86,6 +102,8 @@ impl<'m> Judge<'m> {
         if old.kind() != new.kind() || old.sender != new.sender {
             let of = |it: &Operation| format!("{} / {}", it.kind().name(), it.sender.name());
             let finding = Finding::new(&rules::KIND_CHANGED, name, both(&[of(old), of(new)]));
+            let is_stream = old.kind() == Kind::Stream && new.kind() == Kind::Stream;
+            let finding = finding.source(unless(&rules::KIND_CHANGED, is_stream));
             self.report(at(finding).on(Senders::BOTH, Wire::Both));
             for key in [
                 "kind",
@@ -113,9 +131,14 @@ impl<'m> Judge<'m> {
             self.claim(&["operations", name, "port_role"]);
         }
         if let (Some(one), Some(other)) = (old.effect(), new.effect())
-            && other > one
+            && other != one
         {
-            let finding = Finding::new(&rules::EFFECT_RAISED, name, [one.name(), other.name()]);
+            let rule = if other > one {
+                &rules::EFFECT_RAISED
+            } else {
+                &rules::EFFECT_LOWERED
+            };
+            let finding = Finding::new(rule, name, [one.name(), other.name()]);
             self.report(at(finding));
             self.claim(&["operations", name, "effect"]);
         }
@@ -132,16 +155,9 @@ impl<'m> Judge<'m> {
             }
             self.claim(&["operations", name, "ack"]);
         }
-        let known = by(&old.errors, |it| it.code);
-        for error in &new.errors {
-            if !known.contains_key(&error.code) {
-                let code = error.code.to_string();
-                let finding = Finding::new(&ERROR_ADDED, name, ["", &code]);
-                self.report(at(finding));
-                self.claim(&["operations", name, "errors", &code]);
-                self.claim(&["operations", name, "errors", "#order"]);
-            }
-        }
+        self.errors(old, new);
+        self.accepted(old, new);
+        self.sets_off(old, new);
         if let (Some(one), Some(other)) = (old.stream(), new.stream()) {
             let is_json = |content: &Content| content.json().is_some();
             if is_json(&one.content) != is_json(&other.content) {
@@ -153,12 +169,176 @@ impl<'m> Judge<'m> {
                     format!("{name}.{}", Direction::Request.name()),
                     both(&values),
                 );
+                let finding = finding.source(unless(&TYPE_CHANGED, is_json(&other.content)));
                 self.report(at(finding).on(senders, wire));
                 self.claim(&["operations", name, "content"]);
                 self.claim(&["operations", name, Direction::Request.name()]);
             }
         }
         self.facts(old, new);
+    }
+
+    /// Judges the declared errors, paired as their results are.
+    fn errors(&mut self, old: &Operation, new: &Operation) {
+        let results = matching::results(self.old, self.new).into_iter();
+        let results = results.filter_map(|pair| match pair {
+            Pair::Both(one, other) => Some((one.code, other.code)),
+            Pair::Removed(_) | Pair::Added(_) => None,
+        });
+        let results: HashMap<i64, i64> = results.collect();
+        let name = new.name.as_str();
+        let has_type = |it: &Operation| it.kind() == Kind::Command && !it.errors.is_empty();
+        let mut kept = Vec::new();
+        for error in &old.errors {
+            let now = results.get(&error.code);
+            let now = now.and_then(|code| new.error(*code));
+            let code = error.code.to_string();
+            if now.is_none_or(|now| now.code != error.code) {
+                self.claim(&["operations", name, "errors", "#order"]);
+            }
+            if let Some(now) = now {
+                kept.push(now.code);
+                if now.code != error.code {
+                    // A finding about the result reports the code.
+                    let list = ["operations", name, "errors"];
+                    self.renamed(&list, &code, &now.code.to_string());
+                    self.claim(&["operations", name, "errors", &now.code.to_string(), "code"]);
+                }
+            } else {
+                let source = if has_type(old) {
+                    ERROR_REMOVED.source
+                } else {
+                    &[]
+                };
+                let finding = Finding::new(&ERROR_REMOVED, name, [&code, ""]).source(source);
+                let finding = finding.was(old.kind().name(), &old.name);
+                self.report(finding.is(new.kind().name(), name));
+                self.claim(&["operations", name, "errors", &code]);
+            }
+        }
+        for error in new.errors.iter().filter(|it| !kept.contains(&it.code)) {
+            let code = error.code.to_string();
+            let source = if has_type(old) {
+                ERROR_ADDED.source
+            } else {
+                &[]
+            };
+            let finding = Finding::new(&ERROR_ADDED, name, ["", &code]).source(source);
+            let finding = finding.was(old.kind().name(), &old.name);
+            self.report(finding.is(new.kind().name(), name));
+            self.claim(&["operations", name, "errors", &code]);
+            self.claim(&["operations", name, "errors", "#order"]);
+        }
+    }
+
+    /// Judges the reports that a command sets off.
+    fn sets_off(&mut self, old: &Operation, new: &Operation) {
+        let name = |report: &str| -> String {
+            let new_name = self.new_names.get(report).map(String::as_str);
+            new_name.unwrap_or(report).to_owned()
+        };
+        let before: Vec<String> = old.sets_off().iter().map(|it| name(&it.report)).collect();
+        let after: Vec<String> = new.sets_off().iter().map(|it| it.report.clone()).collect();
+        let has_code = |model: &Model, report: &str| {
+            let report = model.operation(report);
+            report.is_some_and(|it| it.code.value.is_some())
+        };
+        // Programs can follow reports with a code.
+        let followed = old
+            .sets_off()
+            .iter()
+            .filter(|it| has_code(self.old, &it.report));
+        let followed: Vec<String> = match old.code.value {
+            Some(_) => followed.map(|it| name(&it.report)).collect(),
+            None => Vec::new(),
+        };
+        let follow: Vec<&String> = match new.code.value {
+            Some(_) => after.iter().filter(|it| has_code(self.new, it)).collect(),
+            None => Vec::new(),
+        };
+        let is_first_other = followed.first() != follow.first().copied();
+        let mut findings = Vec::new();
+        for report in before.iter().filter(|it| !after.contains(it)) {
+            let source = rules::SET_OFF_REMOVED
+                .source
+                .iter()
+                .copied()
+                .filter(|language| {
+                    // In TypeScript, the type of a call names the first report only.
+                    followed.contains(report)
+                        && (*language != Language::Typescript || is_first_other)
+                });
+            let source: Vec<Language> = source.collect();
+            let finding = Finding::new(&rules::SET_OFF_REMOVED, &new.name, [report, ""]);
+            findings.push(finding.source(source));
+        }
+        for report in after.iter().filter(|it| !before.contains(it)) {
+            let source: &[Language] = match followed.as_slice() {
+                _ if !follow.contains(&report) => &[],
+                // The method returns a call that can be followed.
+                [] => &[Language::Rust, Language::Python, Language::Typescript],
+                // The names of the methods get the name of the report.
+                [_] => &[Language::Kotlin, Language::JvmBinary, Language::Python],
+                _ => &[],
+            };
+            let is_first = !followed.is_empty() && is_first_other;
+            let mut source = source.to_vec();
+            source.extend(is_first.then_some(Language::Typescript));
+            let finding = Finding::new(&rules::SET_OFF_ADDED, &new.name, ["", report]);
+            findings.push(finding.source(source));
+        }
+        if findings.is_empty() {
+            return;
+        }
+        for finding in findings {
+            let finding = finding.was(old.kind().name(), &old.name);
+            self.report(finding.is(new.kind().name(), &new.name));
+        }
+        self.claim(&["operations", &new.name, "sets_off"]);
+    }
+
+    /// Judges the ranges of codes that a robot passes through.
+    fn ranges(&mut self) {
+        let (old, new) = (methods(self.old), methods(self.new));
+        let spans = |of: &BTreeMap<String, &CodeRange>| -> Vec<String> {
+            of.values().map(|it| span(it)).collect()
+        };
+        let values = [spans(&old), spans(&new)];
+        let is_lost = old.keys().any(|name| !new.contains_key(name));
+        if values[0] == values[1] && !is_lost {
+            return;
+        }
+        let values = values.map(|it| it.join(", "));
+        let subject = format!("codes.{}", RangeUse::PassThrough.name());
+        let finding = Finding::new(&rules::PASS_THROUGH, subject, both(&values));
+        let source = if is_lost {
+            rules::PASS_THROUGH.source
+        } else {
+            &[]
+        };
+        let all = |of: BTreeMap<String, &CodeRange>| -> Vec<CodeRange> {
+            of.into_values().cloned().collect()
+        };
+        let (old, new) = (all(old), all(new));
+        let mut finding = finding.source(source);
+        for range in &old {
+            finding = finding.was("range", span(range));
+        }
+        for range in &new {
+            finding = finding.is("range", span(range));
+        }
+        let is_in = |ranges: &[CodeRange], first: u16| ranges.iter().any(|it| it.first == first);
+        for range in old.iter().chain(&new) {
+            let first = range.first.to_string();
+            if is_in(&self.old.ranges, range.first) && is_in(&self.new.ranges, range.first) {
+                for key in ["to", "to_spelling", "use"] {
+                    self.claim(&["ranges", &first, key]);
+                }
+            } else {
+                self.claim(&["ranges", &first]);
+            }
+        }
+        self.report(finding);
     }
 
     fn code(&mut self, old: &'m Operation, new: &'m Operation) {
@@ -173,10 +353,18 @@ impl<'m> Judge<'m> {
                 app: old.sender == Side::App,
                 robot: false,
             };
-            Finding::new(&rules::CODE_ASSIGNED, name, values).on(asks, Wire::NewSender)
+            let source = asked_by(new, &rules::CODE_ASSIGNED);
+            let finding = Finding::new(&rules::CODE_ASSIGNED, name, values).source(source);
+            finding.on(asks, Wire::NewSender)
         } else {
-            let wire = Wire::of(true, new.code.value.is_some());
-            Finding::new(&rules::CODE_CHANGED, name, values).on(Senders::of(old.sender), wire)
+            let is_sent = new.code.value.is_some();
+            let source = if is_sent {
+                &[]
+            } else {
+                rules::CODE_CHANGED.source
+            };
+            let finding = Finding::new(&rules::CODE_CHANGED, name, values).source(source);
+            finding.on(Senders::of(old.sender), Wire::of(true, is_sent))
         };
         self.report(finding.at(new.kind().name(), name));
         self.claim(&["operations", name, "code"]);
@@ -319,4 +507,50 @@ impl<'m> Judge<'m> {
             self.claim(&["types", &ty.name]);
         }
     }
+}
+
+/// Returns the languages in which a new operation breaks sources. A robot implements every command. A match covers all
+/// reports in Rust, C++ and TypeScript, and all streams in Rust.
+fn asked_by(operation: &Operation, rule: &Rule) -> Vec<Language> {
+    if operation.code.value.is_none() {
+        return Vec::new();
+    }
+    let matched = match operation.kind() {
+        Kind::Command => return rule.source.to_vec(),
+        Kind::Report => [Language::Rust, Language::Cpp, Language::Typescript].as_slice(),
+        Kind::Stream => &[Language::Rust],
+    };
+    let source = rule.source.iter().copied();
+    source.filter(|it| matched.contains(it)).collect()
+}
+
+/// Returns the languages of a rule. C++ has no methods for streams, so `true` leaves it out.
+fn unless(rule: &Rule, is_without_cpp: bool) -> Vec<Language> {
+    let source = rule.source.iter().copied();
+    source
+        .filter(|it| !is_without_cpp || *it != Language::Cpp)
+        .collect()
+}
+
+/// The pass-through ranges by the names of their methods.
+fn methods(model: &Model) -> BTreeMap<String, &CodeRange> {
+    let ranges = model.ranges.iter();
+    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
+    let mut named = BTreeMap::new();
+    for range in ranges {
+        let name = RangeUse::PassThrough.name().to_owned();
+        let is_taken = named.contains_key(&name) || model.operation(&name).is_some();
+        let name = if is_taken {
+            format!("{name}_{:04x}", range.first)
+        } else {
+            name
+        };
+        named.insert(name, range);
+    }
+    named
+}
+
+/// Formats a range.
+fn span(range: &CodeRange) -> String {
+    format!("{}–{}", range.first_spelling, range.last_spelling)
 }

@@ -2,8 +2,9 @@
 
 use super::Judge;
 use crate::finding::Finding;
+use crate::release::VERSION;
 use crate::rules::process::RELEASE;
-use fc_spec::model::{Operation, is_past};
+use fc_spec::model::{Model, Operation, is_past};
 
 impl Judge<'_> {
     /// What is deprecated goes earlier than was promised. A later date, and none, is left to be read.
@@ -22,13 +23,14 @@ impl Judge<'_> {
             self.claim(&["operations", &new.name, "deprecated", "sunset"]);
         }
     }
+}
 
-    /// A break without another version of the protocol.
-    pub(super) fn process(&mut self) {
-        let (old, new) = (&self.old.protocol.version, &self.new.protocol.version);
-        if old == new && self.found.iter().any(|it| !it.wire.is_empty()) {
-            let finding = Finding::new(&RELEASE, "protocol.version", [old, new]);
-            self.report(finding.at("protocol", "protocol"));
-        }
-    }
+/// Returns a finding if messages break and the version of the protocol is the same.
+pub(crate) fn unannounced(old: &Model, new: &Model, found: &[Finding]) -> Option<Finding> {
+    let (old, new) = (&old.protocol.version, &new.protocol.version);
+    let is_broken = found.iter().any(|it| !it.wire.is_empty());
+    (old == new && is_broken).then(|| {
+        let finding = Finding::new(&RELEASE, VERSION, [old, new]);
+        finding.at("protocol", "protocol")
+    })
 }

@@ -1,41 +1,97 @@
-//! Results, and the times that calls take.
+//! Results, the times that calls take, and tables.
 
+use super::Judge;
 use super::frame::both;
-use super::{Judge, by};
 use crate::finding::{Finding, Senders};
+use crate::matching::{self, Pair};
 use crate::rule::Wire;
+use crate::rules::fields::NAME_CHANGED;
 use crate::rules::results as rules;
+use fc_spec::model::{ResultCode, Table};
 
 impl Judge<'_> {
     pub(super) fn results(&mut self) {
-        let now = by(&self.new.results, |it| it.name.as_str());
-        for old in &self.old.results {
-            let Some(new) = now.get(old.name.as_str()) else {
-                continue;
-            };
-            if old.code == new.code && old.role == new.role {
-                continue;
+        for pair in matching::results(self.old, self.new) {
+            match pair {
+                Pair::Both(old, new) => self.result(old, new),
+                Pair::Removed(old) => {
+                    let code = old.code.to_string();
+                    let subject = format!("results.{}", old.name);
+                    let finding = Finding::new(&rules::RESULT_REMOVED, subject, [&code, ""]);
+                    self.report(finding.was("result", &code));
+                    self.claim(&["result_codes", &code]);
+                    self.claim(&["result_codes", "#order"]);
+                }
+                Pair::Added(new) => {
+                    let code = new.code.to_string();
+                    let subject = format!("results.{}", new.name);
+                    let finding = Finding::new(&rules::RESULT_ADDED, subject, ["", &code]);
+                    self.report(finding.is("result", &code));
+                    self.claim(&["result_codes", &code]);
+                    self.claim(&["result_codes", "#order"]);
+                }
             }
-            let shown = |it: &fc_spec::model::ResultCode| match it.role {
+        }
+        self.times();
+    }
+
+    fn result(&mut self, old: &ResultCode, new: &ResultCode) {
+        let at = |finding: Finding| {
+            let finding = finding.was("result", old.code.to_string());
+            finding.is("result", new.code.to_string())
+        };
+        let subject = format!("results.{}", new.name);
+        if old.name != new.name {
+            let finding = Finding::new(&NAME_CHANGED, &subject, [&old.name, &new.name]);
+            self.report(at(finding));
+            self.claim(&["result_codes", &new.code.to_string(), "name"]);
+        }
+        if old.code != new.code || old.role != new.role {
+            let shown = |it: &ResultCode| match it.role {
                 Some(role) => format!("{} ({})", it.code, role.name()),
                 None => it.code.to_string(),
             };
             let values = [shown(old), shown(new)];
-            let finding = Finding::new(
-                &rules::RESULT_CODE,
-                format!("results.{}", old.name),
-                both(&values),
-            );
-            let finding = finding
-                .was("result", old.code.to_string())
-                .is("result", new.code.to_string());
+            let finding = Finding::new(&rules::RESULT_CODE, subject, both(&values));
             // The robot says it, and so does the app of reports.
-            self.report(finding.on(Senders::BOTH, Wire::Both));
+            self.report(at(finding).on(Senders::BOTH, Wire::Both));
             for code in [old.code, new.code] {
                 self.claim(&["result_codes", &code.to_string()]);
             }
             self.claim(&["result_codes", "#order"]);
         }
+    }
+
+    /// Judges the tables of constants.
+    pub(super) fn tables(&mut self) {
+        for pair in matching::align(
+            &self.old.tables,
+            &self.new.tables,
+            &[&|one: &Table, other: &Table| one.id == other.id],
+        ) {
+            let finding = match pair {
+                Pair::Both(_, new) => {
+                    // The row type is judged with the types.
+                    self.claim(&["tables", &new.id, "row"]);
+                    continue;
+                }
+                Pair::Removed(old) => {
+                    self.claim(&["tables", &old.id]);
+                    let subject = format!("tables.{}", old.id);
+                    Finding::new(&rules::TABLE_REMOVED, subject, ["", ""]).was("table", &old.id)
+                }
+                Pair::Added(new) => {
+                    self.claim(&["tables", &new.id]);
+                    let subject = format!("tables.{}", new.id);
+                    Finding::new(&rules::TABLE_ADDED, subject, ["", ""]).is("table", &new.id)
+                }
+            };
+            self.report(finding);
+            self.claim(&["tables", "#order"]);
+        }
+    }
+
+    fn times(&mut self) {
         let (old, new) = (self.old.calls, self.new.calls);
         let is_longer = |it: fc_spec::model::CallDefaults| it.handler_timeout_ms >= it.timeout_ms;
         if is_longer(new) && !is_longer(old) {

@@ -3,11 +3,11 @@
 use super::{Judge, Path, called, json};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
-use crate::rule::Wire;
+use crate::rule::{Language, Wire};
 use crate::rules::choices as rules;
 use crate::rules::fields::{NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_CHANGED};
 use crate::rules::operations::GROUP_MOVED;
-use fc_spec::model::{EnumRepr, EnumType, OneOf, TypeDef, TypeShape};
+use fc_spec::model::{EnumRepr, EnumType, IntKind, OneOf, TypeDef, TypeShape};
 
 /// A pair of things at one place.
 #[derive(Clone)]
@@ -43,6 +43,12 @@ impl<'m> Judge<'m> {
             }
             match (&old.shape, &new.shape) {
                 (TypeShape::Struct(old), TypeShape::Struct(new)) => {
+                    let systems = [&old.coordinates, &new.coordinates];
+                    if let Some(finding) = self.coordinates(here.subject.clone(), systems) {
+                        let finding = finding.was("", &here.owners[0]).is("", &here.owners[1]);
+                        self.report(finding.on(senders, Wire::Both));
+                        self.claim_in(&here.path, &["coordinates"]);
+                    }
                     self.object(&here, &old.fields, &new.fields);
                 }
                 (TypeShape::Enum(old), TypeShape::Enum(new)) => self.enumeration(&here, old, new),
@@ -63,7 +69,8 @@ impl<'m> Judge<'m> {
         if new.body_of.is_none() && old.name == new.name {
             let [from, to] = [old, new].map(|it| it.group.as_deref().unwrap_or_default());
             let finding = Finding::new(&GROUP_MOVED, &new.name, [from, to]);
-            self.report(finding.at("", &new.name));
+            let source = [Language::Rust, Language::Cpp, Language::Python];
+            self.report(finding.source(source).at("", &new.name));
         }
     }
 
@@ -84,20 +91,17 @@ impl<'m> Judge<'m> {
                 [word(old.closed), word(new.closed)],
             );
             let finding = at(finding).on(here.senders, Wire::of(new.closed, old.closed));
-            let source = if new.closed {
-                &[][..]
-            } else {
-                rules::ENUM_CLOSED.source
-            };
-            self.report(finding.source(source));
+            self.report(finding);
             self.claim_in(&here.path, &["closed"]);
         }
-        let is_same = |one: &fc_spec::model::EnumValue, other: &fc_spec::model::EnumValue| {
-            one.name == other.name
-        };
-        let pairs = matching::align(&old.values, &new.values, is_same, |one, other| {
-            one.wire == other.wire
-        });
+        let pairs = matching::align(
+            &old.values,
+            &new.values,
+            &[&|one, other| one.name == other.name, &|one, other| {
+                one.wire == other.wire
+            }],
+        );
+        self.states(here, [old, new], &pairs);
         let list: Path = here
             .path
             .iter()
@@ -114,9 +118,16 @@ impl<'m> Judge<'m> {
                         subject,
                         super::frame::both(&values),
                     );
+                    // In TypeScript, the type of a closed enum lists the values in messages.
+                    let source = if old.closed {
+                        rules::VALUE_RENUMBERED.source
+                    } else {
+                        &[]
+                    };
                     self.report(
                         Self::value(finding, here, &one.name, &other.name)
-                            .on(here.senders, Wire::Both),
+                            .on(here.senders, Wire::Both)
+                            .source(source),
                     );
                     self.claim_in(&list, &[&other.name, "value"]);
                     self.claim_in(&list, &["#order"]);
@@ -170,7 +181,10 @@ impl<'m> Judge<'m> {
             EnumRepr::String => "string",
         };
         let values = [name(old.repr), name(new.repr)];
-        let (rule, wire) = match (old.repr, new.repr) {
+        let is_large = |repr| matches!(repr, EnumRepr::Int(IntKind::I64 | IntKind::U64));
+        let mut sized = vec![Language::Rust, Language::Cpp];
+        sized.extend((is_large(old.repr) != is_large(new.repr)).then_some(Language::Typescript));
+        let (rule, wire, source) = match (old.repr, new.repr) {
             (EnumRepr::Int(one), EnumRepr::Int(other)) => {
                 let (one, other) = (one.range(), other.range());
                 let is_within = |inner: (i128, i128), outer: (i128, i128)| {
@@ -186,15 +200,16 @@ impl<'m> Judge<'m> {
                         &NUMBER_NARROWED
                     },
                     wire,
+                    sized,
                 )
             }
-            _ => (&TYPE_CHANGED, Wire::Both),
+            _ => (&TYPE_CHANGED, Wire::Both, TYPE_CHANGED.source.to_vec()),
         };
         let finding = Finding::new(rule, &here.subject, values);
         let finding = finding
             .was("enum", &here.owners[0])
             .is("enum", &here.owners[1]);
-        self.report(finding.on(here.senders, wire));
+        self.report(finding.on(here.senders, wire).source(source));
         self.claim_in(&here.path, &["repr"]);
     }
 
@@ -228,7 +243,8 @@ impl<'m> Judge<'m> {
                     let finding = Finding::new(&rules::VARIANT, subject, ["", &other.name]);
                     let finding =
                         finding.is("variant", format!("{}.{}", here.owners[1], other.name));
-                    self.report(finding.on(here.senders, Wire::NewSender));
+                    let finding = finding.on(here.senders, Wire::NewSender);
+                    self.report(finding.source(rules::MATCHED));
                     self.claim_in(&list, &[&other.name]);
                     self.claim_in(&list, &["#order"]);
                 }

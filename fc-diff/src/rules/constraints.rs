@@ -1,6 +1,7 @@
 //! Constraints of fields.
 
-use super::{BASE, rules};
+use super::{BASE, EVERY, rules};
+use crate::rule::Language::Typescript;
 use crate::rule::{Rule, Wire};
 
 rules! {
@@ -8,22 +9,26 @@ rules! {
         number: 44,
         name: "range-tightened",
         wire: Wire::OldSender,
+        source: &[Typescript],
         mirror: &[45],
         title: ["fewer values are valid", "取值范围收窄"],
         text: [
-            "`min`, `max` or `only` excludes values that old senders may send. New receivers refuse them.",
-            "`min`、`max` 或 `only` 排除了旧发送方可能发送的值，新接收方会拒绝。",
+            "`min`, `max` or `only` excludes values that old senders may send. New receivers refuse them. If a 64-bit integer now \
+             fits a `number`, its type in TypeScript changes.",
+            "`min`、`max` 或 `only` 排除了旧发送方可能发送的值，新接收方会拒绝。64 位整数若因此能放进 `number`，TypeScript 中的类型会变。",
         ],
     }
     RANGE_WIDENED {
         number: 45,
         name: "range-widened",
         wire: Wire::NewSender,
+        source: &[Typescript],
         mirror: &[44],
         title: ["more values are valid", "取值范围放宽"],
         text: [
-            "New senders may send values that old receivers refuse.",
-            "新发送方可能发送旧接收方拒绝的值。",
+            "New senders may send values that old receivers refuse. If a 64-bit integer no longer fits a `number`, its type in \
+             TypeScript changes.",
+            "新发送方可能发送旧接收方拒绝的值。64 位整数若因此放不进 `number`，TypeScript 中的类型会变。",
         ],
     }
     LENGTH_TIGHTENED {
@@ -63,13 +68,15 @@ rules! {
     DEFAULT {
         number: 49,
         name: "absent-meaning-changed",
+        source: EVERY,
         behaviour: true,
         silent: true,
         mirror: &[49],
         title: ["an absent field means something else", "缺省含义变更"],
         text: [
-            "`default` is not sent. Each side uses its own default for an absent field, so the two disagree without an error.",
-            "`default` 不随报文发送，双方各按自己的缺省值理解，结果不一致，且不会报错。",
+            "`default` is not sent. Each side uses its own default for an absent field, so the two disagree without an error. \
+             Without a default, the packages lose its accessor, and programs that use it do not compile.",
+            "`default` 不随报文发送，双方各按自己的缺省值理解，结果不一致，且不会报错。删除后，生成的代码中不再有取默认值的成员，用到它的代码无法编译。",
         ],
     }
     SENSITIVE {

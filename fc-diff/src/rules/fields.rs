@@ -2,30 +2,33 @@
 
 use super::{BASE, EVERY, rules};
 use crate::rule::Language::{Cpp, JvmBinary, Kotlin, Python, Rust, Typescript};
-use crate::rule::{Rule, Wire};
+use crate::rule::{Language, Rule, Wire};
+
+/// Languages with several number types.
+const NUMBERS: &[Language] = &[Rust, Kotlin, JvmBinary, Cpp, Typescript];
 
 rules! {
     REQUIRED_ADDED {
         number: 25,
         name: "required-field-added",
         wire: Wire::OldSender,
-        source: EVERY,
+        source: &[Rust, Python, Typescript],
         mirror: &[27],
         title: ["a required field is new", "新增必填字段"],
         text: [
-            "Old senders do not send it, and new receivers refuse the message. Make it optional, with a default.",
-            "旧发送方不发这个字段，新接收方会拒绝。请改为可选，并说明缺省含义。",
+            "Old senders do not send it, and new receivers refuse the message. Programs in Kotlin and C++ compile without the \
+             field. In Kotlin the message cannot be built, and in C++ the field is empty or zero. Make it optional, with a default.",
+            "旧发送方不发这个字段，新接收方会拒绝。Kotlin 和 C++ 的代码不写这个字段也能编译：Kotlin 在构造消息时报错，C++ 中字段为空或零。请改为可选，并说明缺省含义。",
         ],
     }
     OPTIONAL_ADDED {
         number: 26,
         name: "optional-field-added",
-        source: &[Rust, JvmBinary],
         mirror: &[28],
         title: ["an optional field is new", "新增可选字段"],
         text: [
-            "Messages are read as before. Rust literals without `..` and compiled JVM constructors name every field.",
-            "报文不受影响。不带 `..` 的 Rust 结构体字面量，以及已编译的 JVM 构造函数，会受影响。",
+            "Messages and programs work as before. In C++, a new field before other fields moves them; FC0777 reports that.",
+            "报文不受影响，代码照常编译。C++ 中新字段若在其他字段之前，会改变它们的位置，由 FC0777 提示。",
         ],
     }
     REQUIRED_REMOVED {
@@ -68,7 +71,7 @@ rules! {
         number: 30,
         name: "field-became-optional",
         wire: Wire::NewSender,
-        source: &[Rust, Kotlin, Cpp, Typescript],
+        source: EVERY,
         mirror: &[29],
         title: ["a required field is optional now", "必填字段改为可选"],
         text: [
@@ -120,8 +123,9 @@ rules! {
         mirror: &[34],
         title: ["it has another name in code", "代码中的名称变更"],
         text: [
-            "Messages are the same. Programs with the old name do not compile.",
-            "报文不变，引用旧名称的代码无法编译。",
+            "The name of a field, enum value, result, header field or the protocol changed. Messages are the same. Programs that \
+             use the old name do not compile. Header fields have names in Rust only.",
+            "字段、枚举取值、结果码、包头字段或协议改名。报文不变，引用旧名称的代码无法编译。包头字段只在 Rust 中有名称。",
         ],
     }
     TYPE_CHANGED {
@@ -141,7 +145,7 @@ rules! {
         number: 36,
         name: "integer-widened",
         wire: Wire::NewSender,
-        source: &[Rust, Kotlin, Cpp],
+        source: NUMBERS,
         mirror: &[37],
         title: ["a number type is wider", "数值类型变宽"],
         text: [
@@ -153,7 +157,7 @@ rules! {
         number: 37,
         name: "integer-narrowed",
         wire: Wire::Both,
-        source: &[Rust, Kotlin, Cpp],
+        source: NUMBERS,
         mirror: &[36, 37],
         title: ["a number type is narrower or has another sign", "数值类型变窄或符号变更"],
         text: [
@@ -166,7 +170,7 @@ rules! {
         number: 38,
         name: "integer-became-float",
         wire: Wire::Both,
-        source: &[Rust, Kotlin, Cpp, Python],
+        source: EVERY,
         mirror: &[38],
         title: ["an integer became a float, or the reverse", "整数与浮点数互换"],
         text: [
@@ -188,7 +192,7 @@ rules! {
     TIME_UNIT {
         number: 40,
         name: "time-unit-changed",
-        source: EVERY,
+        wire: Wire::Both,
         behaviour: true,
         silent: true,
         mirror: &[40],
@@ -201,13 +205,15 @@ rules! {
     UNIT {
         number: 41,
         name: "unit-changed",
+        wire: Wire::Both,
         behaviour: true,
         silent: true,
         mirror: &[41],
         title: ["a number is in another unit", "单位变更"],
         text: [
-            "The number is read as before, but its meaning changed. If only the unit in the spec was wrong, record that in the changelog.",
-            "数值照常读取，但含义变了。如果只是更正规范中的单位，在变更记录中说明。",
+            "The receiver reads the number in its own unit, and no error occurs. A robot may move 1000 times too far. If the unit \
+             in the spec was wrong, accept the change with a waiver. If only one version has a unit, messages do not count as broken.",
+            "接收方按自己的单位理解数值，不会报错，机器人移动的距离可能差 1000 倍。如果只是更正规范中的单位，请豁免。若只有一个版本写明单位，不计为报文不兼容。",
         ],
     }
     TYPE_RENAMED {
@@ -232,6 +238,65 @@ rules! {
         text: [
             "Old senders may send any JSON, and new receivers refuse values that do not fit the type.",
             "旧发送方可能发送任意 JSON，新接收方会拒绝不符合类型的值。",
+        ],
+    }
+    COORDINATES {
+        number: 74,
+        name: "coordinates-changed",
+        wire: Wire::Both,
+        behaviour: true,
+        silent: true,
+        mirror: &[74],
+        title: ["a position is given in other coordinates", "坐标系变更"],
+        text: [
+            "The receiver reads the position in its own coordinate system, and no error occurs. If the spec was wrong, accept the \
+             change with a waiver. Renaming a coordinate system is not a change of this kind.",
+            "接收方按自己的坐标系理解位置，不会报错。如果只是更正规范，请豁免。坐标系改名不属于这种变更。",
+        ],
+    }
+    REFERENCE {
+        number: 75,
+        name: "reference-changed",
+        source: &[Rust, Python],
+        behaviour: true,
+        silent: true,
+        mirror: &[75],
+        title: ["a field has the ID of something else", "字段改为另一种实体的 ID"],
+        text: [
+            "The receiver takes the ID for that of another entity, and no error occurs. With `newtypes: true` in `fc.yaml`, the \
+             type of the field changes in Rust and Python. If the entity was only renamed, the behaviour is the same.",
+            "接收方会把 ID 当作另一种实体的 ID，不会报错。若 `fc.yaml` 中设置了 `newtypes: true`，Rust 和 Python 中字段的类型会变。只是实体改名时，行为不变。",
+        ],
+    }
+    REUSED {
+        number: 76,
+        name: "retired-key-reused",
+        wire: Wire::Both,
+        silent: true,
+        no_mirror: [
+            "to give it up again is to remove the field (FC0727, FC0728) or the value (FC0753)",
+            "再次放弃，即删除字段（FC0727、FC0728）或枚举取值（FC0753）",
+        ],
+        title: ["an earlier release used this for something else", "在更早的发布版本中含义不同"],
+        text: [
+            "An earlier release had this key, enum value or result code. A later release removed it, and now it returns with \
+             another meaning. Apps and robots of the earlier release still use the old meaning. Choose another name. If no app and no \
+             robot has that release, accept the change with a waiver.",
+            "更早的发布版本中用过这个键名、枚举取值或结果码，之后删除，现在以另一种含义恢复。仍在使用那个版本的 app 和机器人会按旧含义处理。\
+             请换一个名称。如果已没有 app 和机器人使用那个版本，可以豁免。",
+        ],
+    }
+    MEMBER_ORDER {
+        number: 77,
+        name: "member-order-changed",
+        source: &[Cpp],
+        // Taking out the field that moved the others is judged as a removal.
+        mirror: &[77, 27, 28],
+        title: ["fields of a struct have other positions", "结构体字段的位置变更"],
+        text: [
+            "Structs in C++ are aggregates. A program that initialises one by position assigns its values to other fields, often \
+             without an error. Other languages use names, and keys in messages have no order. Add new fields at the end.",
+            "C++ 的结构体是聚合类型，按位置初始化的代码会把值赋给别的字段，往往不会报错。其他语言按名称赋值，报文中的键没有顺序。新字段请加在最后。",
         ],
     }
 }

@@ -1,6 +1,7 @@
 //! Frame and transport.
 
 use super::{BASE, rules};
+use crate::rule::Language::Rust;
 use crate::rule::{Rule, Wire};
 
 rules! {
@@ -30,6 +31,7 @@ rules! {
         number: 3,
         name: "header-layout-changed",
         wire: Wire::Both,
+        source: &[Rust],
         mirror: &[3],
         title: ["the layout of the header changed", "包头布局变更"],
         text: [

@@ -8,9 +8,9 @@ pub(crate) mod operations;
 pub(crate) mod process;
 pub(crate) mod results;
 
-use crate::rule::{Language, Rule, Wire};
+use crate::rule::{About, Language, Rule, Wire};
 
-/// The sections in the order of the numbers.
+/// The sections.
 pub(crate) const ALL: [&[&Rule]; 8] = [
     &[&UNJUDGED],
     frame::RULES,
@@ -21,9 +21,6 @@ pub(crate) const ALL: [&[&Rule]; 8] = [
     results::RULES,
     process::RULES,
 ];
-
-/// Number of the last rule for changes. Later rules are for waivers.
-pub(crate) const LAST_OF_CHANGES: u8 = 64;
 
 /// Programs in every language.
 const EVERY: &[Language] = &[
@@ -44,6 +41,7 @@ const BASE: Rule = Rule {
     behaviour: false,
     silent: false,
     is_error: false,
+    about: About::Change,
     mirror: &[],
     no_mirror: ["", ""],
     title: ["", ""],
@@ -65,6 +63,7 @@ use rules;
 /// A difference that no rule judges.
 pub(crate) static UNJUDGED: Rule = Rule {
     name: "unjudged",
+    about: About::Text,
     no_mirror: [
         "rules of one direction leave the opposite change to this rule",
         "有的规则只评估一个方向，反方向的变更归在这里",

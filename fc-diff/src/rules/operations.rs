@@ -9,7 +9,7 @@ rules! {
         number: 13,
         name: "command-removed",
         wire: Wire::OldSender,
-        source: &[Rust, Kotlin, Cpp, Python, Typescript],
+        source: EVERY,
         mirror: &[14],
         title: ["a command is gone", "删除了指令"],
         text: [
@@ -22,7 +22,7 @@ rules! {
         number: 14,
         name: "command-added",
         wire: Wire::NewSender,
-        source: &[Rust, Kotlin, Cpp, Typescript],
+        source: &[Rust, Kotlin, Cpp, Python, Typescript],
         behaviour: true,
         mirror: &[13],
         title: ["a command is new", "新增了指令"],
@@ -35,7 +35,7 @@ rules! {
     REPORT_REMOVED {
         number: 15,
         name: "report-removed",
-        source: &[Rust, Kotlin, Cpp, Typescript],
+        source: EVERY,
         behaviour: true,
         mirror: &[16],
         title: ["a report is gone", "删除了上报"],
@@ -47,25 +47,27 @@ rules! {
     REPORT_ADDED {
         number: 16,
         name: "report-added",
-        source: &[Rust, Kotlin],
+        source: &[Rust, Cpp, Typescript],
         behaviour: true,
         mirror: &[15],
         title: ["a report is new", "新增了上报"],
         text: [
-            "Old apps refuse it, and a robot resends it without an acknowledgement. An exhaustive match over all reports \
-             needs another case.",
-            "旧 app 会拒绝，机器人会重发但得不到应答。穷尽匹配所有上报的代码要多一个分支。",
+            "Old apps refuse it, and a robot resends it without an acknowledgement. In Rust, C++ and TypeScript, an exhaustive \
+             match over all reports needs another case.",
+            "旧 app 会拒绝，机器人会重发但得不到应答。Rust、C++ 和 TypeScript 中穷尽匹配所有上报的代码要多一个分支。",
         ],
     }
     CODE_CHANGED {
         number: 17,
         name: "code-changed",
         wire: Wire::Both,
+        source: EVERY,
         mirror: &[17, 20],
         title: ["an operation has another code", "功能码变更"],
         text: [
-            "Each version sends a code that the other does not know. Keep the code, or add a new operation and keep the old one.",
-            "双方发送的功能码对方都不认识。保留原功能码；或另加一个新接口，旧接口不变。",
+            "Each version sends a code that the other does not know. Keep the code, or add a new operation and keep the old one. \
+             An operation without a code has no methods.",
+            "双方发送的功能码对方都不认识。保留原功能码；或另加一个新接口，旧接口不变。功能码改为未分配后，相应的方法也会消失。",
         ],
     }
     CODE_REUSED {
@@ -100,12 +102,13 @@ rules! {
         number: 20,
         name: "code-assigned",
         wire: Wire::NewSender,
+        source: &[Rust, Kotlin, Cpp, Python, Typescript],
         mirror: &[17],
         title: ["an operation got its code", "接口分配了功能码"],
         text: [
             "Without a code it could not be sent. An old robot refuses a command with this code as unknown; an old app ignores \
-             a report.",
-            "没有功能码时无法发送。旧机器人按未知指令拒绝；旧 app 忽略上报。",
+             a report. Programs see a new operation.",
+            "没有功能码时无法发送。旧机器人按未知指令拒绝；旧 app 忽略上报。对代码来说，相当于新增一个接口。",
         ],
     }
     OPERATION_RENAMED {
@@ -136,10 +139,7 @@ rules! {
         number: 23,
         name: "effect-raised",
         behaviour: true,
-        no_mirror: [
-            "callers that guard against a larger effect still work",
-            "影响变小，调用方原有的防护依然够用",
-        ],
+        mirror: &[73],
         title: ["a command has a larger effect on the robot", "指令对机器人的影响变大"],
         text: [
             "Programs may resend it freely, or allow it without a permission, because its effect was smaller. Check them.",
@@ -149,12 +149,75 @@ rules! {
     GROUP_MOVED {
         number: 24,
         name: "group-moved",
-        source: &[Rust, Kotlin, Cpp],
+        source: EVERY,
         mirror: &[24],
         title: ["an operation moved to another group", "接口移到另一个分组"],
         text: [
-            "Its path changes in languages with one module per group.",
-            "在按分组生成模块的语言里，引用路径会变。",
+            "An operation is a member of the modules and interfaces of its group. In Rust, Python and C++ the path of a type \
+             includes the group.",
+            "接口属于所在分组的模块和类型。类型的路径中，Rust、Python 和 C++ 含有分组名。",
+        ],
+    }
+    EFFECT_LOWERED {
+        number: 73,
+        name: "effect-lowered",
+        behaviour: true,
+        mirror: &[23],
+        title: ["a command has a smaller effect on the robot", "指令对机器人的影响变小"],
+        text: [
+            "New apps repeat a `read` automatically when they get no response. New robots stop the handler of a command that moves \
+             nothing when no app waits for it. With an old robot, repeating the command may be unsafe.",
+            "没有收到响应时，新 app 会自动重发 `read` 指令。没有 app 等待时，新机器人会中断不引起动作的处理程序。对旧机器人重发，可能不安全。",
+        ],
+    }
+    SET_OFF_ADDED {
+        number: 78,
+        name: "set-off-added",
+        source: EVERY,
+        mirror: &[79],
+        title: ["a command sets off another report", "指令新增引起的上报"],
+        text: [
+            "Programs can follow the report. After a first report, the names of the methods in Kotlin and Python include the \
+             report. After none, the return type in Rust, Python and TypeScript changes.",
+            "程序可以跟踪这种上报。原来有一种上报时，Kotlin 和 Python 的方法名会加上上报名。原来没有时，Rust、Python 和 TypeScript 的返回类型会变。",
+        ],
+    }
+    SET_OFF_REMOVED {
+        number: 79,
+        name: "set-off-removed",
+        source: EVERY,
+        behaviour: true,
+        mirror: &[78],
+        title: ["a command no longer sets off a report", "指令不再引起某种上报"],
+        text: [
+            "Programs that follow the report wait without success. They do not compile with the new packages.",
+            "跟踪它的程序等不到上报，换用新的代码后也无法编译。",
+        ],
+    }
+    ACCEPTED {
+        number: 81,
+        name: "accepted-states-changed",
+        source: &[Rust, Cpp],
+        behaviour: true,
+        mirror: &[81],
+        title: ["a command is accepted in other states", "指令的受理状态变更"],
+        text: [
+            "A new robot refuses the command in states in which an old robot accepts it, or the reverse. If an enum is no longer \
+             listed, Rust and C++ lose the check for it.",
+            "新机器人会在旧机器人受理的状态下拒绝该指令，或相反。不再列出某个枚举时，Rust 和 C++ 中对应的检查会消失。",
+        ],
+    }
+    PASS_THROUGH {
+        number: 82,
+        name: "pass-through-changed",
+        source: EVERY,
+        behaviour: true,
+        mirror: &[82],
+        title: ["other codes are passed through", "透传的功能码变更"],
+        text: [
+            "A new robot passes through codes that an old robot refuses, or the reverse. Without a range, the robot has no method \
+             for it.",
+            "新机器人会透传旧机器人拒绝的功能码，或相反。号段删除后，机器人一侧对应的方法也会消失。",
         ],
     }
 }

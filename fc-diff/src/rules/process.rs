@@ -1,7 +1,7 @@
 //! How a change is made.
 
 use super::{BASE, rules};
-use crate::rule::Rule;
+use crate::rule::{About, Rule};
 
 rules! {
     RELEASE {
@@ -19,6 +19,7 @@ rules! {
     DOCS {
         number: 64,
         name: "statement-weakened",
+        about: About::Text,
         no_mirror: [
             "more confidence and a complete translation need no finding; an example that is changed back is found again",
             "依据更充分、译文补齐都无需提示；示例改回去会再次提示",
@@ -34,6 +35,7 @@ rules! {
         number: 65,
         name: "waiver-expired",
         is_error: true,
+        about: About::Waiver,
         no_mirror: ["this rule is for waivers, not for changes", "针对豁免，而不是变更"],
         title: ["the waiver has expired", "豁免已过期"],
         text: [
@@ -46,6 +48,7 @@ rules! {
         number: 66,
         name: "waiver-unused",
         is_error: true,
+        about: About::Waiver,
         no_mirror: ["this rule is for waivers, not for changes", "针对豁免，而不是变更"],
         title: ["the waiver accepts nothing", "豁免没有对应的变更"],
         text: [
@@ -58,6 +61,7 @@ rules! {
         number: 67,
         name: "waiver-refused",
         is_error: true,
+        about: About::Waiver,
         no_mirror: ["this rule is for waivers, not for changes", "针对豁免，而不是变更"],
         title: ["this change cannot be waived", "这种变更不能豁免"],
         text: [

@@ -1,6 +1,7 @@
-//! Results, acknowledgements and leniencies.
+//! Results, acknowledgements, leniencies and tables.
 
-use super::{BASE, rules};
+use super::{BASE, EVERY, rules};
+use crate::rule::Language::{Cpp, Python, Rust, Typescript};
 use crate::rule::{Rule, Wire};
 
 rules! {
@@ -19,12 +20,14 @@ rules! {
     ERROR_ADDED {
         number: 59,
         name: "operation-error-added",
+        source: &[Rust, Typescript],
         behaviour: true,
-        no_mirror: ["an error that no longer occurs has no effect on programs", "不再出现的错误不影响任何程序"],
+        mirror: &[68],
         title: ["an operation may return another error", "接口新增可能返回的错误"],
         text: [
-            "Old apps may not handle the new result.",
-            "旧 app 可能没有处理新的结果。",
+            "Old apps may not handle the new result. In Rust and TypeScript, an exhaustive match over the errors of a command \
+             needs another case.",
+            "旧 app 可能没有处理新的结果。Rust 和 TypeScript 中穷尽匹配该指令错误的代码要多一个分支。",
         ],
     }
     ACK_TIMING {
@@ -63,6 +66,63 @@ rules! {
         text: [
             "Receivers refuse senders that rely on the leniency. Make sure that no such sender is left.",
             "依赖这一放宽处理的发送方会被拒绝。请先确认已没有这样的发送方。",
+        ],
+    }
+    ERROR_REMOVED {
+        number: 68,
+        name: "operation-error-removed",
+        source: &[Rust, Cpp, Python, Typescript],
+        mirror: &[59],
+        title: ["an operation no longer answers an error", "接口不再返回某个错误"],
+        text: [
+            "Messages are the same. Programs that use the error of this command do not compile. Kotlin uses result codes instead.",
+            "报文不受影响。使用该指令这个错误的代码无法编译。Kotlin 直接使用结果码，不受影响。",
+        ],
+    }
+    RESULT_ADDED {
+        number: 69,
+        name: "result-added",
+        source: &[Rust],
+        behaviour: true,
+        mirror: &[70],
+        title: ["a result is new", "新增结果码"],
+        text: [
+            "Old apps and robots keep the code as an unknown error. In Rust an exhaustive match has one more case.",
+            "旧 app 和旧机器人当作未知错误保留。Rust 中穷尽匹配的代码要多一个分支。",
+        ],
+    }
+    RESULT_REMOVED {
+        number: 70,
+        name: "result-removed",
+        source: EVERY,
+        behaviour: true,
+        mirror: &[69],
+        title: ["a result is gone", "删除了结果码"],
+        text: [
+            "Old apps and robots may still send the code, and new ones keep it as an unknown error. Programs that use its name do \
+             not compile.",
+            "旧 app 和旧机器人仍可能返回它，新的一方当作未知错误保留。引用它的代码无法编译。",
+        ],
+    }
+    TABLE_ADDED {
+        number: 71,
+        name: "table-added",
+        mirror: &[72],
+        title: ["a table of constants is new", "新增常量表"],
+        text: [
+            "Nothing breaks.",
+            "不影响任何一方。",
+        ],
+    }
+    TABLE_REMOVED {
+        number: 72,
+        name: "table-removed",
+        source: EVERY,
+        mirror: &[71],
+        title: ["a table of constants is gone", "删除了常量表"],
+        text: [
+            "Messages are the same. Programs that read the table do not compile.",
+            "报文不受影响。读取该表的代码无法编译。",
         ],
     }
 }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// Rules whose breaks no frame shows, and why.
-const UNSEEN: [(&str, &str); 11] = [
+const UNSEEN: [(&str, &str); 14] = [
     (
         "kind-or-direction-changed",
         "a frame does not know which end sends it",
@@ -46,6 +46,12 @@ const UNSEEN: [(&str, &str); 11] = [
         "what a result means is known to the session, not to a frame",
     ),
     ("times-tightened", "a frame has no clock"),
+    ("unit-changed", "a number does not tell its unit"),
+    ("time-unit-changed", "a number does not tell its unit"),
+    (
+        "coordinates-changed",
+        "a number does not tell where its axis begins",
+    ),
 ];
 
 /// A message as its sender's version writes it.

@@ -1,10 +1,19 @@
 //! The integration tests, as one program: a program per file would link the crate each time.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::string_slice,
+    reason = "tests"
+)]
 
+mod declared;
 mod edits;
 mod execution;
+mod history;
 mod moves;
+mod packages;
 mod release;
 mod sunset;
 mod support;

@@ -2,7 +2,7 @@
 
 use crate::support::{base, edits, model};
 use fc_diff::release::{Number, Objection, goes_back, objections};
-use fc_diff::{Against, Finding, diff, waive};
+use fc_diff::{About, Against, Finding, diff, waive};
 use fc_spec::model::{Location, Text, Waiver};
 
 /// What the first change of `edits.txt` with such findings comes to.
@@ -43,12 +43,8 @@ fn names(objections: &[Objection]) -> Vec<&'static str> {
 #[test]
 fn a_number_moves_as_far_as_what_has_changed() {
     let nothing = Vec::new();
-    let text = found(|found| {
-        let quiet = |it: &Finding| {
-            it.wire.is_empty() && it.source.is_empty() && !it.behaviour && !it.rule.is_error
-        };
-        !found.is_empty() && found.iter().all(quiet)
-    });
+    let text =
+        found(|found| !found.is_empty() && found.iter().all(|it| it.rule.about == About::Text));
     let change = found(|found| {
         found.iter().all(|it| it.wire.is_empty()) && found.iter().any(|it| !it.source.is_empty())
     });

@@ -43,20 +43,49 @@ pub fn edits() -> (String, Vec<Edit>) {
     (head.to_owned(), edits.collect())
 }
 
-/// What that spec lacks and a change needs: bytes that are sent, a time in a body, and a value of an enum that nothing
-/// names.
-const MORE: [[&str; 2]; 3] = [
+/// Additions to that spec, each with the text before it. The changes need bytes, a time in a body and a spare enum value. They
+/// also need a closed enum, a second entity with numeric IDs and a second user of each coordinate system.
+const MORE: [[&str; 2]; 6] = [
     [
         "picture: { type: \"base64?\", length: [1, 8],",
         " example: \"AQID\",",
     ],
     [
         "en: x coordinate }\n",
-        "      moved: { type: \"timestamp_ms?\", example: 1000, zh: 移动时间, en: When it was moved }\n",
+        "      moved: { type: \"timestamp_ms?\", example: 1000, zh: 移动时间, en: When it was moved }
+  Corner:
+    zh: 角落
+    en: A corner
+    coordinates: room
+    fields:
+      y: { type: f32, unit: m, example: 1.5, zh: y 坐标, en: y coordinate }
+  Tone:
+    enum: string
+    closed: true
+    zh: 色温
+    en: Tone
+    values:
+      warm: { name: warm, zh: 暖, en: Warm }
+      cold: { name: cold, zh: 冷, en: Cold }\n",
     ],
     [
         "zh: 损坏, en: Broken }\n",
         "      9: { name: spare, error: true, zh: 备用, en: Spare }\n",
+    ],
+    [
+        "person: { zh: 操作者, en: Operator }\n",
+        "  shade: { zh: 灯罩, en: Shade }\n",
+    ],
+    [
+        "zh: 其他场景的 ID, en: IDs of the other scenes }\n",
+        "      shade: { type: \"u32?\", refers: shade, example: 9, zh: 灯罩 ID, en: ID of the shade }
+      corner: { type: \"Corner?\", zh: 角落, en: Corner }
+      beam: { type: \"Spot?\", coordinates: beam, zh: 光束, en: Beam }
+      tone: { type: \"Tone?\", zh: 色温, en: Tone }\n",
+    ],
+    [
+        "lux: { type: f64, unit: \"%\", example: 0.5, zh: 光强, en: Glow }\n",
+        "      hue: { type: \"u16?\", example: 20, zh: 色相, en: Hue }\n",
     ],
 ];
 
@@ -84,19 +113,24 @@ pub fn model(sources: &Sources) -> Result<Model, String> {
         .ok_or_else(|| render(&faults, sources, Format::Text, Lang::En))
 }
 
+/// Replaces a text of one file, which has it once.
+pub fn with(sources: &Sources, file: &str, from: &str, to: &str) -> Sources {
+    let path = format!("spec/{file}");
+    Sources::from_texts(sources.iter().map(|(_, file)| {
+        let text = if file.path == path {
+            assert_eq!(file.text.matches(from).count(), 1, "{from}");
+            file.text.replace(from, to)
+        } else {
+            file.text.clone()
+        };
+        (file.path.clone(), text)
+    }))
+}
+
 impl Edit {
     /// The spec with the change.
     pub fn apply(&self, sources: &Sources) -> Sources {
         let [from, to] = &self.texts;
-        let path = format!("spec/{}", self.file);
-        Sources::from_texts(sources.iter().map(|(_, file)| {
-            let text = if file.path == path {
-                assert_eq!(file.text.matches(from).count(), 1, "{}: {from}", self.name);
-                file.text.replace(from, to)
-            } else {
-                file.text.clone()
-            };
-            (file.path.clone(), text)
-        }))
+        with(sources, &self.file, from, to)
     }
 }
