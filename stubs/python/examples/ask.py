@@ -9,7 +9,7 @@ import sys
 
 import fc
 import fc_runtime as rt
-from common import arguments
+from common import arguments, client_config
 
 
 # region ask
@@ -35,8 +35,8 @@ def ask(config: rt.ClientConfig) -> None:
 # endregion ask
 
 if __name__ == "__main__":
-    asked = arguments("Asks a robot who it is and how it does.")
+    config = client_config(arguments("Asks a robot who it is and how it does."))
     try:
-        ask(rt.ClientConfig(host=asked.host, command_port=asked.command_port))
+        ask(config)
     except (rt.ConnectError, rt.CallError) as error:
         sys.exit(str(error))

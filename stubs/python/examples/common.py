@@ -3,8 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
+import sys
 import unicodedata
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import fc_runtime as rt
+
+T = TypeVar("T")
 
 
 def arguments(usage: str, *, is_robot: bool = False) -> argparse.Namespace:
@@ -17,9 +25,45 @@ def arguments(usage: str, *, is_robot: bool = False) -> argparse.Namespace:
     parser.add_argument("--lang", choices=["zh", "en"], default=_lang(), help="default: that of the environment")
     if is_robot:
         parser.add_argument("--once", action="store_true", help="end when the app has left")
-        parser.add_argument("--delay", type=float, default=0.0, help="milliseconds to take over each command")
-        parser.add_argument("--picture-scale", type=int, default=1, help="times as wide and high the picture is")
+        parser.add_argument("--delay", type=_delay, default=0.0, help="milliseconds to take over each command")
+        parser.add_argument("--picture-scale", type=_scale, default=1, help="times as wide and high the picture is")
     return parser.parse_args()
+
+
+def client_config(asked: argparse.Namespace) -> rt.ClientConfig:
+    """The configuration of an app."""
+    return _made(rt.ClientConfig, asked, host=asked.host)
+
+
+def server_config(asked: argparse.Namespace) -> rt.ServerConfig:
+    """The configuration of a robot."""
+    return _made(rt.ServerConfig, asked, address=asked.host)
+
+
+def _made(kind: Callable[..., T], asked: argparse.Namespace, **more: Any) -> T:
+    """A configuration. Ends the program if it is wrong."""
+    try:
+        gzip = rt.Gzip(from_bytes=asked.gzip_from)
+        return kind(command_port=asked.command_port, data_port=asked.data_port, gzip=gzip, **more)
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
+
+
+def _delay(text: str) -> float:
+    """Milliseconds. Raises `ValueError`."""
+    number = float(text)
+    if not 0 <= number < math.inf:
+        raise ValueError
+    return number
+
+
+def _scale(text: str) -> int:
+    """A factor, within what fits into a frame. Raises `ValueError`."""
+    number = int(text)
+    if not 1 <= number <= 50:
+        raise ValueError
+    return number
 
 
 class Table:

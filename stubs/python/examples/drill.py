@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import fc
 import fc_runtime as rt
-from common import arguments
+from common import arguments, client_config
 
 # Calls in flight at a time.
 AT_ONCE = 64
@@ -68,8 +68,7 @@ async def call_to_the_end(client: fc.Client) -> int:
 async def run() -> None:
     """One part after the other, with a line for the one who makes the trouble."""
     asked = arguments("Tries out the connection to a robot while somebody else makes trouble.")
-    gzip = rt.Gzip(from_bytes=asked.gzip_from)
-    config = rt.ClientConfig(host=asked.host, command_port=asked.command_port, data_port=asked.data_port, gzip=gzip)
+    config = client_config(asked)
     async with fc.Client.connect(config) as client:
         print("reading", flush=True)
         await read(client)

@@ -6,7 +6,7 @@ to each app, and sends the picture of a map over the data port to any app that a
     ./run robot --command-port 0 --data-port 0
 
 The first line says where it listens: `commands 127.0.0.1:PORT data 127.0.0.1:PORT`. It ends with Ctrl-C or SIGTERM:
-what it has begun is answered first.
+what it has begun is answered first. It ends at once if it is asked again.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import fc
 import fc_runtime as rt
-from common import arguments
+from common import arguments, server_config
 
 if TYPE_CHECKING:
     import argparse
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # What is being handled when the robot is asked to end may take so long.
 GRACE = 5.0
+# What asks it to end.
+ENDS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Attentive(fc.ExampleRobot):
@@ -124,26 +126,37 @@ def picture(scale: int) -> bytes:
 async def run(asked: argparse.Namespace) -> None:
     """Serves until somebody asks it to end."""
     robot = Attentive(asked.delay / 1000)
-    gzip = rt.Gzip(from_bytes=asked.gzip_from)
-    config = rt.ServerConfig(address=asked.host, command_port=asked.command_port, data_port=asked.data_port, gzip=gzip)
-    server = rt.Server(robot, config)
+    server = rt.Server(robot, server_config(asked))
     await server.bind()
     # Before anybody knows where it listens: who asks it to end at once is heard, too.
-    stop = [asyncio.Event(), asyncio.Event()]
+    asked_to_end, asked_again = asyncio.Event(), asyncio.Event()
+    left = [asked_again, asked_to_end]
+    loop = asyncio.get_running_loop()
 
-    def asked_to_stop() -> None:
-        (stop[1] if stop[0].is_set() else stop[0]).set()
+    def ask(*_: object) -> None:
+        if left:
+            loop.call_soon_threadsafe(left.pop().set)
+        if not left:
+            ignore_signals()
 
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, asked_to_stop)
+    # Handlers of the event loop would be gone before the program is.
+    for number in ENDS:
+        signal.signal(number, ask)
     (host, command_port), (_, data_port) = server.command_address, server.data_address
     say(f"commands {host}:{command_port} data {host}:{data_port}")
 
     attendant = Attendant(server, robot, picture(asked.picture_scale))
-    await first_of(attendant.run(), stop[0].wait(), *([attendant.left()] if asked.once else []))
+    await first_of(attendant.run(), asked_to_end.wait(), *([attendant.left()] if asked.once else []))
     # Who asks twice does not want to wait.
-    await first_of(server.shutdown(GRACE), stop[1].wait())
+    await first_of(server.shutdown(GRACE), asked_again.wait())
     await server.shutdown(0)
+    ignore_signals()
+
+
+def ignore_signals() -> None:
+    """Lets the program end as it wants to."""
+    for number in ENDS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 async def first_of(*works: Coroutine[Any, Any, Any]) -> None:

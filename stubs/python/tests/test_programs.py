@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import signal
 import sys
@@ -35,6 +36,17 @@ async def start(command: list[str]) -> Process:
 def end(process: Process) -> None:
     if process.returncode is None:
         process.kill()
+
+
+async def refuses(port: int) -> bool:
+    """Whether nobody listens at a port."""
+    try:
+        _, writer = await asyncio.open_connection("127.0.0.1", port)
+    except OSError as error:
+        # One that was about to be accepted is reset.
+        return isinstance(error, ConnectionRefusedError)
+    writer.close()
+    return False
 
 
 async def outcome(process: Process) -> tuple[int | None, str, str]:
@@ -120,11 +132,78 @@ class Programs(AsyncCase):
         self.assertIn("cannot connect to", error)
         self.assertNotIn("Traceback", error)
 
+    async def test_the_robot_ends_at_once_when_it_is_asked_twice(self) -> None:
+        for number in (signal.SIGTERM, signal.SIGINT):
+            process, commands, _ = await self.robot("python", "--delay", "3600000")
+            config = rt.ClientConfig(
+                host="127.0.0.1", command_port=int(commands), reconnect=None, call_timeout=PATIENCE
+            )
+            async with fc.Client.connect(config) as client:
+                calling = asyncio.ensure_future(client.get_robot_sn(repeat=False))
+                moving = asyncio.ensure_future(client.start_recharge())
+                await asyncio.wait_for(client.reports().recv(), PATIENCE)
+                process.send_signal(number)
+                # It has taken note, and waits for what it has begun.
+                while not await refuses(int(commands)):
+                    pass
+                self.assertFalse(calling.done())
+                process.send_signal(number)
+                code, _, error = await outcome(process)
+                self.assertEqual((code, "Traceback" in error), (0, False), error)
+                for call in (calling, moving):
+                    with self.assertRaises(rt.LostError):
+                        await call
+
+    async def test_the_robot_is_never_killed_by_being_asked_to_end(self) -> None:
+        for number in (signal.SIGTERM, signal.SIGINT):
+            process, _, _ = await self.robot("python")
+            ending = asyncio.ensure_future(process.wait())
+            while not ending.done():
+                # To the last moment of its life. `send_signal` would take its exit status from the event loop.
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process.pid, number)
+                await asyncio.sleep(0.001)
+            code, _, error = await outcome(process)
+            self.assertEqual((code, "Traceback" in error), (0, False), error)
+
     async def test_the_robot_ends_with_its_app_if_it_is_to(self) -> None:
         process, commands, data = await self.robot("python", "--once")
         app = await start([*program("python", "app"), "--command-port", commands, "--data-port", data])
         self.assertEqual((await outcome(app))[0], 0)
         self.assertEqual((await outcome(process))[0], 0)
+
+    async def test_the_app_ends_with_1_when_it_fails(self) -> None:
+        class Leaves(fc.PartialRobot):
+            async def get_robot_sn(self, context: rt.Context, request: fc.GetRobotSnRequest) -> fc.GetRobotSnResponse:
+                leaving.set()
+                return fc.GetRobotSnResponse.example()
+
+        leaving = asyncio.Event()
+        config = rt.ServerConfig(address="127.0.0.1", command_port=0, data_port=0)
+        async with rt.Server(Leaves(), config) as server:
+            ports = ["--command-port", str(server.command_address[1]), "--data-port", str(server.data_address[1])]
+            app = await start([*program("python", "app"), *ports])
+            await asyncio.wait_for(leaving.wait(), PATIENCE)
+            await server.shutdown(0)
+            code, _, error = await outcome(app)
+        self.assertEqual((code, "Traceback" in error), (1, False), error)
+        self.assertIn("the connection", error)
+
+    async def test_wrong_options_are_refused(self) -> None:
+        for name, *options in (
+            ("robot", "--command-port", "65536"),
+            ("robot", "--host", ""),
+            ("robot", "--delay", "nan"),
+            ("robot", "--delay", "-1"),
+            ("robot", "--picture-scale", "0"),
+            ("app", "--command-port", "0"),
+            ("app", "--gzip-from", "-1"),
+            ("ask", "--host", " "),
+            ("drill", "--data-port", "-5"),
+        ):
+            with self.subTest(name, options=options):
+                code, out, error = await outcome(await start([*program("python", name), *options]))
+                self.assertEqual((code, out, "Traceback" in error), (2, "", False), error)
 
     async def test_the_tool_without_async_asks(self) -> None:
         process, commands, _ = await self.robot("python")

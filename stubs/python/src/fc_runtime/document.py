@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import accumulate
 from json.encoder import encode_basestring
 from typing import TYPE_CHECKING, Final, NoReturn, TypeAlias, Union, cast
 
@@ -41,14 +42,19 @@ DEFAULT_DEPTH: Final = 64
 DEFAULT_VALUES: Final = 1 << 20
 """Keys and items where nobody says otherwise."""
 
-_TOKENS: Final = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"|[\[\]{}]', re.DOTALL)
-_STRINGS: Final = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"', re.DOTALL)
+MAX_DEPTH: Final = 127
+"""Levels of nesting that are read whatever is configured."""
+
 _SURROGATE: Final = re.compile("[\ud800-\udfff]")
-_PAIRS: Final = re.compile(rb"\{\}|\[\]")
-_WITHOUT_WEIGHT: Final = bytes(byte for byte in range(256) if byte not in b'"\\[]{}')
-# Levels that are taken off one by one; what is deeper gets a closer look.
-_FLAT: Final = 8
-_CLOSING: Final = {"[": "]", "{": "}"}
+# What is looked at together, in bytes.
+_CHUNK: Final = 1 << 16
+_SPACES: Final = " \t\n\r"
+_SPACE: Final = _SPACES.encode()
+# Brackets, commas and quotes as they are, and something else for all else.
+_STRUCTURE: Final = bytes(byte if byte in b'[]{},"' else ord("0") for byte in range(256))
+_STEPS: Final = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
+_TOKENS: Final = re.compile(rb'"[^"\\]*(?:\\.[^"\\]*)*"?|[\[\]{},]|[^"\[\]{}, \t\n\r]+', re.DOTALL)
+_REST: Final = re.compile(rb'[^"\\]*(?:\\.[^"\\]*)*"?', re.DOTALL)
 
 
 def _refuse(word: str) -> NoReturn:
@@ -58,63 +64,128 @@ def _refuse(word: str) -> NoReturn:
 _DECODER: Final = json.JSONDecoder(
     object_pairs_hook=Entries, parse_float=Number, parse_int=Number, parse_constant=_refuse
 )
+# Finds what is no JSON, and keeps little of what it reads.
+_CHECKER: Final = json.JSONDecoder(object_pairs_hook=len, parse_float=len, parse_int=len, parse_constant=_refuse)
 
 
 def _scan(text: str) -> Tree:
     try:
         tree: Tree = _DECODER.decode(text)
     except json.JSONDecodeError as error:
-        raise BodyError(BodyErrorKind.BAD_JSON, f"{error.msg} at character {error.pos}") from None
+        raise _bad_json(error) from None
     return tree
 
 
-def _is_flat(text: str, limit: int) -> bool:
-    """Whether brackets are in pairs, and not nested too deeply; false also where that takes a closer look to see."""
-    rest = text.encode("utf-8", "surrogatepass").translate(None, _WITHOUT_WEIGHT)
-    if b"\\" in rest:
-        return False
-    # Strings without brackets are pairs of quotes by now. If none is left, no bracket is inside a string.
-    rest = rest.replace(b'""', b"")
-    for _ in range(min(limit, _FLAT)):
-        if not rest:
+def _bad_json(error: json.JSONDecodeError) -> BodyError:
+    return BodyError(BodyErrorKind.BAD_JSON, f"{error.msg} at character {error.pos}")
+
+
+class _Survey:
+    """Counts depth and values of a text as a reader does, and stops at the first place that is beyond a limit.
+
+    It looks at chunks as a whole, and at single brackets only in the chunk that has that place. What is no JSON is for
+    the scanner to find.
+    """
+
+    def __init__(self, data: bytes, depth: int, values: int) -> None:
+        self._data: Final = data
+        self._depth: Final = depth
+        self._values: Final = values
+        # Before the chunk: levels, values, whether it begins inside a string, and the place of a bracket right before
+        # it, which may be that of an empty list or object and is counted with the chunk.
+        self._level = self._count = 0
+        self._is_inside = False
+        self._open_at: int | None = None
+
+    def check(self) -> None:
+        """Raises `BodyError`."""
+        data, at = self._data, 0
+        while at < len(data):
+            end = min(at + _CHUNK, len(data))
+            # An escape is of one chunk.
+            run = end - len(data[at:end].rstrip(b"\\")) - at
+            end += run % 2
+            if not self._takes(at, end):
+                self._find(at, end)
+                return
+            at = end
+
+    def _takes(self, at: int, end: int) -> bool:
+        """Counts a chunk; false if something in it is beyond a limit."""
+        chunk = self._data[at:end]
+        if b"\\" in chunk:
+            chunk = chunk.replace(b"\\\\", b"").replace(b'\\"', b"")
+        parts = chunk.split(b'"')
+        # Strings are one quote each.
+        bare = b'"'.join(parts[1 if self._is_inside else 0 :: 2])
+        if self._is_inside:
+            bare = b'"' + bare
+        is_inside = self._is_inside ^ (len(parts) % 2 == 0)
+        bare = bare.translate(_STRUCTURE, _SPACE) + (b'"' if is_inside else b"")
+        if self._open_at is not None:
+            bare = self._data[self._open_at : self._open_at + 1] + bare
+        opened = bare.count(b"[") + bare.count(b"{")
+        if self._level + opened > self._depth and not self._is_flat(bare.translate(None, b'0,"')):
+            return False
+        is_open = bare.endswith((b"[", b"{"))
+        count = self._count + bare.count(b",") + opened - bare.count(b"[]") - bare.count(b"{}") - is_open
+        if count > self._values:
+            return False
+        self._level += opened - is_open - bare.count(b"]") - bare.count(b"}")
+        self._count, self._is_inside = count, is_inside
+        self._open_at = max(self._data.rfind(one, 0, end) for one in (b"[", b"{")) if is_open else None
+        return True
+
+    def _is_flat(self, brackets: bytes) -> bool:
+        """Whether no bracket is beyond the limit."""
+        # Most texts have few levels: without the two innermost of each place, hardly any bracket is left.
+        rest = brackets.replace(b"[]", b"").replace(b"{}", b"")
+        if self._level + 2 + len(rest) <= self._depth:
             return True
-        # One level, the innermost of each.
-        rest = _PAIRS.sub(b"", rest)
-    return not rest
+        return max(accumulate(map(_STEPS.__getitem__, brackets), initial=self._level)) <= self._depth
+
+    def _find(self, at: int, end: int) -> None:
+        """Raises `BodyError` for the first place in this chunk that is beyond a limit."""
+        level, count, opened = self._level, self._count, self._open_at
+        level += opened is not None
+        if self._is_inside:
+            rest = _REST.match(self._data, at, end)
+            at = at if rest is None else rest.end()
+        for found in _TOKENS.finditer(self._data, at, end):
+            token = found.group()
+            # What an open bracket is followed by is its first value, unless that is the closing one.
+            count += token == b"," or (opened is not None and token not in b"]}")
+            if count > self._values:
+                place = found.end() if token == b"," else found.start()
+                self._refuse(place, BodyErrorKind.TOO_MANY_VALUES, f"more than {self._values} keys and items")
+            opened = found.start() if token in b"[{" else None
+            level += _STEPS.get(token[0], 0)
+            if level > self._depth:
+                self._refuse(found.end(), BodyErrorKind.TOO_DEEP, f"nested deeper than {self._depth} levels")
+
+    def _refuse(self, place: int, kind: BodyErrorKind, detail: str) -> NoReturn:
+        """Raises `BodyError` of this kind, unless the text is no JSON up to this place: that is found first."""
+        text = self._data[:place].decode("utf-8", "replace")
+        try:
+            _CHECKER.decode(text)
+        except json.JSONDecodeError as error:
+            # What is cut off is missed at the end.
+            if error.pos < len(text.rstrip(_SPACES)):
+                raise _bad_json(error) from None
+        raise BodyError(kind, detail)
 
 
-def _check_depth(text: str, limit: int) -> None:
-    """Refuses what is nested too deeply, before the scanner uses up the stack for it."""
-    if text.count("[") + text.count("{") <= limit or _is_flat(text, limit):
-        return
-    opened: list[str] = []
-    for found in _TOKENS.finditer(text):
-        token = found.group()
-        if token in _CLOSING:
-            if len(opened) >= limit:
-                # What is wrong before this place is found first; no digit, which would go on with a number.
-                closing = "".join(_CLOSING[one] for one in reversed(opened))
-                _scan(text[: found.start()] + "null" + closing)
-                raise BodyError(BodyErrorKind.TOO_DEEP, f"nested deeper than {limit} levels")
-            opened.append(token)
-        elif len(token) == 1 and (not opened or _CLOSING[opened.pop()] != token):
-            # No JSON: the scanner stops here at the latest.
-            return
-
-
-def _check_values(text: str, limit: int) -> None:
+def _check_limits(data: bytes, depth: int, values: int) -> None:
+    """Raises `BodyError` for a text that is nested too deeply, or holds too many values."""
+    depth = min(depth, MAX_DEPTH)
     # A value takes two bytes at least: itself, and what parts it from the next one.
-    if len(text) <= 2 * limit:
-        return
-    bare = _STRINGS.sub("", text)
-    if bare.count(",") + bare.count("[") + bare.count("{") > limit:
-        raise BodyError(BodyErrorKind.TOO_MANY_VALUES, f"more than {limit} keys and items")
+    if len(data) > 2 * values or data.count(b"[") + data.count(b"{") > depth:
+        _Survey(data, depth, values).check()
 
 
 def parse_text(text: str, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VALUES) -> Tree:
     """The tree of a JSON text. Raises `BodyError`."""
-    _check_depth(text, depth)
-    _check_values(text, values)
+    _check_limits(text.encode("utf-8", "surrogatepass"), depth, values)
     return _scan(text)
 
 
@@ -126,7 +197,8 @@ def parse_body(data: bytes, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VA
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise BodyError(BodyErrorKind.NOT_UTF8, f"no UTF-8 at byte {error.start}") from None
-    tree = parse_text(text, depth, values)
+    _check_limits(data, depth, values)
+    tree = _scan(text)
     if not isinstance(tree, Entries):
         raise BodyError(BodyErrorKind.NOT_AN_OBJECT, "the body has to be an object")
     return tree
@@ -201,7 +273,10 @@ class Json:
     @classmethod
     def of(cls, value: Plain) -> Json:
         """A value made of what Python has: `Json.of({"x": [1, None]})`. NaN and infinities raise `ValueError`."""
-        return cls(json.dumps(value, allow_nan=False))
+        try:
+            return cls(json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(",", ":")))
+        except RecursionError:
+            raise BodyError(BodyErrorKind.TOO_DEEP, f"nested deeper than {DEFAULT_DEPTH} levels") from None
 
     @classmethod
     def of_tree(cls, tree: Tree) -> Json:
