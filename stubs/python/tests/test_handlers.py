@@ -140,7 +140,7 @@ class Handlers(unittest.TestCase):
                 self.assertEqual((context.code, context.id), (GET, 7))
 
     @clocked
-    async def test_what_the_hook_raises_harms_nothing(self) -> None:
+    async def test_errors_of_the_hook_harm_nothing(self) -> None:
         def hook(error: BaseException, context: rt.Context) -> None:
             raise KeyError("secret")
 
@@ -201,7 +201,7 @@ class Handlers(unittest.TestCase):
             await server.shutdown(0)
 
     @clocked
-    async def test_what_is_no_response_of_the_command_is_not_sent(self) -> None:
+    async def test_wrong_responses_are_not_sent(self) -> None:
         wrong: list[tuple[int, Any, str]] = [
             (GET, None, "wrong_type"),
             (GET, sample.DockResponse(), "wrong_type"),
@@ -235,7 +235,7 @@ class Handlers(unittest.TestCase):
                 self.assertEqual(error.name, name)
 
     @clocked
-    async def test_what_is_no_request_of_the_command_is_not_sent(self) -> None:
+    async def test_wrong_requests_are_not_sent(self) -> None:
         server = await serve(sample.ExampleRobot(pretend_motion=True))
         host, port = server.command_address
         async with sample.Client.connect(rt.ClientConfig(host=host, command_port=port)) as client:
@@ -259,7 +259,7 @@ class Handlers(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_what_is_no_report_and_no_stream_is_not_sent(self) -> None:
+    async def test_wrong_reports_and_streams_are_not_sent(self) -> None:
         server = await serve(sample.ExampleRobot())
         host, port = server.command_address
         config = rt.ClientConfig(host=host, command_port=port, data_port=server.data_address[1])
@@ -290,7 +290,7 @@ class Handlers(unittest.TestCase):
             response.to_json()
         self.assertEqual((refused.exception.name, refused.exception.path), ("wrong_type", ""))
 
-    def test_a_program_without_a_log_of_its_own_says_what_failed(self) -> None:
+    def test_errors_are_printed_without_logging_settings(self) -> None:
         program = """
 import asyncio, sys
 import fc_runtime as rt

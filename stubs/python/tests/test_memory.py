@@ -96,7 +96,7 @@ class Memory(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_frames_of_streams_that_wait_are_few_whatever_connects(self) -> None:
+    async def test_waiting_stream_frames_stay_few(self) -> None:
         server = await serve(sample.ExampleRobot(), connections_per_address=64)
         from_apps = server.streams()
         for number in range(20):
@@ -156,7 +156,7 @@ class Memory(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_what_waits_for_a_deaf_app_counts_as_soon_as_it_waits(self) -> None:
+    async def test_unread_responses_count_at_once(self) -> None:
         server = await serve(sample.ExampleRobot(), memory=16 << 20)
         deaf = await Raw.connect(server.command_address)
         deaf.writer.transport.pause_reading()  # type: ignore[attr-defined]

@@ -9,7 +9,7 @@ import fc_runtime as rt
 from fc_runtime.document import parse_body, parse_text
 from support import PROTOCOL
 
-# More than a chunk of what is looked at together.
+# Longer than one chunk of the survey.
 LONG = 70_000
 
 
@@ -70,7 +70,7 @@ class Reader:
 
 
 def read(text: str, depth: int, values: int) -> str:
-    """What a reader finds wrong with a text that is JSON."""
+    """The fault that a reader finds in a JSON text."""
     try:
         Reader(text, depth, values).value()
     except ValueError as error:
@@ -145,7 +145,7 @@ class Survey(unittest.TestCase):
             if values > 1:
                 self.assertEqual(surveyed(text, 9, values - 1), "too_many_values")
 
-    def test_what_is_wrong_first_is_named(self) -> None:
+    def test_the_first_fault_is_named(self) -> None:
         many, deep = "[" + "1," * 99 + "1]", "[" * 20 + "]" * 20
         for text, name in (
             (f'{{"a":01,"b":{many}}}', "bad_json"),

@@ -15,8 +15,8 @@ const CHECKSUM = 0b0000_0010
 const RESERVED = 0b1110_0000
 
 /**
- * Returns the deflated data of a member, which has to end with its last byte, or `null` if this is no member. A second member and
- * zeros behind the first one are part of the data, and inflating it fails.
+ * Returns the deflated data of a member, which has to end with its last byte, or `null` for other data. A second member and zeros
+ * behind the first one are part of the data, and inflating it fails.
  */
 export function deflatedOf(member: Uint8Array): Uint8Array | null {
   const flags = member[3] ?? RESERVED

@@ -21,7 +21,7 @@ function md5AtOnce(data: Uint8Array): Uint8Array {
 interface Inflated {
   /** The plain data. */
   readonly buffer: Uint8Array
-  /** The engine, with the number of bytes that it used. */
+  /** The stream, with the number of bytes that it used. */
   readonly engine: { readonly bytesWritten: number }
 }
 

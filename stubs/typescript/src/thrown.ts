@@ -2,7 +2,7 @@
 
 /** The log fields of an error. */
 export interface ThrownFields {
-  /** Class of the error, or the type of a thrown value that is no error. */
+  /** Class of the error, or the type of a thrown value that is not an error. */
   readonly error: string
   /** Innermost line of user code, as file, line and column; absent where the stack does not have it. */
   readonly at?: string

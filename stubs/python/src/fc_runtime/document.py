@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Number(str):
-    """A number as it is spelled."""
+    """A number in its own spelling."""
 
     __slots__ = ()
 
@@ -38,9 +38,9 @@ Plain: TypeAlias = Union[str, int, float, bool, None, "list[Plain]", "dict[str, 
 """What `json.loads` makes of a JSON text."""
 
 DEFAULT_DEPTH: Final = 64
-"""Levels of nesting where nobody says otherwise."""
+"""Default limit of nesting levels."""
 DEFAULT_VALUES: Final = 1 << 20
-"""Keys and items where nobody says otherwise."""
+"""Default limit of keys and items."""
 
 MAX_DEPTH: Final = 127
 """Levels of nesting that are read whatever is configured."""
@@ -83,8 +83,8 @@ def _bad_json(error: json.JSONDecodeError) -> BodyError:
 class _Survey:
     """Counts depth and values of a text as a reader does, and stops at the first place that is beyond a limit.
 
-    It looks at chunks as a whole, and at single brackets only in the chunk that has that place. What is no JSON is for
-    the scanner to find.
+    It looks at chunks as a whole, and at single brackets only in the chunk that has that place. The
+    scanner finds text that is not JSON.
     """
 
     def __init__(self, data: bytes, depth: int, values: int) -> None:
@@ -137,7 +137,7 @@ class _Survey:
         return True
 
     def _is_flat(self, brackets: bytes) -> bool:
-        """Whether no bracket is beyond the limit."""
+        """True if no bracket exceeds the limit."""
         # Most texts have few levels: without the two innermost of each place, hardly any bracket is left.
         rest = brackets.replace(b"[]", b"").replace(b"{}", b"")
         if self._level + 2 + len(rest) <= self._depth:
@@ -241,7 +241,7 @@ def write_tree(tree: Tree, out: list[str]) -> None:
 
 
 def to_bytes(pieces: list[str]) -> bytes:
-    """JSON text as it is sent. Half a surrogate pair that has been kept is escaped again."""
+    """JSON text for sending. Half a surrogate pair that has been kept is escaped again."""
     text = "".join(pieces)
     try:
         return text.encode("utf-8")
@@ -303,7 +303,7 @@ class Json:
         return _plain(self._tree)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the other is written in the same way."""
+        """True if both have the same text."""
         return isinstance(other, Json) and self.text == other.text
 
     def __hash__(self) -> int:
@@ -364,7 +364,7 @@ class Extra:
         self._entries.append((key, tree))
 
     def __contains__(self, key: object) -> bool:
-        """Whether there is a value of this key."""
+        """True if this key has a value."""
         return any(name == key for name, _ in self._entries)
 
     def __iter__(self) -> Iterator[str]:
@@ -372,11 +372,11 @@ class Extra:
         return (name for name, _ in self._entries)
 
     def __len__(self) -> int:
-        """How many keys there are."""
+        """The number of keys."""
         return len(self._entries)
 
     def __bool__(self) -> bool:
-        """Whether there are any keys."""
+        """True if there are any keys."""
         return bool(self._entries)
 
     def __eq__(self, other: object) -> bool:

@@ -24,12 +24,12 @@ def _library() -> tuple[str, ...]:
 
 
 def _is_user(file: str) -> bool:
-    """Whether a file is not part of the runtime or of Python."""
+    """True unless a file is part of the runtime or of Python."""
     return not file.startswith((_RUNTIME, "<frozen ")) and (_is_package(file) or not file.startswith(_library()))
 
 
 def _is_package(file: str) -> bool:
-    """Whether a file is part of an installed package."""
+    """True if a file is part of an installed package."""
     return any(folder in file for folder in _PACKAGES)
 
 
