@@ -46,7 +46,7 @@ fn build(folder: &Path, name: &str, program: &str, has_tokio: bool) -> PathBuf {
 
     let target = nested::target();
     let cargo = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO"))
+        let output = nested::command()
             .args(arguments)
             .arg("--offline")
             .current_dir(&project)

@@ -5,7 +5,6 @@ use crate::support::{self, nested};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Each README, and where the guides in its language lie.
 const READMES: [(&str, &str); 2] = [
@@ -75,7 +74,7 @@ fn compile(name: &str, manifest: &str, programs: &[&str]) {
         fs::write(sources.join(format!("program_{number}.rs")), program).unwrap();
     }
 
-    let output = Command::new(env!("CARGO"))
+    let output = nested::command()
         .args(["check", "--offline"])
         .current_dir(project.path())
         .env("CARGO_TARGET_DIR", nested::target())

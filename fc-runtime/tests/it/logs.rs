@@ -70,11 +70,10 @@ async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
         .await
         .unwrap();
     app.call_raw(0x0999, br#"{"hush":1}"#).await.unwrap();
-    robot
-        .handle
-        .push(Audience::All, &Moved { metres: 7_654_321 })
-        .await
-        .unwrap();
+    let mut reports = app.reports();
+    let moved = Moved { metres: 7_654_321 };
+    let (pushed, _) = tokio::join!(robot.handle.push(Audience::All, &moved), reports.recv());
+    pushed.unwrap();
 
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();

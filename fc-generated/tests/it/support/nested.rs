@@ -99,8 +99,23 @@ pub fn refused(project: &Path, arguments: &[&str]) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// Cargo, without the variables that describe this package. Build scripts that read them would run again.
+pub fn command() -> Command {
+    let mut cargo = Command::new(env!("CARGO"));
+    for (name, _) in std::env::vars_os() {
+        let of_package = ["CARGO_PKG_", "CARGO_MANIFEST_"];
+        if of_package
+            .iter()
+            .any(|it| name.to_string_lossy().starts_with(it))
+        {
+            cargo.env_remove(name);
+        }
+    }
+    cargo
+}
+
 fn run(project: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO"))
+    command()
         .args(arguments)
         .arg("--offline")
         .current_dir(project.join("fc-generated"))

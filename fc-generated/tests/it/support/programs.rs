@@ -11,7 +11,7 @@ pub fn examples<const N: usize>(names: [&str; N], features: &str) -> [PathBuf; N
         .parent()
         .and_then(|deps| deps.parent())
         .expect("target/profile/deps");
-    let mut cargo = Command::new(env!("CARGO"));
+    let mut cargo = super::nested::command();
     // With the features that dependencies have where all of the workspace is tested, so that nothing is compiled twice.
     cargo.args(["build", "--quiet", "--offline", "--workspace"]);
     for feature in features.split_whitespace() {
