@@ -163,21 +163,20 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
     let make_rest = rest
         .iter()
         .map(|field| quote!(#field: ::core::default::Default::default(),));
-    let take = |(field, ty): Part<'_>, wanted: TokenStream| quote!(<#ty as #runtime::envelope::Taken<#wanted>>::take(&self.#field));
-    let take_time = time.map_or_else(
-        || quote!(::core::option::Option::None),
-        |time| take(time, quote!(::core::option::Option<#number>)),
-    );
+    let take_number = |part: &Option<Part<'_>>| {
+        part.map_or_else(
+            || quote!(::core::option::Option::None),
+            |(field, ty)| {
+                let number = quote!(::core::option::Option<::core::primitive::i64>);
+                quote!(<#ty as #runtime::envelope::Taken<#number>>::take(&self.#field))
+            },
+        )
+    };
+    let take_time = take_number(time);
     let trait_name = trait_name(envelope);
     let (arguments, results) = if envelope.side == Some(Side::Response) {
         let has_result = result_code.is_some();
-        let take_code = result_code.map_or_else(
-            || quote!(::core::option::Option::None),
-            |code| {
-                let code = take(code, number.clone());
-                quote!(::core::option::Option::Some(#code))
-            },
-        );
+        let take_code = take_number(result_code);
         let text = |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
         let take_text = result_text.map_or_else(|| quote!(""), text);
         let arguments = quote! {

@@ -243,7 +243,7 @@ fn shape(ty: &TypeDef) -> Shape<'_> {
 
 fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
-    let pattern = details.pattern.as_deref();
+    let pattern = details.pattern.as_ref();
     let mut form = Form {
         wire: field.wire_form,
         ..Form::PLAIN
@@ -262,7 +262,7 @@ fn own(field: &model::Field) -> FieldPlan<'_> {
         optional: field.optional,
         form,
         constraints: details.constraints().collect(),
-        pattern: pattern.and_then(|source| Regex::new(&format!("^(?:{source})$")).ok()),
+        pattern: pattern.and_then(|it| Regex::new(&format!("^(?:{})$", it.portable())).ok()),
     }
 }
 

@@ -4,7 +4,7 @@
 /// A field of an envelope that holds a `T`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be a field of an envelope with this role",
-    note = "a time is `i64`, a result code an integer, a result text `String`; a time or text may be an `Option`"
+    note = "a time is `i64`, a result code an integer, a result text `String`; each may be an `Option`"
 )]
 pub trait Part<T> {
     /// The field with this value.
@@ -14,7 +14,7 @@ pub trait Part<T> {
 /// A field of an envelope from which a `T` can be taken.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be a field of an envelope with this role",
-    note = "a time is `i64`, a result code an integer, a result text `String`; a time or text may be an `Option`"
+    note = "a time is `i64`, a result code an integer, a result text `String`; each may be an `Option`"
 )]
 pub trait Taken<T> {
     /// Its value.
@@ -41,33 +41,27 @@ macro_rules! codes {
             }
         }
 
-        impl Taken<i64> for $integer {
-            fn take(&self) -> i64 {
-                i64::try_from(*self).unwrap_or(i64::MAX)
+        impl Part<i64> for Option<$integer> {
+            fn make(value: i64) -> Self {
+                Some(<$integer>::make(value))
+            }
+        }
+
+        impl Taken<Option<i64>> for $integer {
+            fn take(&self) -> Option<i64> {
+                Some(i64::try_from(*self).unwrap_or(i64::MAX))
+            }
+        }
+
+        impl Taken<Option<i64>> for Option<$integer> {
+            fn take(&self) -> Option<i64> {
+                self.as_ref().and_then(Taken::take)
             }
         }
     )*};
 }
 
 codes!(i8 i16 i32 i64 u8 u16 u32 u64);
-
-impl Part<i64> for Option<i64> {
-    fn make(value: i64) -> Self {
-        Some(value)
-    }
-}
-
-impl Taken<Option<i64>> for i64 {
-    fn take(&self) -> Option<i64> {
-        Some(*self)
-    }
-}
-
-impl Taken<Option<i64>> for Option<i64> {
-    fn take(&self) -> Option<i64> {
-        *self
-    }
-}
 
 impl Part<&str> for String {
     fn make(value: &str) -> Self {

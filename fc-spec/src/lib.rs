@@ -15,6 +15,7 @@ pub mod lint;
 pub mod load;
 pub mod merge;
 pub mod model;
+mod names;
 pub mod rename;
 pub mod retire;
 pub mod revision;

@@ -371,6 +371,9 @@ words! {
 words! {
     /// How sure a fact is, the surest first.
     pub enum BodyState {
+        /// A body that may have any keys, by design.
+        /// 有意不限定键的消息体。
+        Free = "free",
         /// Stated in the source.
         /// 源文档写明了。
         Stated = "stated",

@@ -103,7 +103,7 @@ fn a_field_has_a_type_and_a_schema() {
         (
             "{ type: string, pattern: \"it's \\\\d\", example: it's 1 }",
             "field: string",
-            "field: { key: 'field', type: 'string', pattern: \"it's \\\\d\" },",
+            "field: { key: 'field', type: 'string', pattern: \"it's [0-9]\" },",
         ),
         (
             "{ type: base64, length: [1, 4], example: AA== }",

@@ -24,6 +24,7 @@ mod error_names;
 #[allow(dead_code, reason = "a part of it is used here")]
 #[path = "../../../fc-spec/tests/it/good_spec.rs"]
 mod good_spec;
+mod hostile_dump;
 mod inspect;
 #[allow(dead_code, reason = "a part of it is used here")]
 #[path = "../../../fc-spec/tests/it/json_schema.rs"]

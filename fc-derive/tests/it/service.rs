@@ -59,6 +59,14 @@ struct Bare {
     code: u8,
 }
 
+/// An envelope whose result may be absent.
+#[derive(Clone, Debug, PartialEq, Message, Envelope)]
+#[fc(envelope = "response")]
+struct Silent {
+    #[fc(role = "result_code")]
+    code: Option<i32>,
+}
+
 /// An envelope without keys.
 #[derive(Clone, Debug, PartialEq, Message, Envelope)]
 #[fc(envelope = "response")]
@@ -438,6 +446,9 @@ fn envelopes_are_made_and_read() {
     );
     let bare = Bare::at(1, -5, "unused");
     assert_eq!((bare.result_code(), bare.result_text()), (Some(0), ""));
+    let sent = Silent::at(1, i64::MAX, "");
+    assert_eq!(sent.result_code(), Some(i32::MAX.into()));
+    assert_eq!(Silent { code: None }.result_code(), None);
     let have = [Answered::HAS_RESULT, Bare::HAS_RESULT, Nothing::HAS_RESULT];
     assert_eq!(have, [true, true, false]);
     let none = Nothing::at(1, -5, "unused");

@@ -4,7 +4,7 @@ use super::fields::Fields;
 use super::{Judge, accept, json, sources};
 use crate::rule::Wire;
 use crate::rules::constraints as rules;
-use fc_spec::model::{FieldDetails, Scalar};
+use fc_spec::model::{FieldDetails, Pattern, Scalar};
 
 impl Judge<'_> {
     pub(super) fn constraints(&mut self, it: &Fields<'_>) {
@@ -54,7 +54,8 @@ impl Judge<'_> {
             self.claim_in(&it.path, &["length"]);
         }
         if old.pattern != new.pattern {
-            let values = [&old.pattern, &new.pattern].map(|it| it.as_deref().unwrap_or_default());
+            let values =
+                [&old.pattern, &new.pattern].map(|it| it.as_ref().map_or("", Pattern::source));
             let wire = Wire::of(new.pattern.is_some(), old.pattern.is_some());
             self.report(it.found(&rules::PATTERN, values, wire));
             self.claim_in(&it.path, &["pattern"]);

@@ -95,7 +95,7 @@ fn what_an_audience_has_compiles_and_holds_nothing_of_the_others() {
         };
         // An operation, a key and a value of an enum.
         assert_eq!(
-            ["close_switch", "keep", "stuck"].map(made),
+            ["close_switch", "pub keep:", "stuck"].map(made),
             names,
             "{audience}"
         );

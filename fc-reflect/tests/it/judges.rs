@@ -1,7 +1,8 @@
 //! Decoders in other languages make the same of the same bytes as the one in Rust.
 //!
 //! `FC_JUDGES='python=stubs/python/run judge;cpp=stubs/cpp/run judge'` names them, each with its command from the
-//! project's root. `FC_FRAMES` and `FC_SEED` are as in `agreement`.
+//! project's root. `FC_FRAMES` and `FC_SEED` are as in `agreement`. `FC_FOREIGN` names a folder of JSON texts instead: those
+//! called `y_…` have to be taken, those called `n_…` refused.
 //!
 //! A judge reads frames, each in hex on a line of its own, and answers each with a line, a list in JSON:
 //!
@@ -10,21 +11,21 @@
 //!   written again;
 //! - `["bytes", 0, 3, 513, 7, "0a0b"]`: the same of what has no message: its data in hex.
 
-use crate::mutate::{self, Random, Seeds};
+use crate::mutate::{self, Random};
 use crate::support::typed::{Typed, Verdict};
 use crate::support::{self, hex, number};
 use fc_generated::{Fc, FrameHeader};
 use fc_reflect::Reflector;
-use fc_runtime::{Header as _, Protocol as _};
+use fc_runtime::{Command as _, Encoder, FrameId, Header as _, Protocol as _};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::io::{BufRead as _, BufReader, BufWriter, Write as _};
 use std::iter::zip;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread;
+use std::{fmt, fs};
 
 #[test]
 fn judges_agree() {
@@ -36,8 +37,26 @@ fn judges_agree() {
     let reflector = Reflector::new(&model);
     let seeds = mutate::seeds(&support::vectors(), &reflector);
     let typed = Typed::new(&model);
-    let count = number("FC_FRAMES", 20_000);
-    let first = number("FC_SEED", 0).wrapping_mul(1 << 32);
+    let foreign = std::env::var("FC_FOREIGN").map(|folder| foreign_frames(&folder));
+    let (first, count) = match &foreign {
+        Ok(frames) => (0, frames.len() as u64),
+        Err(_) => (
+            number("FC_SEED", 0).wrapping_mul(1 << 32),
+            number("FC_FRAMES", 20_000),
+        ),
+    };
+    let frame = |number: u64| match &foreign {
+        Ok(frames) => frames[usize::try_from(number).unwrap()].1.clone(),
+        Err(_) => mutate::frame(&mut Random(number), &seeds, &reflector),
+    };
+    for (number, (name, bytes)) in foreign.iter().flatten().enumerate() {
+        let verdict = typed.verdict(bytes, Fc::DEFAULTS.limits.json());
+        let is_taken = matches!(verdict, Verdict::Taken { .. });
+        // As a body, a text has to be an object as well.
+        let is_wrapped = number % 2 == 1;
+        assert!(!name.starts_with("y_") || is_taken || !is_wrapped, "{name}");
+        assert!(!name.starts_with("n_") || !is_taken, "{name}");
+    }
     for judge in judges.split(';') {
         let (name, command) = judge.split_once('=').expect("name=command");
         let mut child = start(command);
@@ -47,14 +66,14 @@ fn judges_agree() {
         // The first of each kind of disagreement, and how many there are of it.
         let mut faults: BTreeMap<String, (String, u64)> = BTreeMap::new();
         thread::scope(|scope| {
-            let (seeds, reflector) = (&seeds, &reflector);
+            let frame = &frame;
             let mut listening = Listening {
                 judge: &mut child,
                 is_content: false,
             };
-            scope.spawn(move || send(frames, first..first + count, seeds, reflector));
+            scope.spawn(move || send(frames, (first..first + count).map(frame)));
             for seed in first..first + count {
-                let bytes = mutate::frame(&mut Random(seed), seeds, reflector);
+                let bytes = frame(seed);
                 let wanted = typed.verdict(&bytes, Fc::DEFAULTS.limits.json());
                 *found.entry(wanted.name()).or_default() += 1;
                 let answer = answers.next().map(|line| line.expect("a line of text"));
@@ -83,8 +102,34 @@ fn judges_agree() {
         assert!(faults.is_empty(), "{name} disagrees");
         assert!(child.wait().expect("it ends").success(), "{name}");
         println!("{name}: {count} frames: {found:?}");
-        assert!(found["taken"] * 10 > count && found.len() > 20, "{found:?}");
+        let is_varied = found["taken"] * 10 > count && found.len() > 20;
+        assert!(is_varied || foreign.is_ok(), "{found:?}");
     }
+}
+
+/// Frames with the texts of a folder, each with the name of its file: as a body, and as the value of an unknown key.
+fn foreign_frames(folder: &str) -> Vec<(String, Vec<u8>)> {
+    let files = fs::read_dir(folder).expect("the folder of FC_FOREIGN");
+    let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    files.sort();
+    let id = FrameId {
+        response: false,
+        kind: Fc::COMMAND,
+        code: fc_generated::GetRobotSnRequest::CODE,
+        id: 1,
+    };
+    let frames = files.iter().flat_map(|file| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let text = fs::read(file).unwrap();
+        let wrapped = [br#"{"cmdTime":1,"value":"#, &*text, b"}"].concat();
+        [text, wrapped].map(|body| {
+            let mut frame = Vec::new();
+            let encoded = Encoder::<Fc>::new().bytes(&mut frame, id, &body);
+            encoded.expect("it is short");
+            (name.clone().into_owned(), frame)
+        })
+    });
+    frames.collect()
 }
 
 /// Ends a judge that disagrees, also where its answer is no text at all: it may not read on, and then nobody could go on
@@ -113,15 +158,9 @@ fn start(command: &str) -> Child {
 }
 
 /// Ends early where nobody reads any more; the reason shows in the answers.
-fn send(
-    pipe: ChildStdin,
-    numbers: impl Iterator<Item = u64>,
-    seeds: &Seeds,
-    reflector: &Reflector<'_>,
-) {
+fn send(pipe: ChildStdin, frames: impl Iterator<Item = Vec<u8>>) {
     let mut pipe = BufWriter::new(pipe);
-    for seed in numbers {
-        let bytes = mutate::frame(&mut Random(seed), seeds, reflector);
+    for bytes in frames {
         if writeln!(pipe, "{}", hex(&bytes)).is_err() {
             return;
         }

@@ -231,7 +231,7 @@ fault_codes! {
     FC0511 SamePort "同一个端口用了两次" "same port used twice";
     FC0512 EnvelopeType "公共字段的类型与角色不符" "envelope key of the wrong type for its role";
     FC0513 ResultInRequest "请求的公共字段中有结果" "result in the envelope of requests";
-    FC0514 LimitTooSmall "帧的上限小于包头" "frame limit below the header";
+    FC0514 LimitTooSmall "上限放不下规范的报文" "limit too small for the messages";
     FC0515 AlgorithmWithoutDigest "不是摘要的包头字段写了 algorithm" "algorithm on a header field without a digest";
     FC0516 AgeWithoutTime "消息没有时间却有有效期" "age limit for messages without a time";
     FC0601 MissingTranslation "缺少译文" "missing translation";
@@ -251,6 +251,7 @@ fault_codes! {
     FC0615 GovernsNothing "答复涉及的内容不存在" "answer about something that does not exist";
     FC0616 GovernedFact "问题未确认而内容已改" "fact changed although its question is open";
     FC0617 SettledButUntouched "问题已确认而内容未改" "question settled although its fact has not changed";
+    FC0618 HiddenCharacter "文本中有看不见的字符" "invisible character in a text";
 }
 
 impl FaultCode {

@@ -112,7 +112,7 @@ fn words(text: &str) -> Vec<String> {
 
 fn text_repeats_name(search: &mut Search<'_>) {
     for (ty, field) in search.fields() {
-        let name = crate::load::names::snake(&field.wire);
+        let name = crate::names::snake(&field.wire);
         if words(&name) == words(&field.text.en) && field.details().note.is_none() {
             search.report(
                 of_field(ty, field),

@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation};
-use crate::load::names::snake;
 use crate::model::{BodyState, Effect, Exchange, Field, Type, TypeDef};
+use crate::names::snake;
 use crate::text;
 use std::collections::BTreeMap;
 
@@ -143,7 +143,8 @@ fn empty_answer(search: &mut Search<'_>) {
             continue;
         };
         let body = search.model.types.structure(&messages.response.ty);
-        if body.fields.is_empty() && messages.response.state != BodyState::Open {
+        let state = messages.response.state;
+        if body.fields.is_empty() && !matches!(state, BodyState::Open | BodyState::Free) {
             search.report(
                 of_operation(operation),
                 text!(

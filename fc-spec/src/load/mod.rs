@@ -21,7 +21,6 @@ pub(crate) mod grammar;
 mod inside;
 mod lower;
 mod misread;
-pub(crate) mod names;
 mod partial;
 mod places;
 mod process;
@@ -47,9 +46,9 @@ pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
 pub use trees::Trees;
 pub use uses::{Uses, uses};
 
+pub(crate) use crate::names::is_snake as is_operation_name;
 pub(crate) use edit::text as written;
 pub(crate) use inside::{Inside, inside};
-pub(crate) use names::is_snake as is_operation_name;
 pub(crate) use site::entry_at;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 

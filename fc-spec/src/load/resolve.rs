@@ -92,7 +92,8 @@ fn resolve_confirmed(draft: &mut Draft<'_>) {
         {
             for governed in governed(draft, answer) {
                 if let Found::Fact(fact, state, _) = governed.found
-                    && (state == BodyState::Stated || !governed.has_to_change())
+                    && (matches!(state, BodyState::Stated | BodyState::Free)
+                        || !governed.has_to_change())
                 {
                     confirmed.push((name.clone(), fact));
                 }

@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::grammar::TEXT;
 use crate::load::misread::misread;
+use crate::names;
 use crate::syntax::{Node, Style, quoted};
 use crate::text;
 
@@ -89,6 +90,19 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
     }
     // Whether it is one at all has been asked.
     if node.as_plain().is_some_and(|text| misread(text).is_some()) {
+        return false;
+    }
+    if let Some(hidden) = text.chars().find(|c| names::is_hidden(*c)) {
+        let message = text!(
+            "文本中有看不见的字符 U+{hidden}",
+            "the text contains the invisible character U+{hidden}",
+            hidden = format!("{:04X}", u32::from(hidden))
+        );
+        faults.push(Diagnostic::error(
+            FaultCode::HiddenCharacter,
+            node.span(),
+            message,
+        ));
         return false;
     }
     if text.trim() != text {

@@ -2,6 +2,7 @@
 
 use super::types::{Types, Unlinked};
 use super::{Location, Operation, Text, TypeShape};
+use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -66,6 +67,7 @@ impl Availability {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Declared {
     /// Name, such as `debugging_app`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it is called.
     #[serde(flatten)]

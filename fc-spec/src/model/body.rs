@@ -1,9 +1,10 @@
 //! Types and fields of JSON bodies.
 
 use super::{
-    Available, Change, Condition, Deprecation, Location, Number, Scalar, StructRef, Text, TypeRef,
-    Value,
+    Available, Change, Condition, Deprecation, Location, Number, Pattern, Scalar, StructRef, Text,
+    TypeRef, Value,
 };
+use crate::names;
 use crate::vocabulary::{BodyState, Direction, FloatKind, IntKind, Quirk, StateOrder, WireForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
@@ -67,6 +68,7 @@ impl Type {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct TypeDef {
     /// `PascalCase` name.
+    #[serde(deserialize_with = "names::read_pascal")]
     pub name: String,
     /// Group whose file (and Rust module) holds it; `None` for `spec/types.yaml`.
     pub group: Option<String>,
@@ -82,6 +84,7 @@ pub struct TypeDef {
     /// of a `types:` section.
     pub body_of: Option<BodyField>,
     /// `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// History.
     pub changes: Vec<Change>,
@@ -98,6 +101,7 @@ pub struct BodyField {
     /// Which of its two bodies.
     pub side: Direction,
     /// Path of wire keys of an inline object (`["data"]`); empty for the body itself.
+    #[serde(deserialize_with = "names::read_line")]
     pub path: Vec<String>,
 }
 
@@ -147,9 +151,11 @@ impl StructType {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Field {
     /// Key on the wire, exact.
+    #[serde(deserialize_with = "names::read_line")]
     #[serde(rename = "path")]
     pub wire: String,
     /// `snake_case` name in code.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// Type without the optional mark.
     #[serde(rename = "type")]
@@ -203,7 +209,7 @@ pub struct FieldDetails {
     /// Fewest and most characters of a string, bytes of a base64, items of an array.
     pub length: Option<(u64, u64)>,
     /// Regular expression that a string must match as a whole.
-    pub pattern: Option<String>,
+    pub pattern: Option<Pattern>,
     /// Values of its enum that it takes, in wire form; all where there are none.
     pub only: Vec<Scalar>,
     /// What the receiver takes for an absent optional field; documented, not sent.
@@ -211,8 +217,10 @@ pub struct FieldDetails {
     /// Where the decoder is lenient.
     pub quirks: Vec<Quirk>,
     /// Other wire keys the decoder accepts for it.
+    #[serde(deserialize_with = "names::read_line")]
     pub also: Vec<String>,
     /// `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// For whom it is, and where; `None` for everyone.
     pub available: Option<Available>,
@@ -227,7 +235,7 @@ impl FieldDetails {
         let max = self.max.as_ref().map(Constraint::Max);
         let length = self.length;
         let length = length.map(|(least, most)| Constraint::Length(least, most));
-        let pattern = self.pattern.as_deref().map(Constraint::Pattern);
+        let pattern = self.pattern.as_ref().map(Constraint::Pattern);
         let only = (!self.only.is_empty()).then_some(Constraint::Only(&self.only));
         [min, max, length, pattern, only].into_iter().flatten()
     }
@@ -249,7 +257,7 @@ pub enum Constraint<'f> {
     /// Fewest and most characters of a string, bytes of a base64, items of an array.
     Length(u64, u64),
     /// A regular expression that a string must match as a whole.
-    Pattern(&'f str),
+    Pattern(&'f Pattern),
     /// The values of an enum that are taken, in wire form. Any other is refused, also one that the enum does not know.
     Only(&'f [Scalar]),
 }
@@ -325,6 +333,7 @@ pub struct EnumValue {
     #[serde(rename = "value")]
     pub wire: Scalar,
     /// `snake_case` name.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it means.
     #[serde(flatten)]
@@ -340,6 +349,7 @@ pub struct EnumValue {
     #[serde(rename = "error")]
     pub is_error: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// For whom it is, and where; `None` for everyone.
     pub available: Option<Available>,
@@ -357,6 +367,7 @@ pub struct OneOf {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Variant {
     /// `snake_case` name.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it means.
     #[serde(flatten)]

@@ -1,6 +1,7 @@
 //! `entities:`.
 
 use super::{Location, Model, Text, Type, TypeShape};
+use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Entity {
     /// Name, such as `station`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it is called.
     #[serde(flatten)]

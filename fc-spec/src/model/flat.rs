@@ -3,6 +3,7 @@
 use super::operation::{Ack, Body, Exchange, Messages};
 use super::stream::{Content, Stream};
 use super::{Accepted, Cadence, KeyPath, SetOff, StructRef, Text};
+use crate::names;
 use crate::vocabulary::{BodyState, Effect, Kind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,7 @@ pub(super) struct Flat {
     /// When it is sent; reports only.
     cadence: Option<Cadence>,
     /// Media type of the bytes in a stream's frames, where it is stated and they are raw.
+    #[serde(default, deserialize_with = "names::read_media_type")]
     content: Option<String>,
     /// Name of the command after which a stream is sent.
     started_by: Option<String>,

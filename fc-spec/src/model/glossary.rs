@@ -1,6 +1,7 @@
 //! `glossary:`.
 
 use super::{Aliases, Location, Text};
+use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Term {
     /// Id, such as `docking`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub id: String,
     /// The word.
     #[serde(flatten)]

@@ -12,6 +12,7 @@ mod entity;
 mod flat;
 mod glossary;
 mod operation;
+mod pattern;
 mod place;
 mod precondition;
 mod process;
@@ -44,6 +45,7 @@ pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
+pub use pattern::{Pattern, PatternError};
 pub use place::{CoordinateSystem, Store};
 pub use precondition::{Accepted, AcceptedIn, StateSet};
 pub use process::{KeyPath, SetOff, Tie};

@@ -6,6 +6,7 @@ use super::{
     Accepted, Aliases, Available, Cadence, Change, Deprecation, KeyPath, Location, SetOff,
     StructRef, Text,
 };
+use crate::names;
 use crate::vocabulary::{BodyState, Direction, Effect, Fact, Kind, PortRole, Side};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Group {
     /// Id; also the name of the Rust module.
+    #[serde(deserialize_with = "names::read_snake")]
     pub id: String,
     /// Title.
     #[serde(flatten)]
@@ -32,6 +34,7 @@ pub struct Code {
     #[serde(rename = "code")]
     pub value: Option<u16>,
     /// As written in the spec, such as `0x0A01` or `unassigned`.
+    #[serde(deserialize_with = "names::read_code")]
     #[serde(rename = "code_spelling")]
     pub spelling: String,
     /// Stated, inferred or open.
@@ -187,6 +190,7 @@ pub struct DeclaredError {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Operation {
     /// `snake_case` name.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// Stated, or inferred where the source prints no type.
     pub kind_state: BodyState,
@@ -216,6 +220,7 @@ pub struct Operation {
     /// Name of the store in which what it reads and sets is kept.
     pub kept: Option<String>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
+    #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// For whom it is, and where; `None` for everyone.
     pub available: Option<Available>,

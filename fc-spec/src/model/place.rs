@@ -1,6 +1,7 @@
 //! `coordinates:` and `stores:`.
 
 use super::{Field, Location, Model, Text, TypeShape};
+use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CoordinateSystem {
     /// Name, such as `map`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it is called.
     #[serde(flatten)]
@@ -23,6 +25,7 @@ pub struct CoordinateSystem {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Store {
     /// Name, such as `config_file`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it is called.
     #[serde(flatten)]

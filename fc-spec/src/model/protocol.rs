@@ -1,6 +1,7 @@
 //! The wire below the messages: transport, frame, envelope, results, ranges of codes.
 
 use super::{Aliases, Location, Scalar, StructRef, Text, Type, Value};
+use crate::names;
 use crate::vocabulary::{
     ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, Kind,
     KindRole, PortRole, RangeUse, ResultRole, Severity,
@@ -14,6 +15,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Protocol {
     /// Short id, such as `fc`; the Rust protocol type is its Pascal case.
+    #[serde(deserialize_with = "names::read_snake")]
     pub id: String,
     /// Name.
     #[serde(flatten)]
@@ -21,6 +23,7 @@ pub struct Protocol {
     /// What it is for.
     pub about: Text,
     /// Version of the spec.
+    #[serde(deserialize_with = "names::read_line")]
     pub version: String,
     /// The two parties.
     pub robot: Party,
@@ -42,6 +45,7 @@ pub struct Party {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Transport {
     /// Address of the robot, such as `192.168.1.3`.
+    #[serde(deserialize_with = "names::read_line")]
     pub host: String,
     /// Its ports.
     pub ports: Ports,
@@ -160,8 +164,10 @@ impl Frame {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct HeaderField {
     /// Name in the source document, such as `GZipDataLength`.
+    #[serde(deserialize_with = "names::read_line")]
     pub wire: String,
     /// Name in code, such as `gzip_data_length`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// Width and kind.
     #[serde(rename = "type")]
@@ -339,6 +345,7 @@ pub struct FrameKind {
     /// Value on the wire.
     pub value: u8,
     /// Its name in the spec, such as `stream`, `command`, `protobuf`, `report`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// What it carries.
     pub role: KindRole,
@@ -355,6 +362,7 @@ pub struct Encoding {
     /// Value on the wire.
     pub value: u8,
     /// Its name in the spec, `plain` or `gzip`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// How the data is packed.
     pub role: EncodingRole,
@@ -385,8 +393,10 @@ impl Envelope {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnvelopeField {
     /// Wire key, such as `cmdTime`.
+    #[serde(deserialize_with = "names::read_line")]
     pub wire: String,
     /// Name in code, such as `cmd_time`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// Type.
     #[serde(rename = "type")]
@@ -410,6 +420,7 @@ pub struct ResultCode {
     /// Number.
     pub code: i64,
     /// Name in code, such as `invalid_parameter`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
     /// When the engine itself answers with it.
     pub role: Option<ResultRole>,
@@ -447,9 +458,11 @@ pub struct CodeRange {
     #[serde(rename = "to")]
     pub last: u16,
     /// Spelling of the first code, such as `0x0A01`.
+    #[serde(deserialize_with = "names::read_code")]
     #[serde(rename = "from_spelling")]
     pub first_spelling: String,
     /// Spelling of the last code.
+    #[serde(deserialize_with = "names::read_code")]
     #[serde(rename = "to_spelling")]
     pub last_spelling: String,
     /// Its purpose.
@@ -483,6 +496,7 @@ pub struct RetiredCode {
     /// The code.
     pub code: u16,
     /// Its spelling.
+    #[serde(deserialize_with = "names::read_code")]
     pub spelling: String,
     /// Why.
     #[serde(flatten)]
@@ -493,6 +507,7 @@ pub struct RetiredCode {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Table {
     /// Id, such as `cell_layouts`.
+    #[serde(deserialize_with = "names::read_snake")]
     pub id: String,
     /// Title.
     #[serde(flatten)]
@@ -524,6 +539,7 @@ pub struct MissingSection {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Conflict {
     /// Id, such as `C040`.
+    #[serde(deserialize_with = "names::read_conflict_id")]
     pub id: String,
     /// Category, such as `frame`, `codes`, `fields`.
     pub category: String,

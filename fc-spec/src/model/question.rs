@@ -1,6 +1,7 @@
 //! What only the owner of the protocol can say.
 
 use super::{AnswerKind, Location, Subject, Text};
+use crate::names;
 use crate::vocabulary::{Impact, Severity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ pub struct Confirmation {
     /// Who said it.
     pub by: String,
     /// `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(deserialize_with = "names::read_date")]
     pub date: String,
     /// Where it can be looked up.
     pub reference: Option<String>,
@@ -35,6 +37,7 @@ pub struct Question {
     /// questions, `C087.get_station`; without a conflict, operation and fact, `list_stations.code`.
     pub id: String,
     /// The conflicts it is about.
+    #[serde(deserialize_with = "names::read_conflict_id")]
     pub ids: Vec<String>,
     /// A question or a decision.
     pub kind: AnswerKind,

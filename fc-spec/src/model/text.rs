@@ -1,6 +1,7 @@
 //! Sentences in two languages, and the facts that hang on any part of the spec.
 
 use super::{Confirmation, Governed, HeaderType, Type, Value};
+use crate::names;
 use crate::vocabulary::AnswerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,8 +44,10 @@ impl Lang {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Text {
     /// Chinese.
+    #[serde(deserialize_with = "names::read_text")]
     pub zh: String,
     /// English.
+    #[serde(deserialize_with = "names::read_text")]
     pub en: String,
 }
 
@@ -148,8 +151,10 @@ same_in_both!(
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Aliases {
     /// Chinese.
+    #[serde(deserialize_with = "names::read_text")]
     pub zh: Vec<String>,
     /// English.
+    #[serde(deserialize_with = "names::read_text")]
     pub en: Vec<String>,
 }
 
@@ -159,10 +164,12 @@ pub struct Aliases {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
+    #[serde(deserialize_with = "names::read_place")]
     pub file: String,
     /// Its name in the file: the keys that lead to the entry it stands in, such as `commands.get_station`
     /// or `frame`; of an answer the first of its ids, if it has any, from the second such one of the file on
     /// with a number: `C040.2`.
+    #[serde(deserialize_with = "names::read_place")]
     pub name: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -172,6 +179,7 @@ pub struct Location {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Change {
     /// `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(deserialize_with = "names::read_date")]
     pub date: String,
     /// What changed.
     #[serde(flatten)]
@@ -182,9 +190,10 @@ pub struct Change {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Deprecation {
     /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
+    #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// Last day or month in which it is there, `YYYY-MM-DD` or `YYYY-MM`.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "names::read_date")]
     pub sunset: Option<String>,
     /// Why, and what to do instead.
     #[serde(flatten)]
@@ -229,6 +238,7 @@ pub enum Subject {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Answer {
     /// Ids of the conflicts it answers, such as `C040`; none where the source has lost what it is about.
+    #[serde(deserialize_with = "names::read_conflict_id")]
     pub ids: Vec<String>,
     /// Decision, quirk, note or question.
     pub kind: AnswerKind,

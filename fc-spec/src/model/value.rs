@@ -97,6 +97,16 @@ impl Value {
         }
     }
 
+    /// Levels of nesting: none in a number, one in a list of numbers.
+    pub(crate) fn levels(&self) -> u32 {
+        let inner = match self {
+            Self::Array(items) => items.iter().map(Self::levels).max(),
+            Self::Object(entries) => entries.iter().map(|(_, value)| value.levels()).max(),
+            _ => return 0,
+        };
+        inner.unwrap_or_default().saturating_add(1)
+    }
+
     /// Indented by two spaces a level, without a final newline.
     #[must_use]
     pub fn pretty(&self) -> String {

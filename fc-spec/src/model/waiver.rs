@@ -1,6 +1,7 @@
 //! `waivers:`.
 
 use super::{Location, Text};
+use crate::names;
 use md5::{Digest as _, Md5};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ pub struct Waiver {
     /// Who has accepted it.
     pub by: String,
     /// Last day or month for which it holds: `YYYY-MM` or `YYYY-MM-DD`.
+    #[serde(deserialize_with = "names::read_date")]
     pub until: String,
     /// Where it stands.
     #[serde(rename = "place")]

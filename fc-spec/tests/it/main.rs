@@ -31,6 +31,7 @@ mod lint;
 mod load;
 mod merge;
 mod partial;
+mod patterns;
 mod schema;
 mod schema_misfits;
 mod settle;

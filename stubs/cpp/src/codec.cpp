@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <regex>
+
+#include "pattern.hpp"
 
 namespace fc_runtime {
 
@@ -15,26 +16,6 @@ std::string to_string(const ConditionError& error) {
 namespace detail {
 
 namespace {
-
-/// Longest text that a pattern is tried on: the regular expressions of the standard library take a
-/// piece of the stack for each character.
-constexpr std::size_t kLongestMatched = 4096;
-
-/// The code points of a text, for patterns that count characters.
-std::wstring code_points(std::string_view text) {
-  std::wstring out;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto first = static_cast<unsigned char>(text[at]);
-    const std::size_t length = first < 0x80U ? 1 : first < 0xE0U ? 2 : first < 0xF0U ? 3 : 4;
-    std::uint32_t point = length == 1 ? first : first & (0x7FU >> length);
-    for (std::size_t index = 1; index < length && at + index < text.size(); ++index) {
-      point = point << 6U | (static_cast<unsigned char>(text[at + index]) & 0x3FU);
-    }
-    out.push_back(static_cast<wchar_t>(point));
-    at += length;
-  }
-  return out;
-}
 
 /// Whether the text as a whole is not JSON; that goes before all else that is wrong with it.
 bool is_broken(std::string_view text, const Allowance& allowance, BodyError& error) {
@@ -63,18 +44,18 @@ std::size_t characters(std::string_view text) {
 
 bool matches(std::string_view text, std::string_view pattern) {
   static std::mutex lock;
-  static std::map<std::string, std::wregex, std::less<>> compiled;
-  if (text.size() > kLongestMatched) return false;
-  try {
+  static std::map<std::string, const Pattern, std::less<>> compiled;
+  const Pattern* found = nullptr;
+  {
     const std::lock_guard<std::mutex> held(lock);
-    auto found = compiled.find(pattern);
-    if (found == compiled.end()) {
-      found = compiled.emplace(std::string(pattern), std::wregex(code_points(pattern))).first;
+    auto known = compiled.find(pattern);
+    if (known == compiled.end()) {
+      known = compiled.try_emplace(std::string(pattern), pattern).first;
     }
-    return std::regex_match(code_points(text), found->second);
-  } catch (const std::regex_error&) {
-    return false;
+    // Entries stay where they are.
+    found = &known->second;
   }
+  return found->matches(text);
 }
 
 bool read_zero_or_one(Reader& reader, bool& out) {

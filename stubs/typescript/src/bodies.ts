@@ -130,8 +130,10 @@ export class Bodies {
 
   private refusalOf(envelope: Envelope): Refusal | null {
     const { code, text } = this.wire.envelope.response
-    if (code === undefined) return null
-    const found = Number(envelope[code])
+    const result = code === undefined ? undefined : envelope[code]
+    // Without a result, all went well.
+    if (result === undefined) return null
+    const found = Number(result)
     if (found === this.wire.results.success.code) return null
     const said = text === undefined ? undefined : envelope[text]
     return new Refusal(found, typeof said === 'string' ? said : '')

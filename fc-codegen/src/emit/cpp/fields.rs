@@ -215,7 +215,7 @@ fn field_of(field: &Spelled<'_, Field>) -> String {
                     integer(most.into())
                 )
             }
-            Constraint::Pattern(pattern) => format!(".pattern({})", raw(pattern)),
+            Constraint::Pattern(pattern) => format!(".pattern({})", raw(pattern.portable())),
             Constraint::Only(_) => format!(".only(only_{})", field.name),
         };
         out.push_str(&said);

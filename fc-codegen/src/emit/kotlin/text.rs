@@ -2,7 +2,7 @@
 
 use crate::emit::stub::context::Context;
 use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::{escape_links, turns_text_around};
+use crate::emit::stub::docs::{escape_links, is_invisible};
 use crate::emit::stub::style::{Comment, Style};
 use crate::surface::package::Item;
 use fc_spec::model::{
@@ -25,7 +25,7 @@ pub static STYLE: Style = Style {
     },
     link: |name| format!("[{name}]"),
     elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
-    integer,
+    integer: grouped,
     redacted: "Never shown by `toString`.",
 };
 
@@ -45,10 +45,13 @@ fn closed(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// An integer with its digits in groups of three; the smallest of 64 bits has no literal.
+/// An integer for a `Long`, with its digits in groups of three. Above `i64`, the `Long` has the same bits.
 pub fn integer(value: i128) -> String {
     if value == i64::MIN.into() {
         return "Long.MIN_VALUE".to_owned();
+    }
+    if value > i64::MAX.into() {
+        return format!("{}uL.toLong()", grouped(value));
     }
     grouped(value)
 }
@@ -56,6 +59,7 @@ pub fn integer(value: i128) -> String {
 /// A number that may be either.
 pub fn number(number: &Number) -> String {
     match number {
+        Number::Int(value) if *value > i64::MAX.into() => format!("BigInteger(\"{value}\")"),
         Number::Int(value) => integer(*value),
         Number::Float(value) => format!("{value:?}"),
     }
@@ -64,6 +68,7 @@ pub fn number(number: &Number) -> String {
 /// What travels, as it stands in source text.
 pub fn scalar(wire: &Scalar) -> String {
     match wire {
+        Scalar::Number(Number::Int(value)) => integer(*value),
         Scalar::Number(value) => number(value),
         Scalar::String(text) => literal(text),
         Scalar::Bool(value) => value.to_string(),
@@ -72,7 +77,7 @@ pub fn scalar(wire: &Scalar) -> String {
 
 /// A text as a string literal, raw where that spares escapes.
 pub fn literal(text: &str) -> String {
-    let needs_escape = |c: char| c.is_control() || turns_text_around(c);
+    let needs_escape = |c: char| c.is_control() || is_invisible(c);
     let is_plain = !text.contains(needs_escape) && !text.contains('$');
     if is_plain && text.contains(['"', '\\']) && !text.contains("\"\"\"") && !text.ends_with('"') {
         return format!("\"\"\"{text}\"\"\"");
@@ -155,7 +160,7 @@ pub fn codec(context: &Context<'_>, field: &Field) -> String {
         let demand = match constraint {
             Constraint::Min(min) => format!(".min({})", number(min)),
             Constraint::Max(max) => format!(".max({})", number(max)),
-            Constraint::Pattern(pattern) => format!(".pattern({})", literal(pattern)),
+            Constraint::Pattern(pattern) => format!(".pattern({})", literal(pattern.portable())),
             Constraint::Only(taken) => {
                 let taken: Vec<String> = taken.iter().map(scalar).collect();
                 format!(".only({})", taken.join(", "))
@@ -202,6 +207,7 @@ mod tests {
             (5656, "5656"),
             (-65_536, "-65_536"),
             (i64::MIN.into(), "Long.MIN_VALUE"),
+            (u64::MAX.into(), "18_446_744_073_709_551_615uL.toLong()"),
         ] {
             assert_eq!(integer(value), expected);
         }

@@ -247,7 +247,7 @@ impl<'m> Rows<'_, 'm> {
         let quirks = details.quirks.iter();
         Some(More {
             length: self.length(field),
-            pattern: details.pattern.clone(),
+            pattern: details.pattern.clone().map(String::from),
             only: details.only.iter().map(scalar).collect(),
             default: details.default.as_ref().map(scalar),
             quirks: quirks.map(|quirk| quirk.word(self.lang)).collect(),

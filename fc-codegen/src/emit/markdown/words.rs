@@ -39,6 +39,7 @@ words! { Effect:
 }
 
 words! { BodyState:
+    Free = "不限定", "any keys";
     Stated = "写明", "stated";
     Confirmed = "已确认", "confirmed";
     Inferred = "推断", "inferred";

@@ -1,9 +1,8 @@
 //! Literals of Python, and constants made of them.
 
-use super::pattern::pattern;
 use super::source::Code;
 use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::turns_text_around;
+use crate::emit::stub::docs::is_invisible;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Item;
 use fc_spec::model::{Number, Scalar};
@@ -23,7 +22,7 @@ pub fn literal(text: &str) -> String {
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
             c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || turns_text_around(c) => {
+            c if c.is_control() || is_invisible(c) => {
                 let code = u32::from(c);
                 let _ = match code {
                     0..0x100 => write!(out, "\\x{code:02x}"),
@@ -39,12 +38,11 @@ pub fn literal(text: &str) -> String {
 
 /// A regular expression: raw where that shows it as it is.
 pub fn regex(text: &str) -> String {
-    let text = pattern(text);
-    let plain = |c: char| !(c.is_control() || turns_text_around(c) || c == '"');
+    let plain = |c: char| !(c.is_control() || is_invisible(c) || c == '"');
     if text.contains('\\') && text.chars().all(plain) {
         format!("r\"{text}\"")
     } else {
-        literal(&text)
+        literal(text)
     }
 }
 

@@ -227,7 +227,7 @@ fn key(
             Constraint::Min(min) => set("min", number(min).into()),
             Constraint::Max(max) => set("max", number(max).into()),
             Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
-            Constraint::Pattern(text) => set("pattern", regex(text).into()),
+            Constraint::Pattern(pattern) => set("pattern", regex(pattern.portable()).into()),
             Constraint::Only(taken) => {
                 let taken = taken.iter().map(|wire| {
                     let taken = expressions.value(field.ty.item(), &Value::from(wire));

@@ -10,7 +10,6 @@ mod homes;
 mod literal;
 mod messages;
 mod operations;
-mod pattern;
 mod protocol;
 mod robot;
 mod root;

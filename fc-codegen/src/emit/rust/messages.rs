@@ -343,7 +343,7 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
         Constraint::Max(max) => format!("max = {}", number(max)),
         Constraint::Length(least, most) if least == most => format!("length = {least}"),
         Constraint::Length(least, most) => format!("length = {least}..={most}"),
-        Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern)),
+        Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern.portable())),
         Constraint::Only(taken) => {
             let taken: Vec<String> = taken.iter().map(enum_wire).collect();
             format!("only({})", taken.join(", "))

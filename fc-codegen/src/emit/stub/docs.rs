@@ -201,7 +201,7 @@ pub fn columns_of(text: &str) -> usize {
 
 /// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
 fn clean(line: &str) -> Cow<'_, str> {
-    let unclean = |c: char| c.is_control() || turns_text_around(c);
+    let unclean = |c: char| c.is_control() || is_invisible(c);
     // First bytes of what is unclean and of some that is not.
     let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xE2);
     if !line.bytes().any(suspect) || !line.contains(unclean) {
@@ -211,9 +211,9 @@ fn clean(line: &str) -> Cow<'_, str> {
     Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
 }
 
-/// Whether a character changes the direction of the text after it, which compilers refuse.
-pub fn turns_text_around(character: char) -> bool {
-    matches!(character, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+/// True for a character that ends a line in some languages, or changes the direction of the text after it.
+pub fn is_invisible(character: char) -> bool {
+    matches!(character, '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 /// Escapes, outside code spans, what Markdown reads as a link or as HTML, and marks addresses as such.

@@ -108,7 +108,7 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
         });
     }
     if let Some(pattern) = &details.pattern {
-        facts.push(format!("Pattern: {}.", code(pattern)));
+        facts.push(format!("Pattern: {}.", code(pattern.source())));
     }
     if !details.only.is_empty() {
         let taken: Vec<String> = details
@@ -303,7 +303,7 @@ fn cadence_fact(style: &Style, cadence: &Cadence) -> String {
 /// Says how sure a body is, where the source does not state it.
 pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     let (zh, en) = match body.state {
-        BodyState::Stated | BodyState::Confirmed => ("", ""),
+        BodyState::Free | BodyState::Stated | BodyState::Confirmed => ("", ""),
         BodyState::Inferred => ("推断：", "Inferred: "),
         BodyState::Open => ("待定：", "Open: "),
     };
@@ -313,6 +313,10 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
             docs.paragraph(format!("{en}{}", note.en));
         }
         (None, BodyState::Stated | BodyState::Confirmed) => {}
+        (None, BodyState::Free) => {
+            docs.paragraph("有意不限定键，所有键原样保留。");
+            docs.paragraph("Any keys, by design; every key is kept unchanged.");
+        }
         (None, BodyState::Inferred) => {
             docs.paragraph("推断：依据源文档的其他部分。");
             docs.paragraph("Inferred: from other parts of the source document.");

@@ -259,7 +259,10 @@ fn member(
             ("min", number(&details.min)),
             ("max", number(&details.max)),
             ("length", or_null(length.map(Value::from_iter))),
-            ("pattern", word(&details.pattern)),
+            (
+                "pattern",
+                or_null(details.pattern.as_ref().map(|it| text(it.portable()))),
+            ),
             ("wireString", Value::Bool(form == WireForm::String)),
             ("emptyIsAbsent", is(Quirk::EmptyIsAbsent)),
             ("lenientNumber", is(Quirk::LenientNumber)),

@@ -165,7 +165,7 @@ fn field(
         Constraint::Length(least, most) => {
             ("length", Layout::list([least, most].map(Layout::number)))
         }
-        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern)),
+        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern.portable())),
         Constraint::Only(taken) => ("only", Layout::list(taken.iter().map(|it| held(field, it)))),
     }));
     members.extend(

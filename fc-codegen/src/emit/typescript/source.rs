@@ -1,6 +1,6 @@
 //! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
 
-use crate::emit::stub::docs::{Docs, escape_links, turns_text_around};
+use crate::emit::stub::docs::{Docs, escape_links, is_invisible};
 use crate::emit::stub::source::join;
 use crate::emit::stub::style::{Comment, Style};
 use std::borrow::Cow;
@@ -77,7 +77,7 @@ pub fn literal(text: &str) -> String {
             '\t' => out.push_str("\\t"),
             '\\' => out.push_str("\\\\"),
             c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || turns_text_around(c) || matches!(c, '\u{2028}' | '\u{2029}') => {
+            c if c.is_control() || is_invisible(c) => {
                 out.extend(c.escape_unicode());
             }
             c => out.push(c),

@@ -33,7 +33,7 @@ const fn rust(has_id_types: bool) -> Language {
         ),
         fields: Words::new(""),
         methods: Words::new(
-            "clone clone_from clone_into closed connect connect_lazy connection data from into new reports state \
+            "clone clone_from clone_into closed connect connect_lazy connection data default from into new reports state \
             states to_owned try_from try_into unknown",
         ),
         escape: |role, word| match (role, word) {

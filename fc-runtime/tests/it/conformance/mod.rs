@@ -5,6 +5,7 @@
 
 mod app;
 mod errors;
+mod patterns;
 mod peer;
 mod robot;
 mod schemas;

@@ -3,8 +3,9 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
-use crate::load::scalar::{is_conflict_id, small_int};
+use crate::load::scalar::small_int;
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
+use crate::names::is_conflict_id;
 use crate::syntax::Span;
 use crate::text;
 use crate::vocabulary::Word as _;

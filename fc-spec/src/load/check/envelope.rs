@@ -6,8 +6,8 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::lower::envelope_type_fits;
-use crate::load::names;
 use crate::model::EnvelopeRole;
+use crate::names;
 use crate::text;
 use std::collections::HashMap;
 
@@ -102,6 +102,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             } else if let Some(node) = ENVELOPE_FIELD.example.of(place.node) {
                 value::check_plain(draft, &item.ty, node, faults);
             }
+            faults.extend(super::names::hidden(&item.wire, place.name()));
             let span = place.at(COMMON.name);
             if !names::is_snake(&item.name) {
                 faults.push(super::names::unusable(&item.wire, place.name()));

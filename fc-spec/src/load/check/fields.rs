@@ -7,11 +7,11 @@ use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
 use crate::load::scalar;
 use crate::model::{
-    BodyState, Example, Field, Number, Quirk, Scalar, Text, Type, TypeShape, Value, WireForm,
+    BodyState, Example, Field, Number, Pattern, PatternError, Quirk, Scalar, Text, Type, TypeShape,
+    Value, WireForm,
 };
 use crate::syntax::{Node, Span};
 use crate::text;
-use regex_lite::Regex;
 
 /// A field in the short form has a named type, whose title describes it.
 pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
@@ -175,7 +175,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
 /// `pattern` stands on strings and is a regular expression.
 pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
-        let Some(pattern) = &field.details().pattern else {
+        let Some(pattern) = FIELD.pattern.read(part.place.node) else {
             continue;
         };
         let span = part.place.at(FIELD.pattern);
@@ -189,12 +189,18 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
                 spans,
             ));
         }
-        if let Err(error) = Regex::new(&format!("^(?:{pattern})$")) {
-            let message = text!("这不是正则表达式", "this is not a regular expression");
-            faults.push(
-                Diagnostic::error(FaultCode::BadPattern, span, message)
-                    .note(text!("正则表达式库的说明：{error}", "{error}")),
-            );
+        if let Err(error) = Pattern::new(pattern) {
+            let message = match error {
+                PatternError::Syntax(_) => {
+                    text!("这不是正则表达式", "this is not a regular expression")
+                }
+                PatternError::NotPortable(_) | PatternError::TooLarge => text!(
+                    "不是所有语言都支持这个正则表达式",
+                    "not every language supports this regular expression"
+                ),
+            };
+            let fault = Diagnostic::error(FaultCode::BadPattern, span, message);
+            faults.push(fault.note(error.text()));
         }
     }
 }
@@ -386,27 +392,29 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A lost body has no fields.
+/// A body that is lost, or free by design, has no fields.
 pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         if let TypeShape::Struct(shape) = &ty.def.shape
-            && shape.state == BodyState::Open
+            && let state @ (BodyState::Open | BodyState::Free) = shape.state
             && let Some(part) = ty.parts.first()
         {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::OpenBodyFields,
-                    part.place.name(),
-                    text!(
-                        "标为 `open` 的消息体不能有字段",
-                        "an `open` body cannot have fields"
-                    ),
-                )
-                .note(text!(
+            let message = text!(
+                "标为 `{state}` 的消息体不能有字段",
+                "a body that is `{state}` cannot have fields",
+                state = state.name()
+            );
+            let fault = Diagnostic::error(FaultCode::OpenBodyFields, part.place.name(), message);
+            faults.push(fault.note(match state {
+                BodyState::Free => text!(
+                    "删去 `free`：未知的键本来就原样保留",
+                    "remove `free`: receivers keep unknown keys anyway"
+                ),
+                _ => text!(
                     "这些字段在源文档中有依据时，改写为 `inferred`",
                     "write `inferred` if the source document gives evidence for these fields"
-                )),
-            );
+                ),
+            }));
         }
     }
 }

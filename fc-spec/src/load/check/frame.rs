@@ -5,10 +5,10 @@ use crate::load::draft::{Draft, FrameDraft, Placed};
 use crate::load::grammar::{
     COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, LIMITS, PORT, TRANSPORT,
 };
-use crate::load::names;
 use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
 };
+use crate::names;
 use crate::syntax::{Node, Span};
 use crate::text;
 use crate::vocabulary::Word;
@@ -255,6 +255,7 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let name = field.item.name.as_str();
         let span = field.place.at(COMMON.name);
+        faults.extend(super::names::hidden(&field.item.wire, field.place.name()));
         if !names::is_snake(name) {
             faults.push(super::names::unusable(&field.item.wire, field.place.name()));
         } else if let Some(earlier) = first.insert(name, span) {

@@ -4,7 +4,7 @@ use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place};
 use crate::load::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
-use crate::load::scalar;
+use crate::names;
 use crate::text;
 
 /// Nothing is withdrawn before it appeared.
@@ -21,8 +21,8 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
 fn order(place: Place<'_>) -> Option<Diagnostic> {
     let since = COMMON.since.of(place.node)?;
     let withdrawn = FIELD_DEPRECATED.since.of(FIELD.deprecated.of(place.node))?;
-    let first = scalar::date(since.as_str()?)?;
-    let last = scalar::date(withdrawn.as_str()?)?;
+    let first = names::date(since.as_str()?)?;
+    let last = names::date(withdrawn.as_str()?)?;
     // A date without a day is that whole month.
     let is_later = (first.0, first.1) > (last.0, last.1)
         || ((first.0, first.1) == (last.0, last.1) && last.2 > 0 && first.2 > last.2);

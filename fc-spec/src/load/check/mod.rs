@@ -64,6 +64,7 @@ const EVER: &[Check] = &[
     check_codes,
     names::check_groups,
     names::check_operations,
+    names::check_files,
     names::check_tables,
     names::check_types,
     names::check_fields,
@@ -173,7 +174,9 @@ fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
 /// What holds itself has no end, no size and no example.
 fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     if expand::check_recursion(draft, faults) {
-        expand::check_size(draft, faults);
+        if expand::check_size(draft, faults) {
+            expand::check_depth(draft, faults);
+        }
         examples::check_values(draft, faults);
         examples::check_rows(draft, faults);
     }

@@ -3,8 +3,8 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Place, Placed};
 use crate::load::grammar::{COMMON, FIELD, GROUP};
-use crate::load::names;
 use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text, TypeShape};
+use crate::names;
 use crate::syntax::{Node, Span};
 use crate::text;
 use std::collections::hash_map::Entry as Slot;
@@ -62,6 +62,25 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
             None => {
                 first.insert(name, span);
             }
+        }
+    }
+}
+
+/// Groups, operations and types become files. Windows keeps some names for devices, in any case and with any extension.
+pub(super) fn check_files(draft: &Draft<'_>, faults: &mut Faults) {
+    let groups = draft.groups.iter();
+    let groups = groups.map(|it| (it.item.id.as_str(), it.place.at(GROUP.id)));
+    let operations = draft.operations.iter();
+    let operations = operations.map(|it| (it.item.name.as_str(), it.place.name()));
+    let types = draft.types.iter().filter(|it| it.def.body_of.is_none());
+    let types = types.map(|it| (it.def.name.as_str(), it.place.name()));
+    for (name, span) in groups.chain(operations).chain(types) {
+        if names::is_device(name) {
+            let message = text!(
+                "Windows 不允许名为 `{name}` 的文件",
+                "Windows allows no file named `{name}`"
+            );
+            faults.push(reserved(span, message));
         }
     }
 }
@@ -168,6 +187,15 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
+/// A wire name with characters that do not show.
+pub(super) fn hidden(wire: &str, span: Span) -> Option<Diagnostic> {
+    let message = text!(
+        "名称中有看不见的字符",
+        "the name contains an invisible character"
+    );
+    (!names::is_line(wire)).then(|| Diagnostic::error(FaultCode::HiddenCharacter, span, message))
+}
+
 /// A wire name from which no name in code can be made.
 pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
     Diagnostic::error(
@@ -205,6 +233,12 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                     .chain(also(field, part.place))
             });
         for (key, span) in keys {
+            if key.is_empty() {
+                let message = text!("报文中的键名不能为空", "a wire key cannot be empty");
+                faults.push(Diagnostic::error(FaultCode::UnusableName, span, message));
+                continue;
+            }
+            faults.extend(hidden(key, span));
             match first.entry(key) {
                 Slot::Occupied(earlier) => {
                     let message = text!(

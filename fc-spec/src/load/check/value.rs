@@ -10,7 +10,6 @@ use crate::model::{
 };
 use crate::syntax::{Node, NodeKind, Span, quoted};
 use crate::text;
-use regex_lite::Regex;
 
 /// What is wrong with a value.
 pub(super) struct Mismatch {
@@ -421,8 +420,7 @@ pub(super) fn check_constraints(
             (!fits).then(|| (FaultCode::ExampleLength, message()))
         }
         (Constraint::Pattern(pattern), Value::String(text)) if field.ty == Type::String => {
-            let regex = Regex::new(&format!("^(?:{pattern})$"));
-            let fits = regex.map_or(true, |regex| regex.is_match(text));
+            let fits = pattern.matches(text);
             let message = || {
                 text!(
                     "整段文本应与正则表达式 `{pattern}` 匹配",

@@ -13,10 +13,10 @@ grammar! {
     TEXT: Text = "text" "文本" {
         /// In Chinese.
         /// 中文。
-        required zh: Str, example "电池电量", faults [EmptyText, TextSpacing, NotChinese, Placeholder];
+        required zh: Str, example "电池电量", faults [EmptyText, HiddenCharacter, TextSpacing, NotChinese, Placeholder];
         /// In English.
         /// 英文。
-        required en: Str, example "Battery level", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
+        required en: Str, example "Battery level", faults [EmptyText, HiddenCharacter, TextSpacing, SameText, NotEnglish, Placeholder];
     }
 
     /// Keys that many mappings share.
@@ -53,10 +53,10 @@ grammar! {
     ALIASES: Aliases = "list of aliases" "别名" {
         /// In Chinese.
         /// 中文。
-        required zh: List<Str, 1>, example "[电量, 剩余电量]", faults [EmptyText, TextSpacing];
+        required zh: List<Str, 1>, example "[电量, 剩余电量]", faults [EmptyText, HiddenCharacter, TextSpacing];
         /// In English.
         /// 英文。
-        required en: List<Str, 1>, example "[charge, state of charge]", faults [EmptyText, TextSpacing];
+        required en: List<Str, 1>, example "[charge, state of charge]", faults [EmptyText, HiddenCharacter, TextSpacing];
     }
 
     /// A dated change.

@@ -122,10 +122,10 @@ grammar! {
         // The key `data` has a default text, so that the table cannot ask for one; a check does.
         /// In Chinese; only `data` may leave it out.
         /// 中文；只有 `data` 可以不写。
-        optional zh: Str, example "地图信息", faults [EmptyText, TextSpacing, NotChinese, Placeholder];
+        optional zh: Str, example "地图信息", faults [EmptyText, HiddenCharacter, TextSpacing, NotChinese, Placeholder];
         /// In English; only `data` may leave it out.
         /// 英文；只有 `data` 可以不写。
-        optional en: Str, example "About the map", faults [EmptyText, TextSpacing, SameText, NotEnglish, Placeholder];
+        optional en: Str, example "About the map", faults [EmptyText, HiddenCharacter, TextSpacing, SameText, NotEnglish, Placeholder];
         use FIELD.note, FIELD.deprecated;
         /// Its keys, in the order sent.
         /// 它的键，按发送的顺序书写。

@@ -102,6 +102,11 @@ forms! {
             "The body is missing: no keys are known, and receivers keep every key.",
             "消息体缺失：不知道有哪些键，收到的键都原样保留。",
         ),
+        (
+            BodyState::Free.name(),
+            "The body may have any keys, by design; receivers keep every key.",
+            "有意不限定键：收到的键都原样保留。",
+        ),
     ]) => BodyState, word;
     /// An effect for which there is evidence.
     KnownEffect: Kind::Word(&[
@@ -151,9 +156,9 @@ impl<W: Word> Form for W {
     }
 }
 
-/// An integer that fits `T` and is at least `MIN`.
+/// An integer that fits `T`, from `MIN` to `MAX`.
 #[derive(Debug)]
-pub(crate) struct Int<T, const MIN: i128 = 0>(PhantomData<T>);
+pub(crate) struct Int<T, const MIN: i128 = 0, const MAX: i128 = { i128::MAX }>(PhantomData<T>);
 
 /// An integer of Rust.
 pub(crate) trait Whole: TryFrom<i128> {
@@ -171,10 +176,10 @@ macro_rules! whole {
 
 whole! { u8 u16 u32 u64 i64 }
 
-impl<T: Whole, const MIN: i128> Form for Int<T, MIN> {
+impl<T: Whole, const MIN: i128, const MAX: i128> Form for Int<T, MIN, MAX> {
     const KIND: Kind = Kind::Int {
         min: MIN,
-        max: T::MAX,
+        max: if MAX < T::MAX { MAX } else { T::MAX },
     };
     type Value<'a> = T;
 

@@ -24,7 +24,7 @@ grammar! {
     GROUP: Group = "group" "分组" {
         /// Short name; the name of the Rust module.
         /// 短名，也是 Rust 模块的名称。
-        required id: Name, example "navigation", faults [DuplicateGroup];
+        required id: Name, example "navigation", faults [DuplicateGroup, ReservedName];
         use TEXT.zh, TEXT.en, COMMON.about;
     }
 

@@ -231,7 +231,7 @@ grammar! {
         required inflated_bytes: Int<u32, 1>, example "1048576";
         /// Maximum nesting depth of a JSON body.
         /// JSON 的最大嵌套层数。
-        required json_depth: Int<u32, 1>, example "32";
+        required json_depth: Int<u32, 1, 127>, example "32", faults [LimitTooSmall];
         /// Calls in flight on one connection.
         /// 一个连接上同时进行的调用数。
         required in_flight: Int<u32, 1>, example "16";

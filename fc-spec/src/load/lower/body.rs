@@ -7,12 +7,13 @@ use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::grammar::{
     CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
 };
+use crate::load::scalar;
 use crate::load::shape::{lacks_form, misread_marker};
-use crate::load::{names, scalar};
 use crate::model::{
-    Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, StructRef,
-    StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
+    Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, Pattern,
+    StructRef, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
 };
+use crate::names;
 use crate::syntax::{Entries, Entry, Node};
 
 /// What made types are named after and belong to.
@@ -282,7 +283,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         min: FIELD.min.read(typed),
         max: FIELD.max.read(typed),
         length: FIELD.length.of(typed.or(listed)).and_then(length_of),
-        pattern: FIELD.pattern.read(typed),
+        pattern: (FIELD.pattern.read(typed)).and_then(|it| Pattern::new(it).ok()),
         only: FIELD.only.get(typed),
         default: FIELD.default.read(typed),
         quirks: FIELD.quirk.get(node),

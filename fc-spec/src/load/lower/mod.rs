@@ -19,9 +19,9 @@ pub(super) use wire::envelope_type_fits;
 
 use super::draft::{AnswerDraft, Draft, Place};
 use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
-use super::scalar::is_conflict_id;
 use super::section::Section;
 use crate::model::{Answer, Confirmation, Governed, Location, Subject};
+use crate::names::is_conflict_id;
 use crate::syntax::{Entry, Node, Sources, Span};
 use std::collections::HashMap;
 

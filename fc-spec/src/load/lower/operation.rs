@@ -9,12 +9,12 @@ use crate::load::grammar::{
     BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
     STATED, STREAM, StateKey, both_languages as text,
 };
-use crate::load::names;
 use crate::load::process;
 use crate::model::{
     Body, BodyField, BodyState, Code, Content, DeclaredError, Direction, Effect, Exchange, Fact,
     Group, Messages, Operation, PortRole, SetOff, Side, Stream, StructType, Subject, Text,
 };
+use crate::names;
 use crate::syntax::Node;
 
 impl<'a> Lowering<'a, '_> {

@@ -8,13 +8,14 @@ use crate::load::grammar::{
     FRAME_KIND, HEADER_FIELD, HEADS, LIMITS, PARTY, PORT, PROTOCOL, RANGE, RESULT, RETIRED,
     TRANSPORT, both_languages as text,
 };
-use crate::load::{names, scalar};
+use crate::load::scalar;
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
     EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
     MissingSection, Party, Port, PortRole, Ports, Protocol, RangeUse, ResultCode, RetiredCode,
     Severity, Subject, Transport, Type,
 };
+use crate::names;
 use crate::syntax::{Entries, Node};
 use crate::vocabulary::Word as _;
 

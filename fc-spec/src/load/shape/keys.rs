@@ -6,8 +6,9 @@ use crate::load::grammar::{
 };
 use crate::model::Text;
 use crate::syntax::width::half_width_text;
-use crate::syntax::{Entries, Entry, Node, Span, visible};
+use crate::syntax::{Entry, Node, Span, visible};
 use crate::text;
+use std::collections::HashSet;
 
 /// Required keys that are not there, all at one place.
 pub(super) fn missing_keys(table: &Table, keys: &[&str], at: Span) -> Diagnostic {
@@ -66,6 +67,9 @@ pub(in crate::load) fn unknown_keys(
     faults: &mut Faults,
 ) -> (Vec<String>, usize) {
     let (mut meant, mut strangers) = (Vec::new(), 0);
+    let present: HashSet<&str> = node.entries().map(|entry| entry.name()).collect();
+    let keys = table.keys.iter().map(|key| key.name);
+    let free: Vec<&str> = keys.filter(|key| !present.contains(key)).collect();
     let mut before: Option<Entry<'_>> = None;
     for entry in node.entries() {
         if table.key(entry.name()).is_some() {
@@ -89,7 +93,7 @@ pub(in crate::load) fn unknown_keys(
             meant.push(visible);
             continue;
         }
-        let fault = unknown_key(table, entry, &node.entries());
+        let fault = unknown_key(table, entry, &free);
         let fixes = fault.fixes.iter();
         let known: Vec<String> = fixes
             .map(|fix| fix.replacement.clone())
@@ -128,8 +132,8 @@ pub(super) fn looks_like(node: Node<'_>) -> Option<&'static Table> {
     fitting.next().filter(|_| node.entries().count() >= FEWEST)
 }
 
-/// A key that the table does not have.
-fn unknown_key(table: &Table, entry: Entry<'_>, siblings: &Entries<'_>) -> Diagnostic {
+/// A key that the table does not have. `free` are the keys of the table that the mapping lacks.
+fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
     let name = entry.name();
     let span = entry.key.span();
     if let Some(slip) = entry.key.slip() {
@@ -159,12 +163,7 @@ fn unknown_key(table: &Table, entry: Entry<'_>, siblings: &Entries<'_>) -> Diagn
             "inside `{{ }}` a comma ends a text; if this is the rest of a text, quote it"
         ));
     }
-    let free = table
-        .keys
-        .iter()
-        .map(|key| key.name)
-        .filter(|key| !siblings.clone().any(|entry| entry.name() == *key));
-    if let Some(near) = nearest(name, free) {
+    if let Some(near) = nearest(name, free.iter().copied()) {
         return fault.fix(
             span,
             near,

@@ -5,8 +5,9 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::grammar::unit::{self, UNITS};
 use crate::load::grammar::{FIELD, Kind};
 use crate::load::misread::{agreed_number, misread};
-use crate::load::{names, scalar};
+use crate::load::scalar;
 use crate::model::{Text, Type};
+use crate::names;
 use crate::syntax::width::{self, half_width, half_width_text};
 use crate::syntax::{Node, Span, Style, quoted};
 use crate::text;
@@ -200,10 +201,10 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
         Kind::Code => scalar::code(node)
             .is_none()
             .then(|| bad_code(text, style, span)),
-        Kind::Date => scalar::date(text).is_none().then(|| bad_date(text, span)),
+        Kind::Date => names::date(text).is_none().then(|| bad_date(text, span)),
         Kind::Name => (!names::is_snake(text)).then(|| bad_name(text, span)),
         Kind::TypeName => (!names::is_pascal(text)).then(|| bad_type_name(text, span)),
-        Kind::ConflictId => (!scalar::is_conflict_id(text)).then(|| {
+        Kind::ConflictId => (!names::is_conflict_id(text)).then(|| {
             error(
                 FaultCode::BadConflictId,
                 text!(
@@ -216,7 +217,7 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
                 "write C and at least three digits, such as C040"
             ))
         }),
-        Kind::MediaType => (!scalar::is_media_type(text)).then(|| {
+        Kind::MediaType => (!names::is_media_type(text)).then(|| {
             error(
                 FaultCode::BadMediaType,
                 text!("`{text}` 不是媒体类型", "`{text}` is not a media type"),
@@ -377,7 +378,7 @@ fn bad_date(text: &str, span: Span) -> Diagnostic {
     let parts = text.trim().split(['-', '/', '.']);
     let parts: Vec<_> = parts.map(|part| format!("{part:0>2}")).collect();
     let date = parts.join("-");
-    match scalar::date(&date) {
+    match names::date(&date) {
         Some(_) => {
             let message = text!("改写为 `{date}`", "write `{date}`");
             fault.fix(span, date, message)

@@ -95,8 +95,8 @@ def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: 
     """The message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
     envelope, message = read_with_envelope(protocol.response_envelope, cls, data, limits)
     roles = protocol.response_roles
-    code = getattr(envelope, roles["result_code"]) if "result_code" in roles else protocol.results.success.code
-    if code != protocol.results.success.code:
+    code: int | None = getattr(envelope, roles.get("result_code", ""), None)
+    if code is not None and code != protocol.results.success.code:
         raise Refusal(code, getattr(envelope, roles.get("result_text", ""), None) or "")
     if isinstance(message, BodyError):
         raise message

@@ -127,6 +127,7 @@ struct SideView {
     /// `request`, `response`; also the anchor.
     side: &'static str,
     open: bool,
+    free: bool,
     rows: Vec<Row>,
     json: Option<String>,
     frame: Option<FrameView>,
@@ -361,6 +362,7 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
     SideView {
         side: direction.name(),
         open: body.is_some_and(|body| body.state == BodyState::Open),
+        free: body.is_some_and(|body| body.state == BodyState::Free),
         json: json.map(|json| commented(&json, &rows)),
         rows,
         frame: reflector

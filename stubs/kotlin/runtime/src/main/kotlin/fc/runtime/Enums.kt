@@ -5,7 +5,7 @@ package fc.runtime
  * they came.
  */
 public abstract class IntValue protected constructor(
-    /** What travels. */
+    /** The value on the wire. A `u64` has the same bits in the `Long`. */
     public val wire: Long,
 ) {
     /** The type of this value. */
@@ -107,14 +107,17 @@ public abstract class IntEnumType<E : IntValue> protected constructor(
     }
 
     override fun write(writer: JsonWriter, value: E) {
-        writer.raw(value.wire.toString())
+        writer.raw(if (isUnsigned) java.lang.Long.toUnsignedString(value.wire) else value.wire.toString())
     }
 
     @Suppress("UNCHECKED_CAST")
     override fun check(value: E, isDeep: Boolean) {
-        (kind as Codec<Number>).check(value.wire, isDeep)
+        // Every `Long` is a `u64`.
+        if (!isUnsigned) (kind as Codec<Number>).check(value.wire, isDeep)
         checkClosed(value.wire)
     }
+
+    private val isUnsigned: Boolean get() = kind === Types.U64
 
     override fun wire(value: E): Any = value.wire
 }

@@ -11,6 +11,7 @@ internal fun main(arguments: Array<String>) {
         Triple("messages", 60, ::messageTests),
         Triple("errors.json", 3, ::nameTests),
         Triple("frames of the vectors", 1800, ::frameTests),
+        Triple("patterns.json", 100, ::patternTests),
         Triple("decoder", 15, ::decoderTests),
         Triple("session scripts", 60, ::sessionTests),
         Triple("ids", 2, ::idTests),

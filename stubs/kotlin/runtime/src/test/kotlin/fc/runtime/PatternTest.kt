@@ -1,0 +1,19 @@
+package fc.runtime
+
+import java.io.File
+
+/** Patterns match what `conformance/patterns.json` says, as in all languages. */
+internal fun patternTests(tests: Tests) {
+    for (pattern in Tree.of(File(tests.root, "conformance/patterns.json")).items) {
+        val portable = pattern.find("portable")?.text ?: continue
+        val codec = Types.STRING.pattern(portable)
+        for (verdict in listOf("matches", "refuses")) {
+            for (text in pattern[verdict].items.map { it.text }) {
+                tests.case("$portable on `$text`", "patterns") {
+                    val expected = if (verdict == "matches") null else "bad_pattern"
+                    expect(expected, errorOf { codec.check(text, false) })
+                }
+            }
+        }
+    }
+}
