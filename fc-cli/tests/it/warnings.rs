@@ -34,7 +34,7 @@ commands:
     en: Set the light
     effect: config
     source: { sections: [] }
-    errors: [expired]
+    errors: [4]
     request:
       brightness: { type: u8, max: 100, example: 80, zh: 亮度, en: Brightness }
 
