@@ -257,6 +257,16 @@ impl Shown {
 }
 
 impl Options {
+    /// Of a run in which warnings count as errors.
+    pub fn strict() -> Self {
+        Self {
+            format: Shown::Text,
+            deny: Some(Denied::Warnings),
+            fix: false,
+            dry_run: false,
+        }
+    }
+
     fn status(&self, spec: &Spec) -> Status {
         match spec.status() {
             Status::Fine if self.deny.is_some() && !spec.faults.is_empty() => Status::Faulty,

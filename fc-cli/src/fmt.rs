@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::format::{Refused, format};
-use fc_spec::syntax::{FileId, SourceFile, Sources, limits, read_bytes, read_dir, read_files};
+use fc_spec::syntax::{FileId, SourceFile, limits, read_bytes, read_dir, read_files};
 
 use crate::help::{Help, Part};
 use crate::lang::{both, counted, lang, said};
@@ -17,7 +17,7 @@ use crate::print;
 use crate::project::Project;
 
 /// Options of `fcproto fmt`.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub struct Options {
     #[arg(
         value_name = "FILES",
@@ -82,6 +82,16 @@ pub fn help() -> Help {
     }
 }
 
+impl Options {
+    /// Of a run that checks all files and writes nothing.
+    pub fn checking() -> Self {
+        Self {
+            check: true,
+            ..Self::default()
+        }
+    }
+}
+
 /// What a text from standard input is called.
 const STDIN: &str = "<stdin>";
 
@@ -95,8 +105,14 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         )
         .into());
     }
+    let mut mark = "";
     let (root, sources) = if from_stdin {
-        (PathBuf::new(), stdin(&mut faults)?)
+        let bytes = stdin()?;
+        if bytes.starts_with(BYTE_ORDER_MARK.as_bytes()) {
+            mark = BYTE_ORDER_MARK;
+        }
+        let sources = read_bytes(STDIN.to_owned(), bytes, &mut faults);
+        (PathBuf::new(), sources)
     } else if options.files.is_empty() {
         let project = Project::find(place)?;
         let sources = read_dir(&project.root, &project.spec, &mut faults);
@@ -111,6 +127,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         root: &root,
         options,
         from_stdin,
+        mark,
         shown: String::new(),
         changed: 0,
         mistakes: String::new(),
@@ -148,8 +165,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     })
 }
 
-/// The text on standard input.
-fn stdin(faults: &mut Faults) -> Result<Sources, Failure> {
+/// A byte order mark at the start of a text.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// The bytes on standard input, up to one more than a file may have.
+fn stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     // One byte more than a file may have, so that one that is too long is seen to be.
     let limit = u64::try_from(limits::FILE_BYTES).unwrap_or(u64::MAX);
@@ -162,13 +182,15 @@ fn stdin(faults: &mut Faults) -> Result<Sources, Failure> {
                 "cannot read standard input: {error}"
             )
         })?;
-    Ok(read_bytes(STDIN.to_owned(), bytes, faults))
+    Ok(bytes)
 }
 
 struct Run<'a> {
     root: &'a Path,
     options: &'a Options,
     from_stdin: bool,
+    /// Byte order mark of standard input, if it has one.
+    mark: &'static str,
     /// What goes to standard output.
     shown: String,
     /// Number of files that are not laid out, or were not.
@@ -199,6 +221,7 @@ impl Run<'_> {
     fn show(&mut self, file: &SourceFile, new: &str) -> Result<(), Failure> {
         let writes = !self.options.check && !self.options.diff;
         if self.from_stdin && writes {
+            self.shown += self.mark;
             self.shown += new;
             return Ok(());
         }

@@ -1,7 +1,6 @@
 //! `fcproto generate`.
 
 use std::fmt::Write as _;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::emit::generate;
@@ -14,10 +13,10 @@ use crate::help::{Help, Part};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::project::Project;
+use crate::project::{Project, is_there};
 use crate::spec::Spec;
 use crate::versions::Shelf;
-use crate::{plugin, print, progress, watch};
+use crate::{input, plugin, print, progress, watch};
 
 /// Paths that are named one by one.
 const NAMED: usize = 10;
@@ -173,14 +172,23 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 }
 
 fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+    in_project(Project::find(place)?, place, options)
+}
+
+/// Generates or checks the files of a project; `place` is what the user is told to type.
+pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<Status, Failure> {
     let released = match &options.as_of {
         Some(release) => Some(Shelf::of(&project)?.released(release)?),
         None => None,
     };
-    if let Some(path) = options.from.as_ref().or(released.as_ref()) {
+    let text = match (&options.from, &released) {
+        (Some(path), _) => Some((path, input::text(path)?)),
+        (None, Some(path)) => Some((path, input::file(path)?)),
+        (None, None) => None,
+    };
+    if let Some((path, text)) = text {
         let name = path.display().to_string();
-        return make(&dumped(path)?, &name, project, place, options);
+        return make(&dumped(&name, &text)?, &name, project, place, options);
     }
     let spec = Spec::in_project(&project);
     spec.show_faults()?;
@@ -193,22 +201,19 @@ fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
 }
 
-/// The model that `fcproto inspect` has written.
-fn dumped(path: &Path) -> Result<Model, Failure> {
-    let name = path.display();
-    let cannot = |error: std::io::Error| {
-        said!(
-            "无法读取 `{name}`：{error}",
-            "cannot read `{name}`: {error}"
-        )
-    };
-    let mut text = String::new();
-    if path.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text).map_err(cannot)?;
-    } else {
-        text = std::fs::read_to_string(path).map_err(cannot)?;
+impl Options {
+    /// Of a run that checks all files and writes nothing.
+    pub fn checking() -> Self {
+        Self {
+            check: true,
+            ..Self::default()
+        }
     }
-    Ok(Dump::read(&text).map_err(|error| {
+}
+
+/// The model that `fcproto inspect` has written.
+fn dumped(name: &str, text: &str) -> Result<Model, Failure> {
+    Ok(Dump::read(text).map_err(|error| {
         said!(
             "`{name}`：{error}",
             "`{name}`: {error}",
@@ -236,7 +241,7 @@ fn make(
     if let Some(clash) = clashes(model, &targets.languages()).first() {
         return Err(format!("`{read}`: {clash}").into());
     }
-    progress::doing("generating");
+    progress::doing(both("正在生成", "generating"));
     let mut artifacts = generate(model, &targets)?;
     for target in targets.plugins() {
         artifacts.extend(plugin::run(target, model, &project.root)?);
@@ -265,7 +270,7 @@ fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
         // What is not there yet is no project.
         _ => false,
     };
-    if is_root || out.join(FILE).is_file() {
+    if is_root || is_there(&out.join(FILE)) {
         let out = out.display();
         return Err(said!(
             "`{out}` 是一个项目；用 --out 指定别的目录",
@@ -279,11 +284,8 @@ fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
 fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
     if plan.is_fresh() {
         let count = counted(plan.unchanged.len(), "文件", "file");
-        let fresh = print::good(&said!("最新", "fresh"));
-        print::done(&said!(
-            "{read}{fresh} {count}\n",
-            "{read}{fresh}      {count}\n"
-        ))?;
+        let current = print::good(&said!("最新", "up to date"));
+        print::done(&format!("{read}{current} {count}\n"))?;
         return Ok(Status::Fine);
     }
     let mut out = String::new();

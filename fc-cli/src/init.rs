@@ -51,40 +51,40 @@ pub fn help() -> Help {
             ]),
         ],
         fails: "",
-        speaks: "",
+        speaks: both(
+            "也包括项目的 README、注释和示例",
+            "Also README, comments and examples of the project",
+        ),
     }
 }
 
-/// Files of the project, and what is in them.
-const FILES: [(&str, &str); 9] = [
-    ("fc.yaml", include_str!("../templates/init/fc.yaml")),
-    (".gitignore", include_str!("../templates/init/gitignore")),
-    (
-        ".gitattributes",
-        include_str!("../templates/init/gitattributes"),
-    ),
-    ("README.md", include_str!("../templates/init/README.md")),
-    (
-        "spec/protocol.yaml",
-        include_str!("../templates/init/spec/protocol.yaml"),
-    ),
-    (
-        "spec/commands/light.yaml",
-        include_str!("../templates/init/spec/commands/light.yaml"),
-    ),
-    (
-        "examples/robot.rs",
-        include_str!("../templates/init/examples/robot.rs"),
-    ),
-    (
-        "examples/app.rs",
-        include_str!("../templates/init/examples/app.rs"),
-    ),
-    (
-        "tests/talk.rs",
-        include_str!("../templates/init/tests/talk.rs"),
-    ),
+/// A template in both languages.
+macro_rules! template {
+    ($path:literal) => {
+        [
+            include_str!(concat!("../templates/init/zh/", $path)),
+            include_str!(concat!("../templates/init/", $path)),
+        ]
+    };
+}
+
+/// Files of the project in Chinese and in English.
+const FILES: [(&str, [&str; 2]); 8] = [
+    ("fc.yaml", template!("fc.yaml")),
+    (".gitattributes", template!("gitattributes")),
+    ("README.md", template!("README.md")),
+    ("spec/protocol.yaml", template!("spec/protocol.yaml")),
+    ("spec/commands/light.yaml", [LIGHT, LIGHT]),
+    ("examples/robot.rs", template!("examples/robot.rs")),
+    ("examples/app.rs", template!("examples/app.rs")),
+    ("tests/talk.rs", template!("tests/talk.rs")),
 ];
+
+/// A group of operations, which has both languages.
+const LIGHT: &str = include_str!("../templates/init/spec/commands/light.yaml");
+
+/// Patterns for git.
+const IGNORED: &str = include_str!("../templates/init/gitignore");
 
 /// Its manifest, which says of some crates where they are.
 const MANIFEST: &str = include_str!("../templates/init/Cargo.toml.in");
@@ -103,7 +103,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let manifest = manifest(options.runtime.as_deref())?;
     refuse_what_is_there(directory)?;
-    for (path, text) in FILES.into_iter().chain([("Cargo.toml", manifest.as_str())]) {
+    let files = FILES.map(|(path, [zh, en])| (path, both(zh, en)));
+    let others = [(".gitignore", IGNORED), ("Cargo.toml", manifest.as_str())];
+    for (path, text) in files.into_iter().chain(others) {
         write(&directory.join(path), text)?;
     }
     let place = Place {

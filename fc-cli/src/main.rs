@@ -13,6 +13,7 @@ mod generate;
 mod git;
 mod help;
 mod init;
+mod input;
 mod inspect;
 mod lang;
 mod lint;

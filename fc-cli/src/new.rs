@@ -5,7 +5,7 @@ use fc_spec::model::Kind;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::help::{Help, Part};
-use crate::lang::{both, said};
+use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -63,6 +63,11 @@ pub fn help() -> Help {
                  marks show where you have to write. The spec changes only if it has no errors before and after.",
             )),
             Part::Text(both(
+                "功能码取自用 `groups` 指明这个分组的号段。没有这样的号段时，取自不写 `groups` 的号段，优先取分组已有功能码所在的号段。",
+                "The code comes from a range that names the group under `groups`. Without such a range, it comes from the ranges \
+                 without `groups`, first from those in which the group has codes.",
+            )),
+            Part::Text(both(
                 "没有 `--started-by` 和 `--code` 的流暂时没有功能码。",
                 "A stream without `--started-by` and `--code` has no code yet.",
             )),
@@ -115,6 +120,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             },
             code: options.code,
             started_by: options.started_by.as_deref(),
+            lang: lang(),
         },
     )?;
     let after = spec.with(&new.path, &new.text);

@@ -5,7 +5,7 @@ use fc_spec::load::{Item, Place as Written, load, places};
 use fc_spec::syntax::{Sources, read_dir};
 
 use crate::help::{Help, Part};
-use crate::lang::{both, said};
+use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -98,6 +98,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 fn shown(item: &Item, written: &Written, sources: &Sources) -> String {
     let path = sources.path(written.key);
     let at = sources.line_col(written.key);
+    let item = in_lang(&item.text());
     let place = format!("{path}:{}:{}: {item}\n", at.line, at.column);
     let comments = written.comments.iter();
     let comments = comments.map(|comment| format!("    {}\n", sources.slice(*comment)));

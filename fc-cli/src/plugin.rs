@@ -1,64 +1,45 @@
 //! Targets that other programs make.
 
-use std::io::{Read as _, Write as _};
+mod group;
+
+use std::io::{self, Read, Write as _};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Instant;
 
 use fc_codegen::inspect;
 use fc_codegen::product::Artifact;
 use fc_codegen::target::{Plugin, part};
-use fc_spec::model::Model;
+use fc_spec::model::{Model, Text};
+use fc_spec::text;
 
 use crate::lang::said;
 use crate::outcome::Failure;
+use group::Group;
 
-/// Longest answer, in bytes.
-const LONGEST: u64 = 256 * 1024 * 1024;
+/// Ends the plugin that runs, with its children.
+pub fn end() {
+    group::end_running();
+}
 
 /// Runs the program of a target in the project's root and takes its files.
 ///
-/// It gets what `fcproto inspect` prints, for the target's audience if it has one, with the target's `options` as one more key, on standard input. What it says
-/// on standard error goes to the user.
+/// The program reads the output of `fcproto inspect` from standard input: the part of the target's audience, with the
+/// target's `options` as an additional key. Its standard error goes to the user. A program that exceeds its time or its
+/// output is ended with its children.
 pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>, Failure> {
     let (program, target) = (&plugin.program, &plugin.name);
     let model = part(model, plugin.audience.as_deref())?;
-    let command = if program.contains('/') {
-        // Where the program starts does not tell on all systems from where its path counts.
-        root.join(program)
-    } else {
-        program.into()
-    };
-    let mut child = Command::new(&command)
-        .current_dir(root)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .map_err(|error| {
-            said!(
-                "无法为目标 `{target}` 运行 `{program}`：{error}",
-                "cannot run `{program}` for the target `{target}`: {error}"
-            )
-        })?;
     let question = inspect::json_with(&model, &plugin.options);
-    let answer = converse(&mut child, question.as_bytes()).map_err(|error| {
+    let answer = ask(plugin, question, root).map_err(|why| {
         said!(
-            "无法与 `{program}` 通信：{error}",
-            "cannot talk to `{program}`: {error}"
+            "无法由 `{program}` 生成目标 `{target}`：{why}",
+            "cannot generate the target `{target}` with `{program}`: {why}",
+            why = why
         )
     })?;
-    let status = (child.wait()).map_err(|error| {
-        said!(
-            "无法等待 `{program}` 结束：{error}",
-            "cannot wait for `{program}`: {error}"
-        )
-    })?;
-    if !status.success() {
-        return Err(said!(
-            "`{program}` 没有为目标 `{target}` 生成任何内容：{status}",
-            "`{program}` made nothing of the target `{target}`: {status}"
-        )
-        .into());
-    }
     plugin.artifacts(&answer).map_err(|error| {
         said!(
             "`{program}` 为目标 `{target}` 返回的不是 {{ path, contents }} 的列表：{error}",
@@ -68,18 +49,112 @@ pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>,
     })
 }
 
-/// Writes the question and reads the answer at once: the program may begin to answer before it has read all.
-fn converse(child: &mut Child, question: &[u8]) -> std::io::Result<Vec<u8>> {
+/// An event of a program that runs.
+enum Event {
+    /// It has closed its output, or exceeded its size.
+    Answer(io::Result<Option<Vec<u8>>>),
+    /// It has ended.
+    End(io::Result<ExitStatus>),
+}
+
+/// Returns what the program prints, or why there is nothing to take.
+fn ask(plugin: &Plugin, question: String, root: &Path) -> Result<Vec<u8>, Text> {
+    let events = start(plugin, question, root).map_err(|error| text!("{error}", "{error}"))?;
+    let answer = events.wait(plugin);
+    if answer.is_err() {
+        events.group.end();
+    }
+    answer
+}
+
+/// A program that runs.
+struct Running {
+    group: Group,
+    events: Receiver<Event>,
+}
+
+fn start(plugin: &Plugin, question: String, root: &Path) -> io::Result<Running> {
+    let program = &plugin.program;
+    // The child starts in another directory, and systems differ in where a relative path begins.
+    let root = std::path::absolute(root)?;
+    let command = if program.contains('/') {
+        root.join(program)
+    } else {
+        program.into()
+    };
+    let mut command = Command::new(command);
+    command
+        .current_dir(root)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped());
+    let (mut child, group) = Group::spawn(&mut command)?;
+    let (sender, events) = channel();
     let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
-    std::thread::scope(|scope| {
-        scope.spawn(move || {
-            // A program that does not want to know ends its input; its answer says whether that was right.
-            stdin.map(|mut stdin| stdin.write_all(question))
-        });
-        let mut answer = Vec::new();
-        if let Some(stdout) = stdout {
-            stdout.take(LONGEST).read_to_end(&mut answer)?;
+    // Writing and reading at once: the program may answer before it has read everything. A program that does not read
+    // closes its input. No thread is joined: a grandchild may hold its end of a pipe.
+    thread::spawn(move || stdin.map(|mut stdin| stdin.write_all(question.as_bytes())));
+    let most = plugin.output_bytes;
+    let answered: Sender<Event> = sender.clone();
+    thread::spawn(move || {
+        let answer = stdout.map_or(Ok(Some(Vec::new())), |stdout| bounded(stdout, most));
+        answered.send(Event::Answer(answer))
+    });
+    thread::spawn(move || sender.send(Event::End(child.wait())));
+    Ok(Running { group, events })
+}
+
+/// All of an output; `None` if it is longer.
+fn bounded(output: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    output
+        .take(most.saturating_add(1))
+        .read_to_end(&mut bytes)?;
+    let fits = u64::try_from(bytes.len()).is_ok_and(|read| read <= most);
+    Ok(fits.then_some(bytes))
+}
+
+impl Running {
+    /// Waits for the output and the end of the program.
+    fn wait(&self, plugin: &Plugin) -> Result<Vec<u8>, Text> {
+        let begin = Instant::now();
+        let (mut answer, mut status) = (None, None);
+        loop {
+            match (answer.take(), status) {
+                (_, Some(status)) if !ExitStatus::success(&status) => {
+                    return Err(match status.code() {
+                        Some(code) => text!("退出码为 {code}", "exit status {code}"),
+                        None => text!("被系统终止（{status}）", "{status}"),
+                    });
+                }
+                (Some(answer), Some(_)) => return Ok(answer),
+                (rest, _) => answer = rest,
+            }
+            let left = plugin.timeout.saturating_sub(begin.elapsed());
+            match self.events.recv_timeout(left) {
+                Ok(Event::Answer(Ok(Some(bytes)))) => answer = Some(bytes),
+                Ok(Event::Answer(Ok(None))) => {
+                    let most = plugin.output_bytes;
+                    return Err(text!(
+                        "输出超过 `output_bytes: {most}`",
+                        "its output is larger than `output_bytes: {most}`"
+                    ));
+                }
+                Ok(Event::End(Ok(ended))) => status = Some(ended),
+                Ok(Event::Answer(Err(error)) | Event::End(Err(error))) => {
+                    return Err(text!("{error}", "{error}"));
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    let most = plugin.timeout.as_millis();
+                    return Err(text!(
+                        "运行时间超过 `timeout_ms: {most}`",
+                        "it runs longer than `timeout_ms: {most}`"
+                    ));
+                }
+                // Each thread sends one event before it ends.
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(text!("没有输出", "it has no output"));
+                }
+            }
         }
-        Ok(answer)
-    })
+    }
 }

@@ -1,10 +1,13 @@
 //! Where the project is, and what it makes.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::target::{FILE, Targets};
+use fc_spec::diagnostic::Faults;
+use fc_spec::syntax::read_files;
 
-use crate::lang::said;
+use crate::lang::{in_lang, said};
 use crate::outcome::Failure;
 use crate::place::Place;
 
@@ -62,18 +65,9 @@ impl Project {
     }
 
     fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {
-        let file = root.join(FILE);
-        let targets = if file.is_file() {
-            let text = std::fs::read_to_string(&file).map_err(|error| {
-                let file = file.display();
-                said!(
-                    "无法读取 `{file}`：{error}",
-                    "cannot read `{file}`: {error}"
-                )
-            })?;
-            Targets::read(&text)?
-        } else {
-            Targets::default()
+        let targets = match settings(&root)? {
+            Some(text) => Targets::read(&text)?,
+            None => Targets::default(),
         };
         let spec = place
             .spec
@@ -84,6 +78,30 @@ impl Project {
             spec,
             targets,
         })
+    }
+}
+
+/// Reads the text of `fc.yaml`; `None` if there is none.
+pub fn settings(root: &Path) -> Result<Option<String>, Failure> {
+    let file = root.join(FILE);
+    if !is_there(&file) {
+        return Ok(None);
+    }
+    let mut faults = Faults::new();
+    let name = file.display().to_string();
+    let read = read_files([(name, file.as_path())], &mut faults);
+    if let Some(fault) = faults.iter().next() {
+        return Err(in_lang(&fault.message).into());
+    }
+    Ok(read.iter().next().map(|(_, file)| file.text.clone()))
+}
+
+/// Returns `true` if a path leads to anything, be it a directory or a link to nothing.
+pub fn is_there(path: &Path) -> bool {
+    match path.symlink_metadata() {
+        Ok(_) => true,
+        // Whatever the system does not show may be there.
+        Err(error) => !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory),
     }
 }
 
@@ -120,7 +138,7 @@ fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
 }
 
 fn is_project(directory: &Path, place: &Place) -> bool {
-    directory.join(FILE).is_file() || directory.join(protocol(place)).is_file()
+    is_there(&directory.join(FILE)) || is_there(&directory.join(protocol(place)))
 }
 
 /// What leads from a project's directory to its `protocol.yaml`, where no `fc.yaml` says so.

@@ -15,10 +15,10 @@ use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::print;
-use crate::project::Project;
+use crate::project::{Project, is_there};
 use crate::spec::Spec;
 use crate::versions::{Shelf, day, today};
+use crate::{input, print};
 
 /// Options of `fcproto release`.
 #[derive(Debug, clap::Args)]
@@ -288,16 +288,10 @@ fn write(
     for ((lang, name), section) in CHANGELOGS.into_iter().zip(sections) {
         let path = slashed(&shelf.file(&format!("{DIRECTORY}/{name}")));
         let disk = project.root.join(&path);
-        let before = match std::fs::read_to_string(&disk) {
-            Ok(text) => Some(text),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-            Err(error) => {
-                return Err(said!(
-                    "无法读取 `{path}`：{error}",
-                    "cannot read `{path}`: {error}"
-                )
-                .into());
-            }
+        let before = if is_there(&disk) {
+            Some(input::file(&disk)?)
+        } else {
+            None
         };
         let text = with_section(before.as_deref(), &section, lang);
         replace_spec_file(&project.root, &path, &text)?;

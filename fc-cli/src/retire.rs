@@ -88,9 +88,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let _ = writeln!(text, "{path}\n{}", print::diff(diff).trim_end());
     }
     let what = if options.dry_run {
-        said!("将停用", "would retire")
+        said!("将退役", "would retire")
     } else {
-        said!("已停用", "retired")
+        said!("已退役", "retired")
     };
     let _ = write!(text, "{} {}", print::good(&what), options.name);
     if let Some(code) = &retired.code {

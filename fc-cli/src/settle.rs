@@ -11,9 +11,9 @@ use crate::help::{Help, Part};
 use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::print;
 use crate::project::Project;
 use crate::spec::Spec;
+use crate::{input, print};
 
 /// Options of `fcproto settle`.
 #[derive(Debug, clap::Args)]
@@ -275,17 +275,13 @@ impl Options {
         let today = || jiff::Zoned::now().date().to_string();
         let date = self.date.clone().unwrap_or_else(today);
         if let Some(path) = &self.from {
-            let sheet = std::fs::read(path).map_err(|error| {
-                let path = path.display();
-                said!(
-                    "无法读取 `{path}`：{error}",
-                    "cannot read `{path}`: {error}"
-                )
-            })?;
-            let said = read(&sheet, model, self.by.as_deref(), &date).map_err(|errors| {
-                let errors: Vec<_> = errors.iter().map(|error| in_lang(&error.text())).collect();
-                errors.join("\n       ")
-            })?;
+            let sheet = input::text(path)?;
+            let said =
+                read(sheet.as_bytes(), model, self.by.as_deref(), &date).map_err(|errors| {
+                    let errors: Vec<_> =
+                        errors.iter().map(|error| in_lang(&error.text())).collect();
+                    errors.join("\n       ")
+                })?;
             if said.is_empty() {
                 let path = path.display();
                 return Err(said!(
@@ -311,7 +307,7 @@ impl Options {
             (Fact::Response, &self.response),
         ] {
             if let Some(file) = file {
-                values.push((fact.name().to_owned(), text(file)?));
+                values.push((fact.name().to_owned(), input::text(file)?));
             }
         }
         if values.is_empty() && !self.confirm && self.reply.is_none() {
@@ -332,20 +328,4 @@ impl Options {
             },
         }])
     }
-}
-
-fn text(file: &PathBuf) -> Result<String, Failure> {
-    let read = if file.as_os_str() == "-" {
-        std::io::read_to_string(std::io::stdin())
-    } else {
-        std::fs::read_to_string(file)
-    };
-    read.map_err(|error| {
-        let file = file.display();
-        said!(
-            "无法读取 `{file}`：{error}",
-            "cannot read `{file}`: {error}"
-        )
-        .into()
-    })
 }

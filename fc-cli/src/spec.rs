@@ -6,7 +6,7 @@ use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
 use fc_spec::model::Model;
 use fc_spec::syntax::{Sources, read_dir};
 
-use crate::lang::{lang, said};
+use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -33,7 +33,7 @@ impl Spec {
 
     /// The same of a project that has been found.
     pub fn in_project(project: &Project) -> Self {
-        progress::doing("checking the spec");
+        progress::doing(both("正在检查规范", "checking the spec"));
         let mut faults = Faults::new();
         let sources = read_dir(&project.root, &project.spec, &mut faults);
         Self::of(sources, faults, project.targets.languages())

@@ -6,7 +6,7 @@ use fc_diff::release::{Number, Releases};
 use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
 
-use crate::lang::{lang, said};
+use crate::lang::{both, lang, said};
 use crate::outcome::Failure;
 use crate::place::Place;
 use crate::print;
@@ -87,7 +87,10 @@ impl Shelf {
 
     /// Reads a version; `None` if its spec has errors, which are shown.
     pub fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
-        progress::doing("reading two versions of the spec");
+        progress::doing(both(
+            "正在读取规范的两个版本",
+            "reading two versions of the spec",
+        ));
         match Version::read(name, &self.root, &self.spec) {
             Ok(version) => Ok(Some(version)),
             Err(VersionError::Faulty {
@@ -113,7 +116,7 @@ impl Shelf {
         new: &Version,
         today: &str,
     ) -> Result<Vec<Finding>, Failure> {
-        progress::doing("comparing");
+        progress::doing(both("正在比较", "comparing"));
         let earlier = self.earlier(old, new)?;
         let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
         let mut findings = diff_since(earlier, &old.model, &new.model, self.packages);

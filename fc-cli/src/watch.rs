@@ -19,8 +19,8 @@ use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 use crate::lang::{lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::print;
-use crate::project::Project;
+use crate::project::{Project, settings};
+use crate::{plugin, print};
 
 /// Nothing must change for so long before the spec is read again: editors and git change several files at once.
 const CALM: Duration = Duration::from_millis(100);
@@ -48,6 +48,7 @@ pub fn run(
     let (end, wake) = (Arc::clone(&ended), sender.clone());
     ctrlc::set_handler(move || {
         end.store(true, Ordering::Relaxed);
+        plugin::end();
         let _ = wake.try_send(());
     })
     .map_err(|error| {
@@ -179,7 +180,7 @@ impl Input {
         let mut files: Vec<_> = files
             .map(|(_, file)| (file.path.clone(), file.text.clone()))
             .collect();
-        if let Ok(text) = std::fs::read_to_string(root.join(FILE)) {
+        if let Ok(Some(text)) = settings(root) {
             files.push((FILE.to_owned(), text));
         }
         files.sort();

@@ -1,7 +1,8 @@
 //! Who has which code, and which are free: for people, and as JSON.
 
 use crate::emit::markdown::{Lang, Word as _};
-use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode};
+use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode, Text};
+use fc_spec::text;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -96,7 +97,7 @@ impl<'m> CodeMap<'m> {
         let mut ranges: Vec<Range<'m>> = model.ranges.iter().map(Range::from).collect();
         ranges.sort_by_key(|range| range.of.first);
         for entry in taken {
-            if let Some(range) = ranges.iter_mut().find(|range| range.has(entry.code)) {
+            if let Some(range) = ranges.iter_mut().find(|range| range.of.has(entry.code)) {
                 range.taken.push(entry);
             }
         }
@@ -106,7 +107,7 @@ impl<'m> CodeMap<'m> {
             let gone = codes.range(range.of.first..=range.of.last).count();
             range.free = all.saturating_sub(gone);
         }
-        let next = |usage| model.next_code(usage).map(spelled);
+        let next = |usage| model.next_code(usage, None).map(spelled);
         let uncoded = model.operations.iter();
         let uncoded = uncoded.filter(|operation| operation.code.value.is_none());
         Self {
@@ -154,7 +155,7 @@ impl<'m> CodeMap<'m> {
     /// What is to be said of one code, as a line for each that has it.
     #[must_use]
     pub fn standing(&self, code: u16, lang: Lang) -> String {
-        let mut ranges = self.ranges.iter().filter(|range| range.has(code));
+        let mut ranges = self.ranges.iter().filter(|range| range.of.has(code));
         let Some(range) = ranges.next() else {
             let why = lang.pick("不在任何号段内", "in none of the ranges");
             return format!("{}  {why}\n", spelled(code));
@@ -190,10 +191,6 @@ impl<'m> From<&'m CodeRange> for Range<'m> {
 }
 
 impl Range<'_> {
-    fn has(&self, code: u16) -> bool {
-        (self.of.first..=self.of.last).contains(&code)
-    }
-
     fn title(&self, lang: Lang) -> String {
         let CodeRange {
             first_spelling: first,
@@ -210,8 +207,8 @@ impl Range<'_> {
             (_, Lang::Zh) => format!("，剩余 {} 个", self.free),
             (_, Lang::En) => format!(", {} free", self.free),
         };
-        let word = self.of.usage.word(lang);
-        format!("{ends} · {} · {word}{free}", lang.text(&self.of.text))
+        let purpose = purpose(self.of, lang);
+        format!("{ends} · {} · {purpose}{free}", lang.text(&self.of.text))
     }
 }
 
@@ -247,6 +244,21 @@ impl Entry<'_> {
             ),
         }
     }
+}
+
+/// Returns the use of a range, and the groups that it names.
+pub(crate) fn purpose(range: &CodeRange, lang: Lang) -> String {
+    let usage = range.usage.word(lang);
+    if range.groups.is_empty() {
+        return usage.to_owned();
+    }
+    let groups = Text::listed(&range.groups);
+    lang.text(&text!(
+        "{usage}（{groups}）",
+        "{usage} ({groups})",
+        groups = groups
+    ))
+    .to_owned()
 }
 
 /// As a spec writes a code: `0x0A11`.

@@ -22,6 +22,7 @@ use serde::de::IgnoredAny;
 use serde_yaml::Value as Options;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// The file, from the project's root.
 pub const FILE: &str = "fc.yaml";
@@ -88,8 +89,47 @@ pub struct Plugin {
     pub names: Option<&'static surface::Language>,
     /// Whose part of the protocol it gets; all of it where nobody is named.
     pub audience: Option<String>,
+    /// Longest run of the program.
+    pub timeout: Duration,
+    /// Largest output of the program, in bytes.
+    pub output_bytes: u64,
     /// Whatever it needs to know.
     pub options: Options,
+}
+
+/// A number in `fc.yaml` with its default and its largest value; the smallest is 1.
+struct Bound {
+    key: &'static str,
+    default: u64,
+    most: u64,
+}
+
+/// Longest run of a plugin: a minute, or up to an hour.
+const TIMEOUT_MS: Bound = Bound {
+    key: "timeout_ms",
+    default: 60_000,
+    most: 3_600_000,
+};
+
+/// Largest output of a plugin: 64 MiB, or up to 1 GiB.
+const OUTPUT_BYTES: Bound = Bound {
+    key: "output_bytes",
+    default: 64 << 20,
+    most: 1 << 30,
+};
+
+impl Bound {
+    fn of(&self, written: Option<u64>, name: &str) -> Result<u64, TargetError> {
+        let value = written.unwrap_or(self.default);
+        if (1..=self.most).contains(&value) {
+            return Ok(value);
+        }
+        Err(TargetError::OutOfRange {
+            name: name.to_owned(),
+            key: self.key,
+            most: self.most,
+        })
+    }
 }
 
 /// What a plugin answers with: a file.
@@ -148,6 +188,16 @@ pub enum TargetError {
         /// The key.
         key: &'static str,
     },
+    /// A number is too small or too large.
+    #[error("`{FILE}`: `{key}` of the target `{name}` must be from 1 to {most}")]
+    OutOfRange {
+        /// The target.
+        name: String,
+        /// The key.
+        key: &'static str,
+        /// The largest value.
+        most: u64,
+    },
     /// `names` of a target is no language whose names are known.
     #[error(
         "`{FILE}`: the target `{target}` has names in `{language}`; the languages are {}",
@@ -178,7 +228,7 @@ impl TargetError {
     pub fn text(&self) -> Text {
         let zh = match self {
             Self::Audience(error) => return error.text(),
-            Self::Shape(error) => format!("`{FILE}`：{error}"),
+            Self::Shape(error) => format!("`{FILE}`：{}", shape(error)),
             Self::Unknown { name } => format!(
                 "`{FILE}`：没有产物 `{name}`；产物有：{}。其他名称的目标需要 `plugin`",
                 products()
@@ -187,6 +237,9 @@ impl TargetError {
                 format!("`{FILE}`：目标 `{name}` 不能有 `{key}`")
             }
             Self::Missing { name, key } => format!("`{FILE}`：目标 `{name}` 需要 `{key}`"),
+            Self::OutOfRange { name, key, most } => {
+                format!("`{FILE}`：目标 `{name}` 的 `{key}` 应为 1 到 {most}")
+            }
             Self::Language { target, language } => format!(
                 "`{FILE}`：目标 `{target}` 的名称所用的语言是 `{language}`；语言有：{}",
                 languages()
@@ -196,6 +249,87 @@ impl TargetError {
         let en = self.to_string();
         Text { zh, en }
     }
+}
+
+/// Describes in Chinese why the text of the file does not fit; the library knows English alone.
+fn shape(error: &serde_yaml::Error) -> String {
+    let message = error.to_string();
+    let (message, place) = match (message.split_once(" at line "), error.location()) {
+        (Some((message, _)), Some(at)) => (
+            message,
+            format!("第 {} 行第 {} 列：", at.line(), at.column()),
+        ),
+        _ => (message.as_str(), String::new()),
+    };
+    let (path, message) = match message.split_once(": ") {
+        // The path of keys, such as `targets.rust`.
+        Some((path, rest)) if !path.contains(' ') => (format!("`{path}` 中"), rest),
+        _ => (String::new(), message),
+    };
+    let facts = [
+        ("unknown field ", "有未知的键"),
+        ("missing field ", "缺少键"),
+        ("duplicate field ", "有重复的键"),
+        ("unknown variant ", "有未知的值"),
+        ("invalid type: ", "类型不对，实际为"),
+        ("invalid value: ", "值不对，实际为"),
+    ];
+    let fact = facts.iter().find_map(|(en, zh)| {
+        let rest = message.strip_prefix(en)?;
+        let (found, expected) = match rest.split_once(", expected ") {
+            Some((found, expected)) => (found, format!("，应为{}", words(expected))),
+            None => (rest, String::new()),
+        };
+        Some(format!("{zh}{}{expected}", words(found)))
+    });
+    let fact = fact.unwrap_or_else(|| "YAML 的写法有错误".to_owned());
+    format!("{place}{path}{fact}")
+}
+
+/// The library's words for kinds of values, in Chinese.
+fn words(text: &str) -> String {
+    let known = [
+        ("one of ", ""),
+        ("a mapping", "映射"),
+        ("a map", "映射"),
+        ("map", "映射"),
+        ("a sequence", "列表"),
+        ("sequence", "列表"),
+        ("a boolean", "布尔值"),
+        ("boolean", "布尔值"),
+        ("a string", "字符串"),
+        ("string", "字符串"),
+        ("floating point", "小数"),
+        ("integer", "整数"),
+        ("unit value", "空值"),
+        ("u64", "正整数"),
+        ("option", "值"),
+        (" or ", " 或 "),
+        (", ", "、"),
+    ];
+    let is_type = ["struct ", "variant of ", "enum ", "any "];
+    if let Some(start) = is_type.iter().find(|start| text.starts_with(*start)) {
+        return if *start == "struct " {
+            "映射"
+        } else {
+            "列出的值"
+        }
+        .to_owned();
+    }
+    let is_quote = |c: char| matches!(c, '`' | '"');
+    let parts = text.split_inclusive(is_quote).enumerate();
+    let parts = parts.map(|(at, part)| {
+        // Words between quotes are those of the file.
+        let known = known.iter().filter(|_| at % 2 == 0);
+        known.fold(part.to_owned(), |part, (en, zh)| part.replace(en, zh))
+    });
+    let text: String = parts.collect();
+    Text {
+        zh: text,
+        en: String::new(),
+    }
+    .spaced()
+    .zh
 }
 
 fn products() -> String {
@@ -234,6 +368,8 @@ struct WrittenTarget {
     plugin: Option<String>,
     names: Option<String>,
     audience: Option<String>,
+    timeout_ms: Option<u64>,
+    output_bytes: Option<u64>,
     options: Option<Options>,
 }
 
@@ -511,6 +647,8 @@ impl WrittenTarget {
             ("plugin", self.plugin.is_some()),
             ("names", self.names.is_some()),
             ("options", self.options.is_some()),
+            (TIMEOUT_MS.key, self.timeout_ms.is_some()),
+            (OUTPUT_BYTES.key, self.output_bytes.is_some()),
             (
                 "languages",
                 self.languages.is_some() && product != Product::Markdown,
@@ -565,12 +703,16 @@ impl WrittenTarget {
             },
             None => None,
         };
+        let timeout = TIMEOUT_MS.of(self.timeout_ms, &name)?;
+        let output_bytes = OUTPUT_BYTES.of(self.output_bytes, &name)?;
         Ok(Plugin {
             name,
             program,
             out,
             names,
             audience: self.audience,
+            timeout: Duration::from_millis(timeout),
+            output_bytes,
             options: self.options.unwrap_or_default(),
         })
     }

@@ -76,6 +76,11 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
         let title = pick(lang, ["Changes of the protocol", "协议变更记录"]);
         return format!("# {title}\n\n{section}");
     };
+    let newline = match changelog.split_once('\n') {
+        Some((first, _)) if first.ends_with('\r') => "\r\n",
+        _ => "\n",
+    };
+    let section = section.replace('\n', newline);
     let first = if changelog.starts_with("## ") {
         Some(0)
     } else {
@@ -84,9 +89,9 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
     match first {
         Some(at) => {
             let (head, rest) = changelog.split_at(at);
-            format!("{head}{section}\n{rest}")
+            format!("{head}{section}{newline}{rest}")
         }
-        None => format!("{}\n\n{section}", changelog.trim_end()),
+        None => format!("{}{newline}{newline}{section}", changelog.trim_end()),
     }
 }
 

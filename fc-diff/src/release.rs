@@ -114,7 +114,11 @@ impl Releases {
         let mut found = Vec::new();
         let directory = match std::fs::read_dir(spec.join(DIRECTORY)) {
             Ok(directory) => directory,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            // A link to nothing is an error.
+            Err(error)
+                if error.kind() == std::io::ErrorKind::NotFound
+                    && !spec.join(DIRECTORY).is_symlink() =>
+            {
                 return Ok(Self::default());
             }
             Err(error) => return Err(error),

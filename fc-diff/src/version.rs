@@ -54,6 +54,10 @@ pub enum VersionError {
     NoRelease(NoRelease),
     /// Its files are too large.
     TooLarge(String),
+    /// The dump of a release is a directory, a pipe or a device.
+    NotAFile(String),
+    /// A file is not UTF-8.
+    NotUtf8(String),
 }
 
 impl VersionError {
@@ -86,6 +90,10 @@ impl VersionError {
                 "`{name}` is not a directory with a spec, an output of `fcproto inspect`, a release or git:REF"
             ),
             Self::NoRelease(error) => error.text(),
+            Self::NotAFile(path) => {
+                text!("`{path}` 不是普通文件", "`{path}` is not a regular file")
+            }
+            Self::NotUtf8(name) => text!("`{name}` 不是 UTF-8", "`{name}` is not UTF-8"),
             Self::TooLarge(name) => {
                 let most = MOST >> 20;
                 text!(
@@ -120,19 +128,26 @@ impl Version {
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
         let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
         // A directory that is called like a release is `./2026.12`.
-        let path = releases.named(name).unwrap_or(Path::new(name));
-        if name.parse::<Number>().is_ok() && !path.exists() {
+        let release = releases.named(name);
+        let path = release.unwrap_or(Path::new(name));
+        if release.is_none() && name.parse::<Number>().is_ok() && !path.exists() {
             return Err(VersionError::NoRelease(releases.without(name)));
+        }
+        // To open a pipe would wait for its writer.
+        if release.is_some() && path.metadata().is_ok_and(|found| !found.is_file()) {
+            return Err(VersionError::NotAFile(path.display().to_string()));
         }
         if !path.is_dir() {
             let mut file = std::fs::File::open(path)
                 .map_err(unreadable)?
                 .take(MOST + 1);
-            let mut text = String::new();
-            let read = file.read_to_string(&mut text).map_err(unreadable)?;
+            let mut bytes = Vec::new();
+            let read = file.read_to_end(&mut bytes).map_err(unreadable)?;
             if u64::try_from(read).is_ok_and(|read| read > MOST) {
                 return Err(VersionError::TooLarge(name.to_owned()));
             }
+            let text =
+                String::from_utf8(bytes).map_err(|_| VersionError::NotUtf8(name.to_owned()))?;
             let model =
                 Dump::read(&text).map_err(|error| VersionError::Dump(name.to_owned(), error))?;
             return Ok(Self {

@@ -131,9 +131,10 @@ impl Found<'_> {
         if is_key {
             return self.items;
         }
+        let path = self.snapshot.sources().path(site.node.span());
         if let Some(code) = site
             .code_of()
-            .and_then(|it| self.snapshot.known().analysis().next_code(it))
+            .and_then(|it| self.snapshot.known().analysis().next_code(it, path))
         {
             let lang = self.snapshot.settings.lang;
             let what = lang.pick("下一个空闲的功能码", "the next free code");

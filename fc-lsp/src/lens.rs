@@ -13,7 +13,8 @@ pub const SHOW_REFERENCES: &str = "fc.showReferences";
 /// What lenses say that only a check tells.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Checked {
-    codes: [Option<u16>; 2],
+    /// The next code of each use, by group.
+    codes: Vec<Option<u16>>,
     /// What breaks, and where.
     breaks: Vec<(Vec<String>, String)>,
 }
@@ -27,8 +28,11 @@ pub fn checked(snapshot: &Snapshot) -> Checked {
         let message = snapshot.settings.lang.text(&finding.message);
         (names.collect(), message.to_owned())
     });
+    let analysis = known.analysis();
+    let files = analysis.groups().iter().map(|group| &group.location.file);
+    let codes = files.flat_map(|file| uses.map(|usage| analysis.next_code(usage, file)));
     Checked {
-        codes: uses.map(|usage| known.analysis().next_code(usage)),
+        codes: codes.collect(),
         breaks: breaking.collect(),
     }
 }
@@ -54,9 +58,11 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
         return lenses;
     };
     let lang = snapshot.settings.lang;
+    let known = snapshot.known();
     sites(tree.root(), &mut |site| {
         let usage = site.operations().filter(|_| site.role == Role::Key);
-        let code = usage.and_then(|usage: RangeUse| snapshot.known().analysis().next_code(usage));
+        let path = snapshot.sources().path(site.node.span());
+        let code = usage.and_then(|usage: RangeUse| known.analysis().next_code(usage, path));
         if let Some(code) = code {
             let title = lang.pick("空闲的功能码", "free code");
             let lens = said(

@@ -6,7 +6,7 @@ use fc_codegen::check::check_trees;
 use fc_diff::{Against, Finding, diff_since, waive};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
-use fc_spec::model::{Model, Operation, RangeUse, Text, Types};
+use fc_spec::model::{Group, Model, Operation, RangeUse, Text, Types};
 use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{
     Location, OptionalVersionedTextDocumentIdentifier, Position, Range, TextDocumentEdit,
@@ -332,11 +332,22 @@ impl Analysis {
         }
     }
 
-    /// The code that the next operation gets from the ranges of this use.
-    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
+    /// Groups.
+    pub fn groups(&self) -> &[Group] {
         match &self.read {
-            Ok(model) => model.next_code(usage),
-            Err(partial) => partial.next_code(usage),
+            Ok(model) => &model.groups,
+            Err(partial) => &partial.groups,
+        }
+    }
+
+    /// Returns the code that the next operation in a file gets from the ranges of this use.
+    pub fn next_code(&self, usage: RangeUse, path: &str) -> Option<u16> {
+        let mut groups = self.groups().iter();
+        let group = groups.find(|group| group.location.file == path);
+        let group = group.map(|group| group.id.as_str());
+        match &self.read {
+            Ok(model) => model.next_code(usage, group),
+            Err(partial) => partial.next_code(usage, group),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! same whoever is asked. [`certain`] says which; [`fix_all`] makes them, looks again, and goes on until there is none left.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, Fix};
+use crate::format::edited;
 use crate::model::Text;
 use crate::syntax::{Edits, FileId, SourceFile, Sources, Span, quoted};
 use std::collections::BTreeMap;
@@ -163,6 +164,6 @@ fn with(
             message: fix.message.clone(),
         });
     }
-    changed.replace(SourceFile::new(&source.path, edits.apply(source)));
+    changed.replace(SourceFile::new(&source.path, edited(source, &edits).text));
     changed
 }

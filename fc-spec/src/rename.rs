@@ -79,7 +79,7 @@ fn code_name(
             let line = file.line(span.end.saturating_sub(1).max(span.start));
             let (_, end) = file.lines(line, line)?;
             let indent = indent(file, last.key.span());
-            let newline = newline(file);
+            let newline = file.newline();
             (
                 Span::point(span.file, end),
                 format!("{newline}{indent}{pair}"),
@@ -89,7 +89,7 @@ fn code_name(
             let indent = indent(file, first.key.span());
             (
                 before_key(first),
-                format!("{pair}{}{indent}", newline(file)),
+                format!("{pair}{}{indent}", file.newline()),
             )
         }
     })
@@ -132,12 +132,4 @@ fn indent(file: &SourceFile, key: Span) -> String {
     let start = file.lines(line, line).map_or(key.start, |(start, _)| start);
     let before = file.text.get(start..key.start).unwrap_or_default();
     " ".repeat(before.chars().count())
-}
-
-fn newline(file: &SourceFile) -> &'static str {
-    if file.text.contains("\r\n") {
-        "\r\n"
-    } else {
-        "\n"
-    }
 }

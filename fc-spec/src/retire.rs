@@ -2,6 +2,7 @@
 //! goes with it.
 
 use crate::diagnostic::{FaultCode, Faults, nearest};
+use crate::format::{Edited, edited};
 use crate::load::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::load::load;
 use crate::model::{Kind, Model, Text};
@@ -169,8 +170,9 @@ impl Rest {
                 what: what.to_owned(),
             });
         };
-        self.diffs.push((file.path.clone(), edits.diff(file)));
-        let file = SourceFile::new(&file.path, edits.apply(file));
+        let Edited { text, diff } = edited(file, &edits);
+        self.diffs.push((file.path.clone(), diff));
+        let file = SourceFile::new(&file.path, text);
         self.sources.replace(file);
         Ok(())
     }

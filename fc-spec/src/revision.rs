@@ -1,6 +1,7 @@
 //! What a release changes in the text of a spec: the number of its version, and the waivers that have served.
 
 use crate::diagnostic::Faults;
+use crate::format::{Edited, edited};
 use crate::load::grammar::{FILE, PROTOCOL};
 use crate::retire::{is_flow, with_comments};
 use crate::syntax::{Edits, SourceFile, Sources, Span, Tree, parse, quoted};
@@ -62,12 +63,11 @@ fn revised(
         let tree = parse(id, &file.text, &mut Faults::new())?;
         Some((file, edits(&tree, file)?))
     })?;
-    let (path, text) = (file.path.clone(), edits.apply(file));
-    let diff = if text == file.text {
-        String::new()
-    } else {
-        edits.diff(file)
-    };
+    let Edited { text, mut diff } = edited(file, &edits);
+    if text == file.text {
+        diff.clear();
+    }
+    let path = file.path.clone();
     let mut sources = sources.clone();
     sources.replace(SourceFile::new(&path, text));
     Some(Revised {

@@ -1,10 +1,11 @@
 //! The YAML that a new operation begins as, and the place in its group's file where it belongs.
 
 use crate::diagnostic::Faults;
+use crate::format::edited;
 use crate::load::grammar::FILE;
 use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
-use crate::model::{Kind, Location, Model, Operation, RangeUse, Text};
-use crate::syntax::{Entry, Node, SourceFile, Sources, parse};
+use crate::model::{Kind, Lang, Location, Model, Operation, RangeUse, Text};
+use crate::syntax::{Edits, Entry, FileId, Node, SourceFile, Sources, Span, parse};
 use crate::text;
 use std::fmt;
 
@@ -21,6 +22,8 @@ pub struct NewOperation<'a> {
     pub code: Option<u16>,
     /// The command that starts it, of a stream.
     pub started_by: Option<&'a str>,
+    /// Language of its comments.
+    pub lang: Lang,
 }
 
 /// A new operation in its place.
@@ -66,8 +69,11 @@ pub enum ScaffoldError {
         /// The next free one.
         next: Option<u16>,
     },
-    /// All codes are taken from which new operations get theirs.
-    Codes,
+    /// All codes are taken from which new operations of the group get theirs.
+    Codes {
+        /// The group.
+        group: String,
+    },
     /// The section that it belongs to is not written line by line.
     Layout {
         /// Path of the file.
@@ -110,9 +116,9 @@ impl ScaffoldError {
                 why,
                 next: None,
             } => text!("0x{code:04X} {why}", "0x{code:04X} {why}", why = why),
-            Self::Codes => text!(
-                "供新接口使用的号段中没有空闲的功能码；在 `codes.ranges` 中加一个号段，或用 --code 指定功能码",
-                "no code is free in the ranges for new operations; add a range to `codes.ranges`, or pass a code with --code"
+            Self::Codes { group } => text!(
+                "分组 `{group}` 的号段中没有空闲的功能码；在 `codes.ranges` 中加一个号段，或用 --code 指定功能码",
+                "no code is free in the ranges of the group `{group}`; add a range to `codes.ranges`, or pass a code with --code"
             ),
             Self::Layout { path, section } => text!(
                 "{path} 中的 `{section}` 写在大括号中；改成逐行书写，或手工加上接口",
@@ -169,11 +175,13 @@ pub fn scaffold(
         }
         None => None,
     };
-    let next = usage.and_then(|usage| model.next_code(usage));
+    let next = usage.and_then(|usage| model.next_code(usage, Some(new.group)));
     let shared = starter.and_then(|starter| starter.code.value);
     let code = new.code.or(shared).or(next);
     if code.is_none() && usage.is_some() {
-        return Err(ScaffoldError::Codes);
+        return Err(ScaffoldError::Codes {
+            group: new.group.to_owned(),
+        });
     }
     if let Some(code) = code
         && let Some(why) = objection(model, code, new)
@@ -193,23 +201,41 @@ pub fn scaffold(
         Some(entry) => inside(source, entry).ok_or_else(layout)?,
         None => Place::of_section(source, tree.root(), section),
     };
-    let heading = place.heading.then(|| format!("{section}:\n"));
+    let heading = if place.heading {
+        format!("{section}:\n")
+    } else {
+        String::new()
+    };
     let block = place.indented(&beginning(new, code));
-    let (before, after) = source.text.split_at_checked(place.at).ok_or_else(layout)?;
-    let ends = before.is_empty() || before.ends_with('\n');
-    let gap = match ends {
-        _ if before.ends_with("\n\n") => "",
-        true => "\n",
-        false => "\n\n",
+    let before = source.text.get(..place.at).ok_or_else(layout)?;
+    let mut lines = before
+        .split('\n')
+        .rev()
+        .map(|line| line.trim_end_matches('\r'));
+    let gap = match (lines.next(), lines.next()) {
+        (Some(""), Some("")) => "",
+        (Some(""), _) => "\n",
+        _ => "\n\n",
     };
     let below = if place.is_above { "\n" } else { "" };
-    let above = format!("{before}{gap}{}", heading.unwrap_or_default());
+    let mut edits = Edits::default();
+    let at = Span::point(file, place.at);
+    edits.replace(at, format!("{gap}{heading}{block}{below}"));
+    let text = edited(source, &edits).text;
+    let line = line_of(&SourceFile::new(path, &text), section, new.name);
     Ok(Scaffold {
         path: path.clone(),
-        line: above.lines().count() + 1,
-        text: format!("{above}{block}{below}{after}"),
+        line: line.ok_or_else(layout)?,
+        text,
         code,
     })
+}
+
+/// Line on which an operation begins.
+fn line_of(source: &SourceFile, section: &str, name: &str) -> Option<usize> {
+    let tree = parse(FileId(0), &source.text, &mut Faults::new())?;
+    let entry = tree.root().entry(section)?.value.entry(name)?;
+    Some(source.line(entry.key.span().start))
 }
 
 fn place(location: &Location) -> String {
@@ -236,7 +262,7 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
         ));
     }
     let mut ranges = model.ranges.iter();
-    let Some(range) = ranges.find(|range| (range.first..=range.last).contains(&code)) else {
+    let Some(range) = ranges.find(|range| range.has(code)) else {
         return Some(text!("不在任何号段内", "is outside all code ranges"));
     };
     let why = match (range.usage, new.kind) {
@@ -258,6 +284,11 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
                 "is passed through to the upper body and contains only commands"
             )
         }
+        _ if !range.groups.is_empty() && !range.groups.iter().any(|it| it == new.group) => text!(
+            "用于分组 {groups}",
+            "is for {groups}",
+            groups = Text::listed(&range.groups)
+        ),
         _ => return None,
     };
     let (first, last) = (&range.first_spelling, &range.last_spelling);
@@ -344,18 +375,34 @@ fn beginning(new: &NewOperation<'_>, code: Option<u16>) -> String {
         }
         Kind::Stream => {
             let started_by = new.started_by.map(|by| format!("  started_by: {by}\n"));
+            let or_app = new.lang.pick("或 app", "or app");
+            let bytes = new.lang.pick(
+                "原始字节改写 content: 和媒体类型",
+                "for raw bytes, write content: and their media type instead",
+            );
             format!(
-                "  from: robot # or app\n{}  source: {{ sections: [] }}\n  \
-                   body: # for raw bytes, write content: and their media type instead\n    {field}\n",
+                "  from: robot # {or_app}\n{}  source: {{ sections: [] }}\n  \
+                   body: # {bytes}\n    {field}\n",
                 started_by.unwrap_or_default()
             )
         }
-        Kind::Command => format!(
-            "  effect: read # or config, motion, unknown: clients resend only read commands\n  \
-               source: {{ sections: [] }}\n  \
-               request: # delete it if the request has no keys\n    data:\n      {field}\n  \
-               response: # delete it if the response has no keys\n    data:\n      {field}\n"
-        ),
+        Kind::Command => {
+            let effects = new.lang.pick(
+                "或 config、motion、unknown；客户端只重发 read 指令",
+                "or config, motion, unknown: clients resend only read commands",
+            );
+            let [request, response] =
+                [("请求", "request"), ("响应", "response")].map(|(zh, en)| {
+                    let note = text!("{zh}没有键时删去", "delete it if the {en} has no keys");
+                    new.lang.text(&note).to_owned()
+                });
+            format!(
+                "  effect: read # {effects}\n  \
+                   source: {{ sections: [] }}\n  \
+                   request: # {request}\n    data:\n      {field}\n  \
+                   response: # {response}\n    data:\n      {field}\n"
+            )
+        }
     };
     head + &rest
 }

@@ -1,6 +1,7 @@
 //! `fcproto git`: what git does better when it is told of the spec.
 
 mod attributes;
+pub mod check;
 pub mod diff;
 pub mod merge;
 pub mod setup;
@@ -58,6 +59,7 @@ pub fn help() -> Help {
 #[derive(Debug, clap::Subcommand)]
 enum Action {
     Setup(setup::Options),
+    Check(check::Options),
     Stage(stage::Options),
     Diff(diff::Options),
     Merge(merge::Options),
@@ -66,6 +68,7 @@ enum Action {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     match &options.command {
         Action::Setup(options) => setup::run(place, options),
+        Action::Check(options) => check::run(place, options),
         Action::Stage(options) => stage::run(place, options),
         Action::Diff(options) => diff::run(place, options),
         Action::Merge(options) => merge::run(place, options),

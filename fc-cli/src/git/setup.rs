@@ -11,7 +11,7 @@ use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
-use crate::project::Project;
+use crate::project::{Project, is_there};
 
 /// Options of `fcproto git setup`.
 #[derive(Debug, clap::Args)]
@@ -41,9 +41,9 @@ pub fn help() -> Help {
                     (
                         "pre-commit",
                         both(
-                            "工作区的规范未排版、有错误或警告，或有文件过期时，中止提交；`git commit --no-verify` 跳过检查",
-                            "Stops a commit if the spec of the working tree is not formatted or has errors or warnings, or if files are stale. \
-                             `git commit --no-verify` skips it",
+                            "运行 `fcproto git check`；暂存的规范未排版、有错误或警告，或有文件过期时，中止提交；`git commit --no-verify` 跳过检查",
+                            "Runs `fcproto git check`. It stops a commit if the staged spec is not formatted or has errors or warnings, or \
+                             if files are stale. `git commit --no-verify` skips it",
                         ),
                     ),
                     (
@@ -77,10 +77,7 @@ const OLD_MARK: &str = "# Written by `fc git setup --hooks`.";
 
 /// Hooks and what they do; `FC` stands for the command.
 const HOOKS: [(&str, &str); 2] = [
-    (
-        "pre-commit",
-        "FC fmt --check && FC check --quiet --deny warnings && FC generate --check --quiet\n",
-    ),
+    ("pre-commit", "FC git check\n"),
     (
         "post-merge",
         "\
@@ -170,13 +167,21 @@ fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> 
     let enter = if prefix.is_empty() {
         String::new()
     } else {
-        format!("cd '{}' || exit\n", prefix.replace('\'', r"'\''"))
+        // With `GIT_DIR` alone, git takes the current directory for the root.
+        let root = "[ -z \"$GIT_DIR\" ] || export GIT_WORK_TREE=\"$PWD\"\n";
+        format!("{root}cd '{}' || exit\n", prefix.replace('\'', r"'\''"))
     };
     let mut hooks = Vec::new();
     for (name, action) in HOOKS {
         let path = directory.join(name);
-        let is_other = fs::read_to_string(&path)
-            .is_ok_and(|text| !text.contains(MARK) && !text.contains(OLD_MARK));
+        let is_other = match fs::read(&path) {
+            Ok(bytes) => {
+                let text = String::from_utf8_lossy(&bytes);
+                !text.contains(MARK) && !text.contains(OLD_MARK)
+            }
+            // A directory, or a link to nothing.
+            Err(_) => is_there(&path),
+        };
         if is_other {
             let action = action.replace("FC", "fcproto");
             let (path, action) = (path.display(), action.trim_end());

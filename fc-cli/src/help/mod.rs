@@ -67,6 +67,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["settle"] => settle::help(),
         ["git"] => git::help(),
         ["git", "setup"] => git::setup::help(),
+        ["git", "check"] => git::check::help(),
         ["git", "stage"] => git::stage::help(),
         ["git", "diff"] | ["git-diff"] => git::diff::help(),
         ["git", "merge"] => git::merge::help(),

@@ -94,7 +94,7 @@ fn from_a_dump_all_products_are_the_same() {
     project.write("model.json", &dump);
     let run = (project.fc(&["generate", "--check", "--from", "model.json"])).expect(0);
     assert!(
-        run.stdout.starts_with("read       model.json\nfresh "),
+        run.stdout.starts_with("read       model.json\nup to date "),
         "{run:#?}"
     );
 

@@ -230,7 +230,7 @@ fn a_hook_of_somebody_else_stays() {
     let project = project();
     project.write(".git/hooks/pre-commit", "#!/bin/sh\necho mine\n");
     let run = project.fc(&["git", "setup", "--hooks"]).expect(2);
-    assert!(run.stderr.contains("fcproto generate --check"), "{run:#?}");
+    assert!(run.stderr.contains("fcproto git check"), "{run:#?}");
     assert!(project.read(".git/hooks/pre-commit").contains("mine"));
     assert!(!project.path(".git/hooks/post-merge").exists());
 }

@@ -31,6 +31,101 @@ fn a_project_checks_and_is_generated_at_once() {
     assert!(group.contains("pub async fn get_battery("), "{group}");
 }
 
+/// Files that people edit, and how a comment begins in them.
+const WRITTEN: [(&str, &str); 7] = [
+    ("fc.yaml", "# "),
+    (".gitattributes", "# "),
+    ("spec/protocol.yaml", "# "),
+    ("spec/commands/light.yaml", "# "),
+    ("examples/robot.rs", "//"),
+    ("examples/app.rs", "//"),
+    ("tests/talk.rs", "//"),
+];
+
+fn is_chinese(text: &str) -> bool {
+    text.chars().any(|c| ('\u{4e00}'..'\u{a000}').contains(&c))
+}
+
+/// A text without comments and without what is quoted.
+fn code(text: &str, comment: &str) -> String {
+    let lines = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with(comment));
+    let lines = lines.map(|line| {
+        let is_import = line.starts_with("#[path") || line.starts_with("//! ");
+        let parts = line.split('"').enumerate();
+        let parts = parts.filter(|(at, _)| at % 2 == 0 || is_import);
+        parts.map(|(_, part)| part).collect::<Vec<_>>().join("\"")
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_chinese_project_has_chinese_texts_and_the_same_code() {
+    let place = Project::empty();
+    place.fc(&["init", "zh", "--lang", "zh"]).expect(0);
+    place.fc(&["init", "en", "--lang", "en"]).expect(0);
+    for (path, comment) in WRITTEN {
+        let [zh, en] = ["zh", "en"].map(|lang| place.read(&format!("{lang}/{path}")));
+        let comments = |text: &str| {
+            let lines = text.lines().map(str::trim_start);
+            let lines = lines.filter(|line| line.starts_with(comment));
+            let is_command = |line: &&str| {
+                !line.contains("cargo run")
+                    && !line.contains("$schema")
+                    && line.len() > 3
+                    && !line.contains("```")
+            };
+            lines
+                .filter(is_command)
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        for line in comments(&zh) {
+            assert!(is_chinese(&line), "{path}: {line}");
+        }
+        for line in comments(&en) {
+            assert!(!is_chinese(&line), "{path}: {line}");
+        }
+        assert_eq!(comments(&zh).is_empty(), comments(&en).is_empty(), "{path}");
+        assert_eq!(code(&zh, comment), code(&en, comment), "{path}");
+        // Texts that the programs print.
+        let printed = zh
+            .lines()
+            .filter(|line| line.contains("{}") || line.contains("{:?}"));
+        for line in printed.filter(|line| line.contains('"')) {
+            assert!(is_chinese(line), "{path}: {line}");
+        }
+    }
+    let readme = place.read("zh/README.md");
+    for paragraph in readme.split("\n\n").filter(|it| !it.starts_with("```")) {
+        assert!(is_chinese(paragraph), "{paragraph}");
+    }
+    // The same lines to type.
+    let typed = |lang: &str| {
+        let readme = place.read(&format!("{lang}/README.md"));
+        let block = readme.split("```").nth(1).expect("a block").to_owned();
+        let lines = block.lines().map(|line| {
+            line.split(" # ")
+                .next()
+                .unwrap_or_default()
+                .trim()
+                .to_owned()
+        });
+        lines.filter(|line| !line.is_empty()).collect::<Vec<_>>()
+    };
+    assert_eq!(typed("zh"), typed("en"));
+    for command in [
+        &["check"][..],
+        &["lint"],
+        &["fmt", "--check"],
+        &["generate", "--check"],
+    ] {
+        let run = place.fc_in("zh", command).expect(0);
+        assert_eq!(run.stderr, "", "{command:?}");
+    }
+}
+
 #[test]
 fn nothing_of_anybody_else_is_touched() {
     let place = Project::empty();
@@ -81,8 +176,14 @@ fn what_cannot_be_is_said_before_anything_is_written() {
 #[test]
 #[ignore = "compiles a project of its own"]
 fn the_robot_and_the_app_of_a_project_talk() {
+    for lang in ["en", "zh"] {
+        talks(lang);
+    }
+}
+
+fn talks(lang: &str) {
     let place = Project::empty();
-    place.fc(&["init", "lamp"]).expect(0);
+    place.fc(&["init", "lamp", "--lang", lang]).expect(0);
     // The versions that are there, so that nothing has to be fetched.
     let lock = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.lock");
     std::fs::copy(lock, place.path("lamp/Cargo.lock")).expect("the versions");

@@ -36,6 +36,70 @@ fn a_command_begins_with_the_next_free_code() {
     assert!(!again.stdout.contains(code), "{again:#?}");
 }
 
+/// A group gets codes from the ranges that name it, or else from those that name none: first where it has codes.
+#[test]
+fn the_code_comes_from_the_range_of_the_group() {
+    let project = Project::new();
+    let protocol = project.read("spec/protocol.yaml");
+    let with = |ranges: &str| {
+        let text = protocol.replacen("  ranges:\n", &format!("  ranges:\n{ranges}"), 1);
+        project.write("spec/protocol.yaml", &text);
+        project.fc(&["check"]).expect(0);
+    };
+    let range = |first: &str, last: &str, groups: &str| {
+        format!(
+            "    - {{ from: {first}, to: {last}, use: commands, {groups}zh: 指令, en: Commands }}\n"
+        )
+    };
+    let group = |id: &str, code: &str| {
+        let text = format!(
+            "group: {{ id: {id}, zh: 分组, en: Group }}\n\ncommands:\n  get_{id}: {{ code: {code}, zh: 读取, en: Get, effect: read, source: {{ sections: [] }} }}\n"
+        );
+        project.write(&format!("spec/commands/{id}.yaml"), &text);
+    };
+    group("control", "0x0C05");
+    group("arm", "unassigned");
+    let next = |group: &str, code: &str| {
+        let before = project.read(&format!("spec/commands/{group}.yaml"));
+        let run = project.fc(&["new", "added", "--group", group]).expect(0);
+        assert!(
+            run.stdout.contains(&format!(" as {code}")),
+            "{group}: {run:#?}"
+        );
+        project.write(&format!("spec/commands/{group}.yaml"), &before);
+    };
+    let all = [range("0x0B01", "0x0B0F", ""), range("0x0C01", "0x0C0F", "")].concat();
+    with(&all);
+    next("control", "0x0C06");
+    next("arm", "0x01");
+    let named = "groups: [arm, control], ";
+    with(&[&all, range("0x0D01", "0x0D02", named).as_str()].concat());
+    next("control", "0x0D01");
+    next("arm", "0x0D01");
+
+    // A full range of the group is not left for another one.
+    for name in ["one", "two"] {
+        project.fc(&["new", name, "--group", "arm"]).expect(0);
+    }
+    let run = project.fc(&["new", "added", "--group", "arm"]).expect(2);
+    let message = "no code is free in the ranges of the group `arm`";
+    assert!(run.stderr.contains(message), "{run:#?}");
+    let other = ["new", "added", "--group", "lamp", "--code", "0x0D02"];
+    project
+        .fc(&["retire", "two", "--zh", "不用", "--en", "Unused"])
+        .expect(0);
+    let run = project.fc(&other).expect(2);
+    assert!(run.stderr.contains("is retired"), "{run:#?}");
+    let wide = range("0x0D01", "0x0D0F", named);
+    with(&[&all, wide.as_str()].concat());
+    let other = ["new", "added", "--group", "lamp", "--code", "0x0D0F"];
+    let run = project.fc(&other).expect(2);
+    let message = "0x0D0F is in the range 0x0D01 to 0x0D0F, which is for arm, control";
+    assert!(run.stderr.contains(message), "{run:#?}");
+    let run = project.fc(&["codes"]).expect(0);
+    assert!(run.stdout.contains("commands (arm, control)"), "{run:#?}");
+}
+
 #[test]
 fn a_report_stands_behind_the_reports() {
     let project = Project::new();

@@ -114,8 +114,8 @@ fn an_answer_is_written_down_and_published_as_confirmed() {
     let expected = GROUP
         .replace("type: u32,", "type: u32, unit: ms,")
         .replace(
-            "      - ids: [C901]\n        as: question\n",
-            "      - ids: [C901]\n        as: question\n        confirmed: { by: 张伟, date: 2026-11-23 }\n",
+            "        about: { request.delay.unit: absent }\n",
+            "        about: { request.delay.unit: absent }\n        confirmed: { by: 张伟, date: 2026-11-23 }\n",
         );
     assert_eq!(project.read(LAMP), expected);
     project.fc(&["generate"]).expect(0);

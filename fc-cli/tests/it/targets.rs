@@ -89,7 +89,7 @@ fn a_plugin_that_fails_leaves_everything_as_it_was() {
     for (script, message) in [
         (
             "#!/bin/sh\ncat > /dev/null\necho no luck >&2\nexit 3\n",
-            "`./mine` made nothing of the target `mine`: exit status: 3",
+            "cannot generate the target `mine` with `./mine`: exit status 3",
         ),
         (
             "#!/bin/sh\ncat > /dev/null\necho '{}'\n",
@@ -114,7 +114,7 @@ fn a_plugin_that_fails_leaves_everything_as_it_was() {
     let run = project.fc(&["generate"]).expect(2);
     assert!(
         run.stderr
-            .contains("cannot run `./mine` for the target `mine`: "),
+            .contains("cannot generate the target `mine` with `./mine`: No such file"),
         "{run:#?}"
     );
 }
@@ -218,4 +218,134 @@ fn names_are_free_in_the_languages_of_the_targets() {
         run.stderr.contains("names in `cobol`") && run.stderr.contains("`kotlin`"),
         "{run:#?}"
     );
+}
+
+/// The path counts from the project, wherever the command runs.
+#[test]
+fn the_path_of_a_plugin_is_relative_to_the_project() {
+    let script = "#!/bin/sh\ncat > /dev/null\necho '[]'\n";
+    let project = project("  mine: { plugin: ./mine, out: made }\n");
+    program(&project, "mine", script);
+    let name = project.path("");
+    let name = name.file_name().and_then(|name| name.to_str());
+    let name = name.expect("the name of the project");
+    std::fs::create_dir_all(project.path("below")).expect("a directory");
+    for (directory, root) in [
+        ("", "."),
+        ("below", ".."),
+        ("..", name),
+        ("..", &format!("./{name}/below/..")),
+    ] {
+        let run = project.fc_in(directory, &["generate", "--root", root]);
+        run.expect(0);
+    }
+}
+
+/// Its children hold what it prints to, and none of them is left.
+#[test]
+fn a_plugin_that_hangs_is_ended_with_its_children() {
+    let scripts = [
+        // One that waits, one whose child waits, and ones that have ended before their child.
+        ("en", "exec sleep 1000"),
+        ("zh", "sleep 1000 & wait"),
+        ("en", "sleep 1000 &"),
+        ("zh", "cat > /dev/null; echo '[]'; sleep 1000 &"),
+    ];
+    for (lang, script) in scripts {
+        let target = "  mine: { plugin: ./mine, out: made, timeout_ms: 1000 }\n";
+        let project = project(target);
+        let script = format!("#!/bin/sh\necho $$ > group\n{script}\n");
+        program(&project, "mine", &script);
+        let message = match lang {
+            "zh" => "无法由 `./mine` 生成目标 `mine`：运行时间超过 `timeout_ms: 1000`",
+            _ => {
+                "cannot generate the target `mine` with `./mine`: it runs longer than `timeout_ms: 1000`"
+            }
+        };
+        let run = project.fc(&["generate", "--lang", lang]).expect(2);
+        assert!(run.stderr.contains(message), "{run:#?}");
+        let group = project.read("group");
+        assert!(!is_running(group.trim()), "{script}");
+        assert!(!project.path("made").exists());
+    }
+}
+
+/// Whether a process of this group runs; one that has ended may not be collected yet.
+fn is_running(group: &str) -> bool {
+    let output = Command::new("ps")
+        .args(["-e", "-o", "pgid=,stat="])
+        .output();
+    let output = output.expect("ps can be run").stdout;
+    let lines = String::from_utf8_lossy(&output).into_owned();
+    lines.lines().any(|line| {
+        let mut words = line.split_whitespace();
+        words.next() == Some(group) && words.next().is_some_and(|it| !it.starts_with('Z'))
+    })
+}
+
+#[test]
+fn the_output_of_a_plugin_is_limited() {
+    let project = project("  mine: { plugin: ./mine, out: made, output_bytes: 20 }\n");
+    let start = "#!/bin/sh\ncat > /dev/null\n";
+    program(&project, "mine", &format!("{start}exec yes\n"));
+    for (lang, message) in [
+        ("en", "its output is larger than `output_bytes: 20`"),
+        ("zh", "输出超过 `output_bytes: 20`"),
+    ] {
+        let run = project.fc(&["generate", "--lang", lang]).expect(2);
+        assert!(run.stderr.contains(message), "{run:#?}");
+    }
+    // Exactly as long as it may be.
+    program(&project, "mine", &format!("{start}printf '[%18s]' ''\n"));
+    project.fc(&["generate"]).expect(0);
+    program(&project, "mine", &format!("{start}printf '[%19s]' ''\n"));
+    project.fc(&["generate"]).expect(2);
+}
+
+#[test]
+fn limits_of_a_plugin_have_bounds_themselves() {
+    for (key, most) in [("timeout_ms", 3_600_000_u64), ("output_bytes", 1 << 30)] {
+        for (value, status) in [(0, 2), (1, 0), (most, 0), (most + 1, 2)] {
+            let target = format!("  mine: {{ plugin: cat, out: made, {key}: {value} }}\n");
+            let run = project(&target).fc(&["check"]).expect(status);
+            let message = format!("`{key}` of the target `mine` must be from 1 to {most}");
+            assert_eq!(run.stderr.contains(&message), status == 2, "{run:#?}");
+        }
+        let run = project(&format!("  schema: {{ {key}: 1 }}\n")).fc(&["check"]);
+        let message = format!("`schema` cannot have `{key}`");
+        assert!(run.expect(2).stderr.contains(&message));
+    }
+}
+
+/// The texts of the library are English; those of the command are not.
+#[test]
+fn errors_of_the_settings_are_chinese_in_chinese_runs() {
+    for (targets, message) in [
+        ("  rust: { ouut: here }\n", "第 3 行第 11 列"),
+        (
+            "  rust: { ouut: here }\n",
+            "`targets.rust` 中有未知的键 `ouut`，应为 `out`、",
+        ),
+        (
+            "  rust: { newtypes: often }\n",
+            "类型不对，实际为字符串 \"often\"，应为布尔值",
+        ),
+        ("  rust: [out]\n", "类型不对，实际为列表，应为映射"),
+        ("  rust: { out: a, out: b }\n", "有重复的键 `out`"),
+        (
+            "  markdown: { languages: [de] }\n",
+            "有未知的值 `de`，应为 `zh` 或 `en`",
+        ),
+        ("  x: { plugin: y, out: z, timeout_ms: -1 }\n", "应为正整数"),
+        ("  rust: { out: a\n", "YAML 的写法有错误"),
+        ("  rust: \"a\n", "YAML 的写法有错误"),
+        ("  rust: *a\n", "YAML 的写法有错误"),
+    ] {
+        let run = project(targets).fc(&["check", "--lang", "zh"]).expect(2);
+        assert!(run.stderr.contains(message), "{run:#?}");
+        // Quoted words are those of the file and of its language.
+        let own: String = run.stderr.split(['`', '"']).step_by(2).collect();
+        let own = own.replace("YAML", "");
+        assert!(!own.contains(|c: char| c.is_ascii_alphabetic()), "{run:#?}");
+    }
 }

@@ -47,3 +47,17 @@ fn what_is_not_there_is_said_with_what_is_near() {
         "{run:#?}"
     );
 }
+
+#[test]
+fn kinds_follow_the_language() {
+    let project = Project::new();
+    project.write("spec/commands/lamp.yaml", GROUP);
+    for (name, line) in [
+        ("get_lamp_colour", ":4:3: 指令 get_lamp_colour\n"),
+        ("lampHue", ":11:7: 字段 GetLampColourResponse.lampHue\n"),
+        ("lamp", ": 分组 lamp\n"),
+    ] {
+        let run = project.fc(&["where", name, "--lang", "zh"]).expect(0);
+        assert!(run.stdout.contains(line), "{run:#?}");
+    }
+}

@@ -2,19 +2,41 @@
 
 use super::OutputError;
 use std::fs::{self, OpenOptions};
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+
+/// A byte order mark at the start of a file in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// How many names are tried for a temporary file.
 const ATTEMPTS: u32 = 100;
 
-/// All of a file; `None` if there is none.
+/// All of a file; `None` if there is none. The caller opens no pipe: that would wait for a writer.
 pub fn read(place: &Path, path: &str) -> Result<Option<Vec<u8>>, OutputError> {
+    if fs::metadata(place).is_ok_and(|found| !found.is_file()) {
+        let path = path.to_owned();
+        return Err(OutputError::NotAFile { path });
+    }
     match fs::read(place) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(source) => Err(fault("read", path, source)),
     }
+}
+
+/// Replaces the text of a file that people edit: its byte order mark stays, and so does a link to it.
+pub fn edit(place: &Path, path: &str, text: &str) -> Result<(), OutputError> {
+    let place = match fs::canonicalize(place) {
+        Ok(place) => place,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => place.to_owned(),
+        Err(source) => return Err(fault("write", path, source)),
+    };
+    let mut start = [0; BYTE_ORDER_MARK.len()];
+    let has_mark = fs::File::open(&place)
+        .and_then(|mut file| file.read_exact(&mut start))
+        .is_ok_and(|()| start == BYTE_ORDER_MARK);
+    let mark = if has_mark { BYTE_ORDER_MARK } else { b"" };
+    replace(&place, path, &[mark, text.as_bytes()].concat())
 }
 
 /// Writes a file so that nobody ever sees half of it: beside its place, then renamed.

@@ -29,6 +29,12 @@ pub enum OutputError {
         /// The link.
         path: String,
     },
+    /// A path leads to a directory, a pipe or a device.
+    #[error("`{path}` is not a regular file; delete it")]
+    NotAFile {
+        /// The path.
+        path: String,
+    },
     /// Files stand where artifacts belong, hold something else, and are not the generator's.
     #[error(
         "{} would have to be overwritten, but `{MANIFEST}` does not list {}: move or delete {} and \
@@ -74,6 +80,7 @@ impl OutputError {
             Self::Symlink { path } => {
                 format!("`{path}` 是符号链接；请换成它指向的内容，或将它删除")
             }
+            Self::NotAFile { path } => format!("`{path}` 不是普通文件；请将它删除"),
             Self::Foreign { paths } => {
                 let named = paths.iter().take(3).map(|path| format!("`{path}`"));
                 let named = named.collect::<Vec<_>>().join("、");

@@ -54,8 +54,10 @@ pub fn generated(root: &Path) -> Result<Vec<String>, OutputError> {
 
 /// Replaces the text of a spec file; nobody ever sees half of it. `path` leads there from `root`.
 ///
+/// The file keeps its byte order mark, which `text` does not have. A link stays, and the file that it leads to changes.
+///
 /// # Errors
 /// If it cannot be written.
 pub fn replace_spec_file(root: &Path, path: &str, text: &str) -> Result<(), OutputError> {
-    disk::replace(&root.join(path), path, text.as_bytes())
+    disk::edit(&root.join(path), path, text)
 }

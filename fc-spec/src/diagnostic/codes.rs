@@ -157,6 +157,7 @@ fault_codes! {
     FC0240 UnknownStore "未知的存储位置" "unknown store";
     FC0241 UnusedStore "未使用的存储位置" "unused store";
     FC0242 BadWaiver "豁免编号的写法不对" "malformed number of a waiver";
+    FC0243 UnknownGroup "未知的分组" "unknown group";
     FC0301 DuplicateCode "两个接口的功能码相同" "two operations with the same code";
     FC0302 RetiredCode "退役的功能码" "retired code";
     FC0303 CodeOutsideRanges "功能码不在任何号段中" "code outside all ranges";

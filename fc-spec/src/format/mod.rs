@@ -17,7 +17,7 @@ mod scalar;
 
 use crate::diagnostic::Faults;
 use crate::load::inside;
-use crate::syntax::{FileId, SourceFile, parse};
+use crate::syntax::{Edits, FileId, SourceFile, changed_lines, parse};
 
 /// Why a text stays as it is.
 #[derive(Clone, Debug)]
@@ -37,9 +37,7 @@ pub enum Refused {
 /// For a text that stays as it is, and why.
 pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     let text = source.text.as_str();
-    let crlf = text
-        .split_once('\n')
-        .is_some_and(|(first, _)| first.ends_with('\r'));
+    let newline = source.newline();
     let mut faults = Faults::new();
     // Of the text as it is in the file, so that the places of faults are right.
     let tree = parse(file, text, &mut faults);
@@ -63,7 +61,39 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     if !same::same((&tree, &source.text), (&again, &new), top) {
         return Err(Refused::NotTheSame);
     }
-    Ok(if crlf { new.replace('\n', "\r\n") } else { new })
+    Ok(new.replace('\n', newline))
+}
+
+/// A file with edits made in it.
+pub(crate) struct Edited {
+    /// Its text.
+    pub text: String,
+    /// The lines that change, as a diff without line numbers.
+    pub diff: String,
+}
+
+/// Makes edits in a file. A formatted file stays formatted.
+pub(crate) fn edited(source: &SourceFile, edits: &Edits) -> Edited {
+    let text = edits.apply(source);
+    let formatted = formatted_like(source, &text);
+    let diff = match &formatted {
+        Some(formatted) if *formatted != text => changed_lines(&source.text, formatted),
+        _ => edits.diff(source),
+    };
+    Edited {
+        text: formatted.unwrap_or(text),
+        diff,
+    }
+}
+
+/// Formats the new text of a file. `None` if the old text was not formatted, or if the new one cannot be.
+fn formatted_like(before: &SourceFile, text: &str) -> Option<String> {
+    // Spans of faults are not shown.
+    let file = FileId(0);
+    if format(file, before).ok()? != before.text {
+        return None;
+    }
+    format(file, &SourceFile::new(before.path.as_str(), text)).ok()
 }
 
 /// The tree of a text without errors.

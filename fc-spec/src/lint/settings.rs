@@ -62,7 +62,7 @@ impl Settings {
 /// cannot be used is a fault, whose place is in the sources.
 pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sources) {
     let mut sources = Sources::new();
-    if !root.join(file).is_file() {
+    if root.join(file).symlink_metadata().is_err() {
         return (Settings::default(), sources);
     }
     let mut reader = Reader {

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
 use super::search::{Search, of_field, of_operation};
-use crate::model::{BodyState, Effect, Exchange, Field, Type, TypeDef};
+use crate::model::{BodyState, Effect, Exchange, Field, Text, Type, TypeDef};
 use crate::names::snake;
 use crate::text;
 use std::collections::BTreeMap;
@@ -129,6 +129,22 @@ pub(super) const RULES: &[Rule] = &[
             "同一个键名在一个报文中是数值，在另一个报文中是文本。默认关闭：`type` 这样的短键名在各个报文中含义本来就不同。",
         ],
         find: Some(one_key_two_types),
+    },
+    Rule {
+        code: "FC0820",
+        category: Category::Standard,
+        name: "code-of-other-group",
+        level: Level::Warning,
+        title: [
+            "code in the range of another group",
+            "功能码在其他分组的号段内",
+        ],
+        text: [
+            "The code range names groups, and the group of the operation is not one of them. Take a code from a range of the group, or add the \
+             group to `groups` of the range.",
+            "号段用 `groups` 指明了分组，其中没有接口所属的分组。改用本分组号段的功能码，或在号段的 `groups` 中加上这个分组。",
+        ],
+        find: Some(code_of_other_group),
     },
 ];
 
@@ -322,6 +338,30 @@ fn motion_without_process(search: &mut Search<'_>) {
                     "`{name}` 没有 `accepted`，也没有 `sets_off`",
                     "`{name}` has neither `accepted` nor `sets_off`",
                     name = operation.name
+                ),
+            );
+        }
+    }
+}
+
+fn code_of_other_group(search: &mut Search<'_>) {
+    for operation in search.operations() {
+        let mut ranges = search.model.ranges.iter();
+        let range = operation
+            .code
+            .value
+            .and_then(|code| ranges.find(|range| range.has(code)));
+        if let Some(range) = range
+            && !range.groups.is_empty()
+            && !range.groups.contains(&operation.group)
+        {
+            search.report(
+                of_operation(operation),
+                text!(
+                    "`{name}` 的功能码在用于 {groups} 的号段内",
+                    "`{name}` has a code of the range for {groups}",
+                    name = operation.name,
+                    groups = Text::listed(&range.groups)
                 ),
             );
         }

@@ -3,7 +3,8 @@
 use super::draft::{AnswerDraft, Place, Placed};
 use super::govern::{Found, Governed};
 use super::grammar::{
-    ANSWER, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT, TEXT,
+    ANSWER, Answer, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT,
+    TEXT,
 };
 use super::misread::misread;
 use crate::model::{AnswerKind, BodyState, Confirmation, Fact, Kind, Operation, Text};
@@ -258,7 +259,17 @@ impl<'s> Writing<'s> {
 
     /// Adds the owner's word to an answer.
     fn confirm(&mut self, answer: Node<'_>) {
-        let Some(entry) = ANSWER.r#as.entry(answer) else {
+        // Behind the keys that come before it in the grammar.
+        let rank = |key: &str| {
+            Answer::TABLE
+                .keys
+                .iter()
+                .position(|known| known.name == key)
+        };
+        let before = answer
+            .entries()
+            .filter(|entry| rank(entry.name()) < rank(ANSWER.confirmed.name));
+        let Some(entry) = before.last() else {
             return;
         };
         let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.word.confirmed());

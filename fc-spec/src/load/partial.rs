@@ -137,10 +137,11 @@ impl Partial {
         }
     }
 
-    /// The code that the next operation gets from the ranges of this use.
+    /// Returns the code that the next operation of a group gets from the ranges of this use; of any group for `None`.
     #[must_use]
-    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
-        next_code(&self.operations, &self.retired, &self.ranges, usage)
+    pub fn next_code(&self, usage: RangeUse, group: Option<&str>) -> Option<u16> {
+        let (operations, retired) = (self.operations.iter(), self.retired.iter());
+        next_code(operations, retired, self.ranges.iter(), usage, group)
     }
 }
 

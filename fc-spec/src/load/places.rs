@@ -3,8 +3,10 @@
 use super::draft::{Draft, Place as Written, Placed};
 use super::grammar::{self as language, TRANSPORT, Table};
 use crate::diagnostic::nearest;
-use crate::model::{Direction, Kind, TypeShape};
+use crate::model::{Direction, Kind, Text, TypeShape};
+use crate::schema::reference;
 use crate::syntax::{Entry, FileId, Node, Span};
+use crate::text;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -18,6 +20,22 @@ pub struct Item {
     pub owner: Option<String>,
     /// Its name; a code as the spec writes it, a number in decimal; its place among its like, from 1, where it has neither.
     pub name: String,
+}
+
+impl Item {
+    /// The name with the kind: `field Station.name`, `字段 Station.name`.
+    #[must_use]
+    pub fn text(&self) -> Text {
+        let parts = reference();
+        let part = parts.iter().find(|part| part.id == self.kind);
+        let kind = part.map_or(self.kind, |part| part.name.zh.as_str());
+        let name = match &self.owner {
+            Some(owner) => format!(" {owner}.{}", self.name),
+            None if self.name == self.kind => String::new(),
+            None => format!(" {}", self.name),
+        };
+        text!("{kind}{name}", "{self}")
+    }
 }
 
 /// With its kind: `field Station.name`.

@@ -4,6 +4,7 @@ use super::draft::{Draft, Placed};
 use super::edit::{Word, Writing};
 use super::govern::{Found, Governed, governed};
 use crate::diagnostic::{Faults, nearest};
+use crate::format::{Edited, edited};
 use crate::model::{
     AnswerKind, BodyState, Confirmation, Fact, Location, Operation, Question, Subject, Text,
 };
@@ -220,14 +221,15 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
     }
     let file = writing.edits.place();
     let file = file.and_then(|span| sources.get(span.file));
-    let (path, text) = file.map_or_else(Default::default, |file| {
-        (file.path.clone(), writing.edits.apply(file))
+    let (path, text, diff) = file.map_or_else(Default::default, |file| {
+        let Edited { text, diff } = edited(file, &writing.edits);
+        (file.path.clone(), text, diff)
     });
     Ok(Settled {
         id: question.id.clone(),
         path,
         text,
-        diff: writing.diff(),
+        diff,
     })
 }
 

@@ -3,9 +3,9 @@
 use super::grammar::{
     ACCEPTED, ANSWER, AVAILABLE, Answer, Audience, Available, COMMON, Choice, Command, Conflict,
     Constants, CoordinateSystem, DEPRECATED, DeclaredError, ENUM_VALUE, ERROR, Entity, Enum,
-    EnumValue, FIELD, FIELD_KIND, FILE, Field, File, Items, Kind, Machine, NamedVariant, OPERATION,
-    Object, OneOf, Precondition, Report, ResultCode, SET_OFF, STREAM, Series, SetOff, Store,
-    Stream, Struct, Table, both_languages,
+    EnumValue, FIELD, FIELD_KIND, FILE, Field, File, Group, Items, Kind, Machine, NamedVariant,
+    OPERATION, Object, OneOf, Precondition, RANGE, Range, Report, ResultCode, SET_OFF, STREAM,
+    Series, SetOff, Store, Stream, Struct, Table, both_languages,
 };
 use super::places::{Item, Place};
 use super::shape;
@@ -315,6 +315,8 @@ impl<'t> Site<'t> {
             TYPES
         } else if is(Answer::TABLE, ANSWER.ids.name) {
             const { &[Conflict::TABLE.name] }
+        } else if is(Range::TABLE, RANGE.groups.name) {
+            const { &[Group::TABLE.name] }
         } else if is(EnumValue::TABLE, ENUM_VALUE.then.name) {
             VALUES
         } else if under(OPERATION.errors.name) || is(DeclaredError::TABLE, ERROR.code.name) {

@@ -21,13 +21,16 @@ use value::Value;
 /// What both branches say, where `base` is what they began with: the text of `ours` with what `theirs` has added, changed
 /// or removed. Laid out if both are.
 ///
-/// `None` if they have both changed the same thing, or if one of the three cannot be read. Line ends become those of
-/// `ours`.
+/// `None` if they have both changed the same thing, or if one of the three cannot be read. Line ends and the byte order
+/// mark are those of `ours`.
 #[must_use]
 pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
-    let crlf = ours.contains("\r\n");
-    let [base, ours, theirs] =
-        [base, ours, theirs].map(|text| SourceFile::new("", text.replace("\r\n", "\n")));
+    let newline = SourceFile::new("", ours).newline();
+    let mark = ours.starts_with(BYTE_ORDER_MARK);
+    let [base, ours, theirs] = [base, ours, theirs].map(|text| {
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        SourceFile::new("", text.replace("\r\n", "\n"))
+    });
     let base_tree = read(&base)?;
     let our_tree = read(&ours)?;
     let their_tree = read(&theirs)?;
@@ -58,12 +61,16 @@ pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
     } else {
         merged.text
     };
-    Some(if crlf {
-        text.replace('\n', "\r\n")
+    let text = text.replace('\n', newline);
+    Some(if mark {
+        format!("{BYTE_ORDER_MARK}{text}")
     } else {
         text
     })
 }
+
+/// A byte order mark at the start of a file.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The three are never in one list of files.
 const FILE: FileId = FileId(0);

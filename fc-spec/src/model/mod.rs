@@ -190,32 +190,48 @@ impl Model {
     /// Codes that cannot be given out: in use or retired.
     #[must_use]
     pub fn taken_codes(&self) -> BTreeSet<u16> {
-        taken_codes(&self.operations, &self.retired)
+        taken_codes(self.operations.iter(), self.retired.iter())
     }
 
-    /// The code that the next operation gets from the ranges of this use.
+    /// Returns the code that the next operation of a group gets from the ranges of this use; of any group for `None`.
     #[must_use]
-    pub fn next_code(&self, usage: RangeUse) -> Option<u16> {
-        next_code(&self.operations, &self.retired, &self.ranges, usage)
+    pub fn next_code(&self, usage: RangeUse, group: Option<&str>) -> Option<u16> {
+        let (operations, retired) = (self.operations.iter(), self.retired.iter());
+        next_code(operations, retired, self.ranges.iter(), usage, group)
     }
 }
 
-fn taken_codes(operations: &[Operation], retired: &[RetiredCode]) -> BTreeSet<u16> {
-    let used = operations
-        .iter()
-        .filter_map(|operation| operation.code.value);
-    used.chain(retired.iter().map(|retired| retired.code))
-        .collect()
+fn taken_codes<'m>(
+    operations: impl Iterator<Item = &'m Operation>,
+    retired: impl Iterator<Item = &'m RetiredCode>,
+) -> BTreeSet<u16> {
+    let used = operations.filter_map(|operation| operation.code.value);
+    used.chain(retired.map(|retired| retired.code)).collect()
 }
 
-/// Of a spec that may have faults, too.
-pub(crate) fn next_code(
-    operations: &[Operation],
-    retired: &[RetiredCode],
-    ranges: &[CodeRange],
+/// The same of a spec that may have errors.
+///
+/// The ranges of a group are those that name it. If none does, they are those without `groups`, and first of them the
+/// ones in which the group has codes already.
+pub(crate) fn next_code<'m>(
+    operations: impl Iterator<Item = &'m Operation> + Clone,
+    retired: impl Iterator<Item = &'m RetiredCode>,
+    ranges: impl Iterator<Item = &'m CodeRange>,
     usage: RangeUse,
+    group: Option<&str>,
 ) -> Option<u16> {
+    let mut ranges: Vec<&CodeRange> = ranges.filter(|range| range.usage == usage).collect();
+    if let Some(group) = group {
+        let names = |range: &&CodeRange| range.groups.iter().any(|it| it == group);
+        if ranges.iter().any(names) {
+            ranges.retain(names);
+        } else {
+            ranges.retain(|range| range.groups.is_empty());
+            let own = operations.clone().filter(|it| it.group == group);
+            let own: Vec<u16> = own.filter_map(|it| it.code.value).collect();
+            ranges.sort_by_key(|range| !own.iter().any(|code| range.has(*code)));
+        }
+    }
     let taken = taken_codes(operations, retired);
-    let mut ranges = ranges.iter().filter(|range| range.usage == usage);
-    ranges.find_map(|range| range.next(&taken))
+    ranges.into_iter().find_map(|range| range.next(&taken))
 }

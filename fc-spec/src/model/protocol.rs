@@ -468,12 +468,21 @@ pub struct CodeRange {
     /// Its purpose.
     #[serde(rename = "use")]
     pub usage: RangeUse,
+    /// IDs of the groups whose new operations get their codes here; none if it names no groups.
+    #[serde(default)]
+    pub groups: Vec<String>,
     /// Description.
     #[serde(flatten)]
     pub text: Text,
 }
 
 impl CodeRange {
+    /// Returns `true` if a code lies in the range.
+    #[must_use]
+    pub fn has(&self, code: u16) -> bool {
+        (self.first..=self.last).contains(&code)
+    }
+
     /// The code that the next operation gets, where new ones are given out: the one after the largest
     /// of those `taken`, or the first gap once the end is reached.
     #[must_use]

@@ -1,7 +1,12 @@
 //! Replacements in the text of a file: everything else stays as it is, to the byte.
 
 use super::{SourceFile, Span};
+use similar::{ChangeTag, TextDiff};
 use std::fmt::Write as _;
+use std::time::Duration;
+
+/// Longest search for the smallest difference of two texts.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Replacements in one file.
 #[derive(Clone, Debug, Default)]
@@ -87,14 +92,34 @@ impl Edits {
     /// In the order of their places, with the line ends of the file.
     fn sorted(&self, file: &SourceFile) -> Vec<(Span, String)> {
         let mut sorted = self.0.clone();
-        if file.text.contains("\r\n") {
-            for (_, text) in &mut sorted {
-                *text = text.replace("\r\n", "\n").replace('\n', "\r\n");
-            }
+        for (_, text) in &mut sorted {
+            *text = text.replace("\r\n", "\n").replace('\n', file.newline());
         }
         sorted.sort_by_key(|(span, _)| (span.start, span.end));
         sorted
     }
+}
+
+/// The lines that change from one text to another, in the form of [`Edits::diff`] and with one line around them.
+pub(crate) fn changed_lines(old: &str, new: &str) -> String {
+    let changes = TextDiff::configure().timeout(PATIENCE).diff_lines(old, new);
+    let mut diff = String::new();
+    for (index, group) in changes.grouped_ops(1).iter().enumerate() {
+        if index > 0 {
+            diff.push_str("@@\n");
+        }
+        for change in group.iter().flat_map(|op| changes.iter_changes(op)) {
+            let sign = match change.tag() {
+                ChangeTag::Delete => '-',
+                ChangeTag::Insert => '+',
+                ChangeTag::Equal => ' ',
+            };
+            let line = change.value().trim_end_matches(['\r', '\n']);
+            // Writing to a String cannot fail.
+            let _ = writeln!(diff, "{sign}{line}");
+        }
+    }
+    diff
 }
 
 /// Whether something is added between two lines there, which belongs to the one above.

@@ -89,10 +89,11 @@ impl Directory {
     /// Lists the spec files of this directory, and of `commands` where this is the `top`.
     fn list(&self, top: bool, found: &mut Vec<Item>) {
         self.each(found, |name, is_dir, found| {
-            if !is_dir {
-                found.extend(self.file(name));
-            } else if top && name == GROUPS {
+            if top && name == GROUPS {
+                // Also where it is no directory, which is an error.
                 self.below(name).list(false, found);
+            } else if !is_dir {
+                found.extend(self.file(name));
             } else if is_yaml(name) {
                 found.push(Item {
                     path: self.child(name),

@@ -31,7 +31,7 @@ mod tree;
 pub(crate) mod width;
 
 pub(crate) use control::visible;
-pub(crate) use edit::Edits;
+pub(crate) use edit::{Edits, changed_lines};
 pub use find::is_spec_file;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;

@@ -117,6 +117,9 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn read(&mut self, path: String, disk: &Path) {
+        if let Some(message) = not_a_file(&path, disk) {
+            return self.refuse(FaultCode::Unreadable, path, message, None);
+        }
         match read_at_most(disk, limits::FILE_BYTES) {
             Err(error) => self.unreadable(path, &error),
             Ok(None) => {
@@ -199,13 +202,29 @@ impl Reader<'_> {
     }
 }
 
+/// Describes a path that leads to something other than a file. The caller opens no pipe: that would wait for a writer.
+fn not_a_file(path: &str, disk: &Path) -> Option<Text> {
+    match fs::metadata(disk) {
+        Ok(meta) if meta.is_file() => None,
+        Ok(meta) if meta.is_dir() => Some(text!(
+            "`{path}` 是目录，不是文件",
+            "`{path}` is a directory, not a file"
+        )),
+        Ok(_) => Some(text!(
+            "`{path}` 不是普通文件",
+            "`{path}` is not a regular file"
+        )),
+        Err(_) if disk.is_symlink() => Some(text!(
+            "`{path}` 是链接，但它指向的文件无法读取",
+            "`{path}` is a link to a file that cannot be read"
+        )),
+        Err(_) => None,
+    }
+}
+
 /// The bytes of a file, or `None` if there are more than `allowed`. Never holds more than that.
 fn read_at_most(disk: &Path, allowed: usize) -> io::Result<Option<Vec<u8>>> {
-    // Before opening: to open a pipe is to wait for its writer.
     let meta = fs::metadata(disk)?;
-    if !meta.is_file() {
-        return Err(io::Error::other("not a regular file"));
-    }
     let beyond = u64::try_from(allowed).unwrap_or(u64::MAX).saturating_add(1);
     if meta.len() >= beyond {
         return Ok(None);

@@ -42,6 +42,14 @@ impl SourceFile {
         }
     }
 
+    /// Line end of the first line.
+    pub(crate) fn newline(&self) -> &'static str {
+        match self.text.split_once('\n') {
+            Some((first, _)) if first.ends_with('\r') => "\r\n",
+            _ => "\n",
+        }
+    }
+
     /// Line of a byte offset, counted from 1.
     #[must_use]
     pub fn line(&self, offset: usize) -> usize {

@@ -28,6 +28,7 @@ fn spec(commands: &str, more: &str) -> (Sources, Model) {
     let files = [
         ("spec/protocol.yaml", file("spec/protocol.yaml") + more),
         ("spec/commands/lamp.yaml", commands.to_owned()),
+        ("spec/commands/siren.yaml", file("spec/commands/siren.yaml")),
     ];
     let sources = Sources::from_texts(files);
     let mut found = Faults::new();

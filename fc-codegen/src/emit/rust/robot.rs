@@ -33,7 +33,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     example(&mut out, protocol, &commands);
     out.blank();
-    reporter(&mut out, protocol);
+    reporter(&mut out, context, protocol);
     if streams::are_any(context) {
         out.blank();
         streams::robot(&mut out, context, protocol);
@@ -234,7 +234,12 @@ pub struct ExampleRobot {
     });
 }
 
-fn reporter(out: &mut Source, protocol: &str) {
+fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str) {
+    let allowed = if context.reports().is_empty() {
+        "    #[allow(dead_code, reason = \"the spec has no reports\")]\n"
+    } else {
+        ""
+    };
     out.line(format!(
         "\
 /// 发送上报：每种上报一个方法。
@@ -242,7 +247,7 @@ fn reporter(out: &mut Source, protocol: &str) {
 /// Pushes reports: one method per report. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Reporter {{
-    pub(crate) handle: ServerHandle<{protocol}>,
+{allowed}    pub(crate) handle: ServerHandle<{protocol}>,
 }}"
     ));
     out.blank();

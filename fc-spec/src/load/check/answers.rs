@@ -84,11 +84,16 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .map(|conflict| conflict.item.id.as_str())
         .collect();
-    if let (true, Some(first)) = (known.is_empty(), draft.answers.first()) {
-        let answers = draft.answers.len();
+    // Answers without ids name their facts and need no conflict.
+    let mut with_ids = draft
+        .answers
+        .iter()
+        .filter(|answer| !answer.item.ids.is_empty());
+    if let (true, Some(first)) = (known.is_empty(), with_ids.next()) {
+        let answers = 1 + with_ids.count();
         let message = text!(
-            "规范有 {answers} 条答复，但没有 `conflicts`",
-            "the spec has {answers} answers but no `conflicts`"
+            "规范有 {answers} 条答复写了 `ids`，但没有 `conflicts`",
+            "the spec has {answers} answers with `ids` but no `conflicts`"
         );
         faults.push(
             Diagnostic::error(

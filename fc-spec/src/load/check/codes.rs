@@ -1,9 +1,9 @@
 //! Codes of operations and their ranges.
 
-use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
-use crate::model::{CodeRange, Kind, Operation, RangeUse, Text};
+use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
 use crate::syntax::{Node, Span};
 use crate::text;
 use std::collections::HashMap;
@@ -201,7 +201,7 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 range.place.at(RANGE.r#use),
                 text!("号段的用途", "the purpose of the range"),
             );
-            let next = next_code(draft, operation.item.kind());
+            let next = next(draft, &operation.item);
             // The code of an operation of the source is a fact; that of a new one is a choice.
             faults.push(match next.filter(|_| operation.item.sections.is_empty()) {
                 Some(next) => fault.fix(
@@ -215,19 +215,44 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The code that the next operation of this kind gets.
-fn next_code(draft: &Draft<'_>, kind: Kind) -> Option<u16> {
-    let usage = match kind {
+/// The code that the next operation of the same kind and group gets.
+fn next(draft: &Draft<'_>, operation: &Operation) -> Option<u16> {
+    let usage = match operation.kind() {
         Kind::Command => RangeUse::Commands,
         Kind::Report => RangeUse::Reports,
         Kind::Stream => return None,
     };
-    let used = draft.operations.iter();
-    let used = used.filter_map(|operation| operation.item.code.value);
-    let retired = draft.retired.iter().map(|retired| retired.item.code);
-    let taken = used.chain(retired).collect();
-    let mut ranges = draft.ranges.iter().map(|range| &range.item);
-    ranges.find_map(|range| range.next(&taken).filter(|_| range.usage == usage))
+    next_code(
+        draft.operations.iter().map(|operation| &operation.item),
+        draft.retired.iter().map(|retired| &retired.item),
+        draft.ranges.iter().map(|range| &range.item),
+        usage,
+        Some(&operation.group),
+    )
+}
+
+/// Every group of a range exists.
+pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
+    let known: Vec<&str> = draft
+        .groups
+        .iter()
+        .map(|group| group.item.id.as_str())
+        .collect();
+    for range in &draft.ranges {
+        for node in RANGE.groups.items(range.place.node) {
+            let Some(id) = node.as_str().filter(|id| !known.contains(id)) else {
+                continue;
+            };
+            let message = text!("没有分组 `{id}`", "there is no group `{id}`");
+            let fault = Diagnostic::error(FaultCode::UnknownGroup, node.span(), message);
+            faults.push(match nearest(id, known.iter().copied()) {
+                Some(near) => {
+                    fault.fix(node.span(), near, text!("改为 `{near}`", "write `{near}`"))
+                }
+                None => fault,
+            });
+        }
+    }
 }
 
 /// Why an operation cannot have a code of such a range.

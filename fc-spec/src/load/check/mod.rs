@@ -121,6 +121,7 @@ const OF_WHOLE: &[Check] = &[
     references::check_structs,
     references::check_operations,
     references::check_set_off,
+    codes::check_groups,
     streams::check_commands,
     process::check_ties,
     process::check_state,

@@ -267,6 +267,9 @@ grammar! {
         /// Its purpose.
         /// 用途。
         required r#use: RangeUse;
+        /// IDs of the groups whose new operations get their codes here. A group that no range names gets codes from the ranges without `groups`.
+        /// 哪些分组的新接口从这里取功能码，写分组的 ID。没有号段指明的分组从不写 `groups` 的号段取。
+        optional groups: List<Name, 1>, example "[status]", faults [UnknownGroup];
         use TEXT.zh, TEXT.en, COMMON.answers;
     }
 

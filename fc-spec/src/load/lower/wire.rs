@@ -319,6 +319,7 @@ fn range(node: Node<'_>) -> Option<CodeRange> {
         first_spelling,
         last_spelling,
         usage: RANGE.r#use.read(node).unwrap_or(RangeUse::Reserved),
+        groups: RANGE.groups.get(node),
         text: text(node),
     })
 }

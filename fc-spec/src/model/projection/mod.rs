@@ -122,6 +122,9 @@ impl Model {
         let groups: HashSet<&str> = groups.collect();
         self.groups
             .retain(|group| groups.contains(group.id.as_str()));
+        for range in &mut self.ranges {
+            range.groups.retain(|group| groups.contains(group.as_str()));
+        }
         let structs = self.types.iter().filter_map(|ty| match &ty.shape {
             TypeShape::Struct(shape) => Some(shape),
             TypeShape::Enum(_) | TypeShape::OneOf(_) => None,

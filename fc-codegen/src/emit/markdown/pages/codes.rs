@@ -1,8 +1,8 @@
 //! The map of command codes.
 
 use super::shared::{AnswerView, Desk, OperationEntry};
+use crate::codes::purpose;
 use crate::emit::markdown::links::{Anchor, Page};
-use crate::emit::markdown::words::Word as _;
 use fc_spec::model::{CodeRange, Declared, Subject};
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ pub(in crate::emit::markdown) struct CodesView {
 struct RangeView {
     first: String,
     last: String,
-    usage: &'static str,
+    usage: String,
     text: String,
 }
 
@@ -79,7 +79,7 @@ fn range_view(desk: Desk<'_, '_>, range: &CodeRange) -> RangeView {
     RangeView {
         first: range.first_spelling.clone(),
         last: range.last_spelling.clone(),
-        usage: range.usage.word(desk.lang),
+        usage: purpose(range, desk.lang),
         text: desk.lang.text(&range.text).to_owned(),
     }
 }

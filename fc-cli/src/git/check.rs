@@ -1,0 +1,198 @@
+//! `fcproto git check`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Component, Path, PathBuf};
+
+use fc_codegen::output::{MANIFEST, generated};
+use fc_codegen::target::FILE;
+
+use super::{git, git_with, parts};
+use crate::help::{Help, Part};
+use crate::lang::{both, said};
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::project::{Project, is_there};
+use crate::{check, fmt, generate, print};
+
+/// Options of `fcproto git check`.
+#[derive(Debug, clap::Args)]
+pub struct Options {}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("检查暂存的内容", "Check the staged files"),
+        details: vec![
+            Part::Text(both(
+                "对将要提交的文件依次运行 `fcproto fmt --check`、`fcproto check --deny warnings` 和 `fcproto generate --check`。没有暂存的修改和没有加入 git 的文件不起作用。\
+                 git 忽略的生成文件取自工作区。",
+                "The command runs `fcproto fmt --check`, `fcproto check --deny warnings` and `fcproto generate --check` on the \
+                 files of the next commit. Changes that are not staged and untracked files have no influence. Generated \
+                 files that git ignores come from the working tree.",
+            )),
+            Part::Text(both(
+                "`fcproto git setup --hooks` 的钩子在每次提交前运行它。",
+                "The hook of `fcproto git setup --hooks` runs it before each commit.",
+            )),
+            Part::Examples(vec![("fcproto git check", "")]),
+        ],
+        fails: both(
+            "暂存的规范未排版、有错误或警告，或有文件过期",
+            "The staged spec is not formatted or has errors or warnings, or files are stale",
+        ),
+        speaks: "",
+    }
+}
+
+pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(place)?;
+    let staged = Staged::of(&project)?;
+    let root = staged.root();
+    let is_project = [Path::new(FILE), project.spec.as_path()]
+        .iter()
+        .any(|path| is_there(&root.join(path)));
+    if !is_project {
+        // The commit has no project, or removes it.
+        return Ok(Status::Fine);
+    }
+    let there = Place {
+        root: Some(root),
+        spec: place.spec.clone(),
+    };
+    print::quiet(true);
+    let status = fmt::run(&there, &fmt::Options::checking())?;
+    if status != Status::Fine {
+        return Ok(status);
+    }
+    let status = check::run(&there, &check::Options::strict())?;
+    if status != Status::Fine {
+        return Ok(status);
+    }
+    let options = generate::Options::checking();
+    generate::in_project(Project::find(&there)?, place, &options)
+}
+
+/// A copy of the staged files in a temporary directory, which is removed in the end.
+struct Staged {
+    directory: PathBuf,
+    /// The project's directory from the root of the working tree.
+    prefix: String,
+}
+
+impl Staged {
+    fn of(project: &Project) -> Result<Self, Failure> {
+        let root = &project.root;
+        let line = |arguments: &[&str]| -> Result<String, Failure> {
+            let text = git(root, arguments, "")?;
+            Ok(text.trim_end_matches(['\r', '\n']).to_owned())
+        };
+        let top = PathBuf::from(line(&["rev-parse", "--show-toplevel"])?);
+        let staged = Self {
+            directory: temporary()?,
+            prefix: line(&["rev-parse", "--show-prefix"])?,
+        };
+        // The tree of the next commit, without files that are only intended to be added.
+        let tree = git(&top, &["write-tree"], "")?;
+        let index = [(
+            "GIT_INDEX_FILE",
+            staged
+                .directory
+                .join("index")
+                .to_string_lossy()
+                .into_owned(),
+        )];
+        let read = ["read-tree", tree.trim_end_matches(['\r', '\n'])];
+        git_with(&top, &read, "", &index)?;
+        let root = std::path::absolute(root)?;
+        let spec = root.join(&project.spec);
+        let (root, spec) = (root.to_string_lossy(), spec.to_string_lossy());
+        let mut list = vec!["ls-files", "-z", "--full-name", "--", &*root];
+        let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        if !project.spec.components().all(is_below) {
+            list.push(&*spec);
+        }
+        let paths = git_with(&top, &list, "", &index)?;
+        let into = format!("--prefix={}/", staged.copy().to_string_lossy());
+        let copy = ["checkout-index", "--quiet", &into, "-z", "--stdin"];
+        git_with(&top, &copy, &paths, &index)?;
+        staged.take_ignored(project)?;
+        Ok(staged)
+    }
+
+    /// Root of the copied working tree.
+    fn copy(&self) -> PathBuf {
+        self.directory.join("tree")
+    }
+
+    /// Root of the copied project.
+    fn root(&self) -> PathBuf {
+        self.copy().join(&self.prefix)
+    }
+
+    /// Copies the generated files that git ignores: no commit has them.
+    fn take_ignored(&self, project: &Project) -> Result<(), Failure> {
+        let list = [
+            "ls-files",
+            "-z",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+        ];
+        let known = git(&project.root, &list, "")?;
+        let known: BTreeSet<&str> = parts(&known).collect();
+        let mut mine = generated(&project.root)?;
+        mine.push(MANIFEST.to_owned());
+        for path in mine.iter().filter(|path| !known.contains(path.as_str())) {
+            let (from, to) = (project.root.join(path), self.root().join(path));
+            let copied = to.parent().map_or(Ok(()), fs::create_dir_all);
+            match copied.and_then(|()| fs::copy(&from, &to)) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(said!(
+                        "无法复制 `{path}`：{error}",
+                        "cannot copy `{path}`: {error}"
+                    )
+                    .into());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        // The system removes temporary files, too.
+        let _ = fs::remove_dir_all(&self.directory);
+    }
+}
+
+/// Makes a directory for temporary files that other users cannot read.
+fn temporary() -> Result<PathBuf, Failure> {
+    let process = std::process::id();
+    let mut builder = fs::DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    let mut attempt = 0;
+    loop {
+        let path = std::env::temp_dir().join(format!("fcproto-{process}-{attempt}"));
+        match builder.create(&path) {
+            Ok(()) => return Ok(path),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < ATTEMPTS => {
+                attempt += 1;
+            }
+            Err(error) => {
+                let path = path.display();
+                return Err(said!(
+                    "无法创建 `{path}`：{error}",
+                    "cannot make `{path}`: {error}"
+                )
+                .into());
+            }
+        }
+    }
+}
+
+/// Names that are tried for a temporary directory.
+const ATTEMPTS: u32 = 100;

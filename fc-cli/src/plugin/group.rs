@@ -1,0 +1,73 @@
+//! A process with its children, which can be ended together.
+
+use std::io;
+use std::process::{Child, Command};
+use std::sync::{Mutex, PoisonError};
+
+/// The group that runs, for whoever ends the program.
+static RUNNING: Mutex<Option<u32>> = Mutex::new(None);
+
+/// Ends the group that runs.
+pub fn end_running() {
+    let running = *RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(leader) = running {
+        kill(leader);
+    }
+}
+
+/// A process with its children.
+pub struct Group {
+    /// Process ID of the first process.
+    leader: u32,
+}
+
+impl Group {
+    /// Starts a process as the first of a group.
+    pub fn spawn(command: &mut Command) -> io::Result<(Child, Self)> {
+        // A group of its own does not get the Ctrl-C of the terminal. The watch has a handler that ends the group.
+        let _ = ctrlc::try_set_handler(|| {
+            end_running();
+            std::process::exit(INTERRUPTED);
+        });
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        let child = command.spawn()?;
+        let leader = child.id();
+        *RUNNING.lock().unwrap_or_else(PoisonError::into_inner) = Some(leader);
+        Ok((child, Self { leader }))
+    }
+
+    /// Ends all of its processes.
+    pub fn end(&self) {
+        kill(self.leader);
+    }
+}
+
+impl Drop for Group {
+    fn drop(&mut self) {
+        *RUNNING.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+}
+
+/// Exit status of a program that Ctrl-C ends.
+const INTERRUPTED: i32 = 130;
+
+#[cfg(unix)]
+fn kill(leader: u32) {
+    use nix::sys::signal::{Signal, killpg};
+    use nix::unistd::Pid;
+    if let Ok(leader) = i32::try_from(leader) {
+        // All of them may have ended meanwhile.
+        let _ = killpg(Pid::from_raw(leader), Signal::SIGKILL);
+    }
+}
+
+#[cfg(not(unix))]
+fn kill(leader: u32) {
+    // All of them may have ended meanwhile.
+    let _ = Command::new("taskkill")
+        .args(["/T", "/F", "/PID", &leader.to_string()])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .status();
+}
