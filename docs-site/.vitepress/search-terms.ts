@@ -42,8 +42,10 @@ export function queryTerms(query: string): string[] {
   const terms = (text: string) => {
     const found: string[] = []
     for (const run of text.match(/[A-Za-z0-9_]+|[\u3400-\u9fff\uf900-\ufaff]+/g) ?? []) {
-      if (/^0[xX][0-9A-Fa-f]{4}$/.test(run)) found.push(run, `${run.slice(0, 4)}xx`, `${run.slice(0, 5)}x`)
-      else if (/^[A-Za-z0-9_]/.test(run)) {
+      if (/^0[xX][0-9A-Fa-f]{1,4}$/.test(run)) {
+        const code = `0x${run.slice(2).padStart(4, '0')}`
+        found.push(run, `${code.slice(0, 4)}xx`, `${code.slice(0, 5)}x`)
+      } else if (/^[A-Za-z0-9_]/.test(run)) {
         found.push(run)
         // `GetRobotSnRequest`: what lies in it is found although no page has the whole.
         const parts = run.split(/_+|(?<=[a-z0-9])(?=[A-Z])/).filter(Boolean)
@@ -78,7 +80,7 @@ export function weight(id: string, _term: string, stored?: Record<string, unknow
   else if (/\/reference\/codes\.html$|\/reference\/$/.test(page)) weight = 0.4
   else if (/\/reference\/(changelog|open-questions)\.html$/.test(page)) weight = 0.1
   // What the owner of the protocol needs to write it.
-  else if (/\/reference\/(language|errors|cli)\.html$/.test(page)) weight = 0.05
+  else if (/\/reference\/(language|errors|cli)\.html$/.test(page)) weight = 0.1
   else if (/\/guides\/(adding-a-command|changing-safely|editors|answers|releases|targets|lint|what-changed)\.html$/.test(page)) weight = 0.3
   // A section under no other is the head of its page.
   const head = Array.isArray(stored?.titles) && stored.titles.length === 0

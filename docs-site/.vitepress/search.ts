@@ -42,7 +42,7 @@ function unusedCodes(page: string, language: 'zh' | 'en'): string {
     })
   })
   const outside = section(
-    'ranges',
+    'outside',
     say('号段以外的功能码', 'Codes outside of all ranges'),
     say('没有接口使用，不在任何号段中，不要分配。', 'No operation has such a code, and no range includes it: do not use it.'),
     outsideBlocks().join(' '),

@@ -39,7 +39,7 @@ const CODED = /^`0x[0-9A-F]{4}`(?: = |<br>)/
  * changes would keep two branches from being merged. Here it has both, the free ones first, each with an anchor.
  */
 export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
-  const named = page.findIndex((token) => token.content === '<a id="in-use"></a>')
+  const named = page.findIndex((token) => token.type === 'heading_open' && token.attrGet('id') === 'in-use')
   const place = page.findIndex((token, index) => index > named && token.type === 'heading_close') + 1
   // In the place of the sentence that says where they are listed.
   const rest = page.findIndex((token, index) => index > place && token.type === 'paragraph_close') + 1
@@ -112,11 +112,11 @@ function freeCodes(runs: UnusedRun[], taken: Set<number>, english: boolean, stat
     const isNext = next !== undefined && first <= next && next <= last
     return `| ${codes} | ${last - first + 1} | ${protocol.ranges[range].use === 'commands' ? (english ? 'new commands' : '新增指令') : english ? 'new reports' : '新增主动上报'} | ${isNext ? spelled(next) : '—'} |`
   })
-  const [title, text, ...heads] = english
-    ? ['Free codes', 'A new operation takes the next free code; `fcproto new` finds it.', 'Free', 'Number', 'For', 'Next free']
-    : ['可用的功能码', '新接口取下一个可用的功能码，由 `fcproto new` 给出。', '可用', '个数', '用于', '下一个可用']
-  const markdown = `<a id="free"></a>\n\n## ${title}\n\n${text}\n\n| ${heads.join(' | ')} |\n|---|---|---|---|\n${rows.join('\n')}\n`
-  const tokens = state.md.parse(markdown, { relativePath: state.env.relativePath })
+  const [title, text, outside, ...heads] = english
+    ? ['Free codes', 'A new operation takes the next free code; `fcproto new` finds it.', 'Codes outside of all ranges are not assigned.', 'Free', 'Number', 'For', 'Next free']
+    : ['可用的功能码', '新接口取下一个可用的功能码，由 `fcproto new` 给出。', '号段以外的功能码不分配。', '可用', '个数', '用于', '下一个可用']
+  const markdown = `<a id="free"></a>\n\n## ${title}\n\n${text}\n\n| ${heads.join(' | ')} |\n|---|---|---|---|\n${rows.join('\n')}\n\n<a id="outside"></a>${outside}\n`
+  const tokens = state.md.parse(markdown, {})
   const table = tokens.findIndex(({ type }) => type === 'table_open')
   rowsOf(tokens, table).forEach(({ from }, index) => anchorsInto(tokens[from + 2], [free[index]], state))
   return tokens

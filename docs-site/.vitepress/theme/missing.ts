@@ -4,7 +4,7 @@ import type { Router, SiteData } from 'vitepress'
 import type { Ref } from 'vue'
 
 /** The pages of the site by the names of their files, as VitePress leaves them in the page. */
-const pages = (): Record<string, string> => (window as { __VP_HASH_MAP__?: Record<string, string> }).__VP_HASH_MAP__ ?? {}
+const pages = (): Record<string, string> => (globalThis as { __VP_HASH_MAP__?: Record<string, string> }).__VP_HASH_MAP__ ?? {}
 
 /** Whether the site has a page at this address. */
 export function isPage(address: string, base: string): boolean {
