@@ -1,8 +1,10 @@
 import { existsSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
-import { defineConfig, type DefaultTheme } from 'vitepress'
+import { defineConfig, type DefaultTheme, type HeadConfig } from 'vitepress'
 import { commentsStayBehind } from './markdown/comments'
 import { drawnFences } from './markdown/fences'
+import { anchoredHeadings } from './markdown/headings'
+import { html } from './markdown/html'
 import { API, referencePages } from './markdown/pages'
 import { samples } from './markdown/samples'
 import { leadOn, movedFrom } from './moved'
@@ -80,15 +82,16 @@ function sidebar(language: Language): DefaultTheme.SidebarItem[] {
       text: pick('协议', 'Protocol'),
       items: REFERENCE.map(([page, zh, en]) => ({ text: pick(zh, en), link: base + page })),
     },
+    // The theme shows these texts as HTML.
     ...navigation.groups.map((group) => ({
-      text: group[language],
+      text: html(group[language]),
       collapsed: true,
-      items: group.items.map((item) => ({ text: item[language], link: `${base}reference/${item.link}` })),
+      items: group.items.map((item) => ({ text: html(item[language]), link: `${base}reference/${item.link}` })),
     })),
     {
       text: pick('协议源文件', 'Protocol sources'),
       collapsed: true,
-      items: specFiles().map((file) => ({ text: `${file}.yaml`, link: `${base}spec/${file}` })),
+      items: specFiles().map((file) => ({ text: html(`${file}.yaml`), link: `${base}spec/${file}` })),
     },
   ]
 }
@@ -106,14 +109,16 @@ export default defineConfig({
   srcExclude: ['README.md', 'tests/**', 'node_modules/**'],
   ignoreDeadLinks: [API],
   head: [
-    ['link', { rel: 'icon', type: 'image/svg+xml', href: '/mark.svg' }],
     ['meta', { name: 'theme-color', content: '#0f766e' }],
     ['script', {}, PRESS_AT_ONCE],
+    // What needs scripts does not show without them.
+    ['noscript', {}, '<style>.fc-scripted { display: none !important; } .fc-rest, .fc-unscripted { display: block; }</style>'],
   ],
   markdown: {
     theme: { light: 'github-light-high-contrast', dark: 'github-dark-high-contrast' },
     codeTransformers: [commentsStayBehind],
     config: (md) => {
+      anchoredHeadings(md)
       samples(md)
       drawnFences(md)
       referencePages(md)
@@ -124,9 +129,11 @@ export default defineConfig({
   transformPageData(page) {
     if (page.params?.title) page.title = page.params.title
   },
-  transformHead({ pageData }) {
+  transformHead({ pageData, siteData }) {
     const moved = movedFrom(pageData.relativePath)
-    return moved ? [['script', {}, leadOn(moved)]] : []
+    // VitePress adds the base to no link in the head.
+    const icon: HeadConfig = ['link', { rel: 'icon', type: 'image/svg+xml', href: `${siteData.base}mark.svg` }]
+    return moved ? [icon, ['script', {}, leadOn(moved)]] : [icon]
   },
   locales: {
     root: {

@@ -3,9 +3,12 @@
 // VitePress ships these functions to the browser as text, so each must stand on its own: no imports, no helpers
 // outside its body.
 
+/** Begins terms of a section that are searched and not shown. The functions below spell it themselves. */
+export const HIDDEN = '\u2063'
+
 /**
- * Terms of a page: words and numbers as they are, names also in their parts (`robotSn` → `robot`,
- * `sn`), hexadecimal numbers also bare and without their zeros (`0x0A01` → `0A01`, `A01`), and every pair of
+ * Terms of a page: words and numbers as they are, names also in their parts and without strokes (`robot_sn` → `robot`,
+ * `sn`, `robotsn`), hexadecimal numbers also bare and without their zeros (`0x0A01` → `0A01`, `A01`), and every pair of
  * neighbouring Chinese characters, since Chinese has no spaces to split at.
  */
 export function indexTerms(text: string): string[] {
@@ -20,6 +23,7 @@ export function indexTerms(text: string): string[] {
       terms.push(run)
       const parts = run.split(/_+|(?<=[a-z0-9])(?=[A-Z])/).filter(Boolean)
       if (parts.length > 1) terms.push(...parts)
+      if (run.includes('_')) terms.push(parts.join(''))
     } else {
       for (const character of run) terms.push(character)
       for (let at = 0; at + 1 < run.length; at++) terms.push(run.slice(at, at + 2))
@@ -29,7 +33,8 @@ export function indexTerms(text: string): string[] {
 }
 
 /**
- * Terms of a query: whole words and names, and Chinese as pairs; a single character only where the
+ * Terms of a query: whole words, names also in each of their parts and joined as any language joins them, codes also
+ * as the block of codes that they are in, and Chinese as pairs; a single character only where the
  * query has no more, or every page would answer to 电 when asked for 充电. Words that only ask (how, 怎么)
  * are left out, unless the query has no others.
  */
@@ -37,7 +42,18 @@ export function queryTerms(query: string): string[] {
   const terms = (text: string) => {
     const found: string[] = []
     for (const run of text.match(/[A-Za-z0-9_]+|[\u3400-\u9fff\uf900-\ufaff]+/g) ?? []) {
-      if (/^[A-Za-z0-9_]/.test(run) || run.length === 1) found.push(run)
+      if (/^0[xX][0-9A-Fa-f]{1,4}$/.test(run)) {
+        const code = `0x${run.slice(2).padStart(4, '0')}`
+        found.push(run, `${code.slice(0, 4)}xx`, `${code.slice(0, 5)}x`)
+      } else if (/^[A-Za-z0-9_]/.test(run)) {
+        found.push(run)
+        // `GetRobotSnRequest`: what lies in it is found although no page has the whole.
+        const parts = run.split(/_+|(?<=[a-z0-9])(?=[A-Z])/).filter(Boolean)
+        if (parts.length < 2 || parts.length > 8) continue
+        for (let from = 0; from < parts.length; from++) {
+          for (let to = from + 1; to <= parts.length; to++) found.push(parts.slice(from, to).join(''))
+        }
+      } else if (run.length === 1) found.push(run)
       else for (let at = 0; at + 1 < run.length; at++) found.push(run.slice(at, at + 2))
     }
     return found
@@ -52,13 +68,20 @@ export function queryTerms(query: string): string[] {
   return found.length ? found : terms(query)
 }
 
-/** How much a hit counts by where it is: the head of an operation's page before all, then what all share, lists last. */
+/**
+ * How much a hit counts by where it is: the head of an operation's page before all, then what all share, then lists, and
+ * the pages for people who write the spec last.
+ */
 export function weight(id: string, _term: string, stored?: Record<string, unknown>): number {
   const page = id.split('#')[0]
   let weight = 1
   if (/\/reference\/(commands|reports|streams)\//.test(page)) weight = 3
   else if (/\/reference\/(wire|results)\.html$/.test(page)) weight = 2
-  else if (/\/reference\/(changelog|open-questions|codes|errors)\.html$|\/reference\/$/.test(page)) weight = 0.4
+  else if (/\/reference\/codes\.html$|\/reference\/$/.test(page)) weight = 0.4
+  else if (/\/reference\/(changelog|open-questions)\.html$/.test(page)) weight = 0.1
+  // What the owner of the protocol needs to write it.
+  else if (/\/reference\/(language|errors|cli)\.html$/.test(page)) weight = 0.1
+  else if (/\/guides\/(adding-a-command|changing-safely|editors|answers|releases|targets|lint|what-changed)\.html$/.test(page)) weight = 0.3
   // A section under no other is the head of its page.
   const head = Array.isArray(stored?.titles) && stored.titles.length === 0
   return head ? weight * 3 : weight
@@ -74,6 +97,7 @@ export function weight(id: string, _term: string, stored?: Record<string, unknow
 export function finish(hit: Record<string, any>): boolean {
   hit.score *= 4 ** new Set(hit.queryTerms).size
   const text = String(hit.text ?? '')
+    .replace(/\u2063[^]*$/, '')
     .replace(/&(?:#\w+|\w+);/g, (entity) => ({ '&quot;': '"', '&#39;': "'", '&amp;': '&' })[entity] ?? ' ')
     .replace(/\s+/g, ' ')
     .trim()

@@ -2,8 +2,10 @@
 
 import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
 import { hexNumber, protocol } from '../lab/fc'
+import { codeAnchor, isOpen, outsideBlocks, unusedRuns } from './code-map'
+import { html } from './markdown/html'
 import { navigation } from './navigation'
-import { miniSearch } from './search-terms'
+import { HIDDEN, miniSearch } from './search-terms'
 
 /** The operation of a page, and the group that it stands in. */
 function operationOf(page: string) {
@@ -11,6 +13,41 @@ function operationOf(page: string) {
   const operation = found && protocol.operations.find(({ name }) => name === found[2])
   const group = found && navigation.groups.find(({ items }) => items.some(({ link }) => link === found[1]))
   return operation && group ? { operation, group } : null
+}
+
+/** The names that packages give an operation, its messages and its handlers, as the samples of its page spell them. */
+function namesIn(page: string, operation: string): string {
+  const bare = (name: string) => name.replaceAll('_', '').toLowerCase()
+  const samples = page.match(/<pre\b[\s\S]*?<\/pre>/g)?.join(' ').replace(/<[^>]*>/g, '') ?? ''
+  const names = new Set(samples.match(/[A-Za-z_]\w*/g)?.filter((name) => bare(name).includes(bare(operation))))
+  return [...names].join(' ')
+}
+
+/** A section of the page of codes for each code that no operation has, and one for all outside of the ranges. */
+function unusedCodes(page: string, language: 'zh' | 'en'): string {
+  const say = (zh: string, en: string) => (language === 'en' ? en : zh)
+  const section = (anchor: string, title: string, text: string, terms: string) =>
+    `<h2 id="${anchor}" tabindex="-1">${title} <a class="header-anchor" href="#${anchor}"></a></h2><p>${html(text)} ${HIDDEN}${terms}</p>`
+  const taken = new Set(Array.from(page.matchAll(/<tr id="0x([0-9a-f]{4})"/g), ([, hex]) => Number.parseInt(hex, 16)))
+  const unused = unusedRuns(taken).flatMap(({ first, last, range }) => {
+    const { use, [language]: about } = protocol.ranges[range]
+    const text = isOpen({ use })
+      ? use === 'commands'
+        ? say('可用：没有接口使用，可以分配给新指令。', 'Free: no operation has it. A new command may take it.')
+        : say('可用：没有接口使用，可以分配给新上报。', 'Free: no operation has it. A new report may take it.')
+      : say(`没有接口使用，也不再分配。号段：${about}`, `No operation has it, and new ones must not take it. Range: ${about}`)
+    return Array.from({ length: last - first + 1 }, (_, offset) => {
+      const code = first + offset
+      return section(codeAnchor(code), `${hexNumber(code, 4)} = ${code}`, text, '')
+    })
+  })
+  const outside = section(
+    'outside',
+    say('号段以外的功能码', 'Codes outside of all ranges'),
+    say('没有接口使用，不在任何号段中，不要分配。', 'No operation has such a code, and no range includes it: do not use it.'),
+    outsideBlocks().join(' '),
+  )
+  return unused.join('') + outside
 }
 
 /** Sections that every operation's page has, and that say nothing of it alone. */
@@ -21,24 +58,25 @@ const COMMON = /^(?:代码|code|结果码|result-codes|出处|provenance)$/
  * and its tables; not its bytes, its samples and what stands on every such page.
  */
 export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): string {
-  const html = md.render(source, env)
+  const page = md.render(source, env)
   if (env.frontmatter?.search === false) return ''
   const aliases: string[] = env.frontmatter?.aliases ?? []
-  const prose = html
+  const prose = page
     .replace(/<br>/g, ' ')
     // What a guide is also looked for by; a generated page says so itself.
-    .replace('</h1>', aliases.length ? `</h1><p>${aliases.join(' · ')}</p>` : '</h1>')
+    .replace('</h1>', aliases.length ? `</h1><p>${html(aliases.join(' · '))}</p>` : '</h1>')
     .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|AudienceFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
     .replace(/<div class="language-[\s\S]*?<\/pre>[\s\S]*?<\/div>/g, '')
     .replace(/<div class="fc-samples"[^>]*>(?:<input[^>]*><label[^>]*>[^<]*<\/label>)*/g, '<div>')
+  const language: 'zh' | 'en' = env.relativePath?.startsWith('en/') ? 'en' : 'zh'
+  if (/reference\/codes\.md$/.test(env.relativePath ?? '')) return prose + unusedCodes(page, language)
   const found = operationOf(env.relativePath ?? '')
   if (!found) return prose
   const { operation, group } = found
   const code = operation.code === null ? [] : [hexNumber(operation.code, 4), String(operation.code)]
   const title = ['', operation.name, ...code].join(' · ')
-  const language: 'zh' | 'en' = env.relativePath.startsWith('en/') ? 'en' : 'zh'
-  const context = `<p>${group[language]} ${group.about?.[language] ?? ''}</p>`
+  const context = `<p>${html(`${group[language]} ${group.about?.[language] ?? ''}`)} ${HIDDEN}${namesIn(page, operation.name)}</p>`
   const [head, ...sections] = prose.split(/(?=<h2\b)/)
   const own = sections.filter((section) => !COMMON.test(/<h2 id="([^"]*)"/.exec(section)?.[1] ?? ''))
   return (

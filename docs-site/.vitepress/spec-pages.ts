@@ -49,11 +49,9 @@ export function specPlaces(text: string): Map<number, string[]> {
   return places
 }
 
-/** One page a file. */
-export function specPages() {
-  return specFiles().map((file) => {
-    const text = readFileSync(path.join(folder, `${file}.yaml`), 'utf8')
-    const ticks = '`'.repeat(4)
-    return { params: { file, title: `spec/${file}.yaml` }, content: `${ticks}yaml\n${text.trimEnd()}\n${ticks}` }
-  })
-}
+/** The text of a file of the spec. */
+export const specText = (file: string) => readFileSync(path.join(folder, `${file}.yaml`), 'utf8').trimEnd()
+
+/** One page a file. Its fence names the file: VitePress would obey an `@include` in a text of it. */
+export const specPages = () =>
+  specFiles().map((file) => ({ params: { file, title: `spec/${file}.yaml` }, content: `\`\`\`fc-source\n${file}\n\`\`\`` }))

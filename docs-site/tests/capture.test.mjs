@@ -154,7 +154,9 @@ test('the state goes through an address and back, and a foreign address is none'
   // An emptied box for the id gives no number; the rest stays.
   assert.deepEqual(lab.fromHash(lab.toHash({ ...state, id: '' })), { ...state, id: 1 })
   assert.match(lab.toHash(state), /^lab=[A-Za-z0-9_-]+$/)
-  for (const other of ['', '#decode', '#lab=', '#lab=!!', '#lab=AAAA', '#' + lab.toHash({ ...state, side: 'x' })]) {
+  // A frame of another page links to the laboratory by its bytes.
+  assert.equal(lab.fromHash('#hex=fcAA01')?.paste, 'FC AA 01')
+  for (const other of ['#hex=', '#hex=f', '#hex=zz', '', '#decode', '#lab=', '#lab=!!', '#lab=AAAA', '#' + lab.toHash({ ...state, side: 'x' })]) {
     assert.equal(lab.fromHash(other), null, other)
   }
 })

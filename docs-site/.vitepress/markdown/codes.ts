@@ -3,7 +3,10 @@
 import { readFileSync } from 'node:fs'
 import path from 'node:path'
 import { hexNumber, protocol } from '../../lab/fc'
+import { codeAnchor, isOpen, nextFree, unusedRuns, type UnusedRun } from '../code-map'
 import type { Core, Tokens } from './tables'
+
+type Token = Tokens[number]
 
 /** The rows of a table's body: of each where it begins, where the next does, and its first cell. */
 function rowsOf(tokens: Tokens, table: number) {
@@ -32,11 +35,11 @@ function operations(state: Parameters<Core>[0]): Tokens {
 const CODED = /^`0x[0-9A-F]{4}`(?: = |<br>)/
 
 /**
- * The map of codes. Committed, it lists neither the codes in use nor the next free one: what any new command
- * changes would keep two branches from being merged. Here it has both, sorted.
+ * The map of codes. Committed, it lists neither the codes in use nor the free ones: what any new command
+ * changes would keep two branches from being merged. Here it has both, the free ones first, each with an anchor.
  */
 export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
-  const named = page.findIndex((token) => token.content === '<a id="in-use"></a>')
+  const named = page.findIndex((token) => token.type === 'heading_open' && token.attrGet('id') === 'in-use')
   const place = page.findIndex((token, index) => index > named && token.type === 'heading_close') + 1
   // In the place of the sentence that says where they are listed.
   const rest = page.findIndex((token, index) => index > place && token.type === 'paragraph_close') + 1
@@ -46,7 +49,12 @@ export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
   for (const table of tables) {
     const rows = rowsOf(tokens, table)
     const coded = rows.filter(({ first }) => CODED.test(first))
-    for (const { first } of coded) taken.add(parseInt(first.slice(3), 16))
+    for (const { from, first } of coded) {
+      const code = parseInt(first.slice(3), 16)
+      // A stream may have the code of its command.
+      if (!taken.has(code)) tokens[from].attrSet('id', codeAnchor(code))
+      taken.add(code)
+    }
     if (!coded.length || coded.length < rows.length) continue
     const sorted = [...rows].sort((a, b) => (a.first < b.first ? -1 : 1)).flatMap(({ from, to }) => tokens.slice(from, to))
     tokens.splice(rows[0].from, sorted.length, ...sorted)
@@ -58,23 +66,58 @@ export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
     const inline = state.md.parse(words, {}).find(({ type }) => type === 'inline')!
     return [close, [new state.Token(`${kind}_open`, kind, 1), inline, new state.Token(`${kind}_close`, kind, -1)]]
   }
-  const made: [number, Tokens][] = []
   const ranges = tables.find((table) => rowsOf(tokens, table).some(({ first }) => first.includes('` … `')))
   if (ranges === undefined) return tokens
+  const made: [number, Tokens][] = []
   const head = tokens.findIndex((token, index) => index > ranges && token.type === 'tr_open')
   made.push(cell(head, 'th', english ? 'Unused' : '未使用'), cell(head, 'th', english ? 'Next free' : '下一个可用'))
-  for (const { from, first } of rowsOf(tokens, ranges)) {
-    const [low, high] = Array.from(first.matchAll(/0x([0-9A-F]{4})/g), ([, hex]) => parseInt(hex, 16))
-    const use = protocol.ranges.find((range) => range.first === low)?.use
-    const all = Array.from({ length: high - low + 1 }, (_, offset) => low + offset)
-    const free = all.filter((code) => !taken.has(code))
-    // After the largest that is taken, or the first gap once the end is reached, as `fcproto new` does it.
-    const next = free.find((code) => !all.some((other) => other > code && taken.has(other))) ?? free[0]
-    const open = (use === 'commands' || use === 'reports') && next !== undefined
-    const code = open ? `\`${hexNumber(next, 4)}\`` : '—'
-    made.push(cell(from, 'td', String(free.length)), cell(from, 'td', code))
+  const runs = unusedRuns(taken)
+  const rangeAt = ({ first }: { first: string }) => protocol.ranges.findIndex((range) => range.first === parseInt(first.slice(3), 16))
+  for (const row of rowsOf(tokens, ranges)) {
+    const at = rangeAt(row)
+    const own = runs.filter(({ range }) => range === at)
+    const next = at >= 0 && isOpen(protocol.ranges[at]) ? nextFree(at, taken) : undefined
+    const count = own.reduce((sum, { first, last }) => sum + last - first + 1, 0)
+    made.push(cell(row.from, 'td', String(count)), cell(row.from, 'td', next === undefined ? '—' : `\`${hexNumber(next, 4)}\``))
+    // Those of an open range are in the list of free codes.
+    if (at >= 0 && !isOpen(protocol.ranges[at])) anchorsInto(tokens[row.from + 2], own, state)
   }
   // From the end, so that the places of the others hold; two at one place in their order.
   for (const [at, cells] of made.reverse()) tokens.splice(at, 0, ...cells)
+  // Ranges for new operations come first.
+  const rows = rowsOf(tokens, ranges)
+  const isFirst = (row: (typeof rows)[number]) => protocol.ranges[rangeAt(row)] !== undefined && isOpen(protocol.ranges[rangeAt(row)])
+  const sorted = [...rows.filter(isFirst), ...rows.filter((row) => !isFirst(row))].flatMap(({ from, to }) => tokens.slice(from, to))
+  tokens.splice(rows[0].from, sorted.length, ...sorted)
+  const section = tokens.findLastIndex((token, index) => index < ranges && token.type === 'heading_open')
+  tokens.splice(section, 0, ...freeCodes(runs, taken, english, state))
+  return tokens
+}
+
+/** A cell gets an anchor for each code of the runs. */
+function anchorsInto(cell: Token, runs: UnusedRun[], state: Parameters<Core>[0]): void {
+  const anchor = new state.Token('html_inline', '', 0)
+  for (const { first, last } of runs) for (let code = first; code <= last; code++) anchor.content += `<a id="${codeAnchor(code)}"></a>`
+  if (anchor.content) cell.children = [anchor, ...(cell.children ?? [])]
+}
+
+/** The section of codes that a new operation may take. */
+function freeCodes(runs: UnusedRun[], taken: Set<number>, english: boolean, state: Parameters<Core>[0]): Tokens {
+  const free = runs.filter(({ range }) => isOpen(protocol.ranges[range]))
+  if (free.length === 0) return []
+  const spelled = (code: number) => `\`${hexNumber(code, 4)}\``
+  const rows = free.map(({ first, last, range }) => {
+    const codes = first === last ? spelled(first) : `${spelled(first)} … ${spelled(last)}`
+    const next = nextFree(range, taken)
+    const isNext = next !== undefined && first <= next && next <= last
+    return `| ${codes} | ${last - first + 1} | ${protocol.ranges[range].use === 'commands' ? (english ? 'new commands' : '新增指令') : english ? 'new reports' : '新增主动上报'} | ${isNext ? spelled(next) : '—'} |`
+  })
+  const [title, text, outside, ...heads] = english
+    ? ['Free codes', 'A new operation takes the next free code; `fcproto new` finds it.', 'Codes outside of all ranges are not assigned.', 'Free', 'Number', 'For', 'Next free']
+    : ['可用的功能码', '新接口取下一个可用的功能码，由 `fcproto new` 给出。', '号段以外的功能码不分配。', '可用', '个数', '用于', '下一个可用']
+  const markdown = `<a id="free"></a>\n\n## ${title}\n\n${text}\n\n| ${heads.join(' | ')} |\n|---|---|---|---|\n${rows.join('\n')}\n\n<a id="outside"></a>${outside}\n`
+  const tokens = state.md.parse(markdown, {})
+  const table = tokens.findIndex(({ type }) => type === 'table_open')
+  rowsOf(tokens, table).forEach(({ from }, index) => anchorsInto(tokens[from + 2], [free[index]], state))
   return tokens
 }

@@ -7,13 +7,12 @@ import { codec } from '../../lab/codec'
 import { partsOf } from '../../lab/engine/parts'
 import { readPaste } from '../../lab/engine/paste'
 import { decodeFrame, messageFrame, protocol } from '../../lab/fc'
-import { specPlaces } from '../spec-pages'
+import { specPlaces, specText } from '../spec-pages'
+import { html } from './html'
 import { chains } from './states'
 
 /** A value as a Vue prop inside a double-quoted attribute. */
-function prop(value: unknown): string {
-  return JSON.stringify(value).replace(/&/g, '&amp;').replace(/"/g, '&quot;').replace(/</g, '\\u003c').replace(/\{\{/g, '{ {')
-}
+const prop = (value: unknown) => html(JSON.stringify(value).replace(/</g, '\\u003c'))
 
 function frame(text: string): string {
   const [whole, ...more] = readPaste(text, []).segments
@@ -67,7 +66,7 @@ function layouts(text: string): string {
     return { label, cells }
   })
   return `<div class="fc-layouts">${rows
-    .map((row) => `<DoorLayout :cells="${prop(row.cells)}" label="${row.label}" />`)
+    .map((row) => `<DoorLayout :cells="${prop(row.cells)}" label="${html(row.label)}" />`)
     .join('')}</div>\n`
 }
 
@@ -92,13 +91,18 @@ const DRAWN: Record<string, (text: string) => string> = {
   mermaid,
 }
 
+/** The fence that shows a file of the spec, which it names. */
+const SOURCE = 'fc-source'
+
 export function drawnFences(md: MarkdownRenderer): void {
   const plain = md.renderer.rules.fence!
   md.renderer.rules.fence = (tokens, index, options, env, self) => {
     const { info, content } = tokens[index]
     const draw = DRAWN[info.trim()]
     if (draw) return draw(content)
-    const html = plain(tokens, index, options, env, self)
-    return env.frontmatter?.source ? source(html, content) : html
+    if (info.trim() !== SOURCE) return plain(tokens, index, options, env, self)
+    const text = specText(content.trim())
+    const shown = Object.assign(Object.create(tokens[index]), { info: 'yaml', content: `${text}\n` })
+    return source(plain(tokens.with(index, shown), index, options, env, self), text)
   }
 }

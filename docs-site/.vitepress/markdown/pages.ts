@@ -24,7 +24,8 @@ export const API = /^\/api\//
 function apiLinks(tokens: Tokens): void {
   for (const token of tokens) {
     for (const child of token.children ?? []) {
-      if (child.type === 'link_open' && API.test(child.attrGet('href') ?? '')) child.attrSet('target', '_self')
+      // With `target`, VitePress would leave out the base.
+      if (child.type === 'link_open' && API.test(child.attrGet('href') ?? '')) child.attrJoin('class', 'vp-raw')
     }
   }
 }

@@ -3,12 +3,11 @@
 // Markdown see one fence below the other.
 
 import type { MarkdownRenderer } from 'vitepress'
+import { html as escaped } from './html'
 import type { Core, Tokens } from './tables'
 
 /** A fence with a name: its language, and what its tab is called. */
 const NAMED = /^\w+ \[([^\]]+)\]$/
-
-const escaped = (text: string) => text.replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/"/g, '&quot;')
 
 function html(state: Parameters<Core>[0], text: string): Tokens[number] {
   const token = new state.Token('html_block', '', 0)

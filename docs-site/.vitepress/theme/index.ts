@@ -1,22 +1,28 @@
 import { onContentUpdated, type Theme } from 'vitepress'
 import DefaultTheme from 'vitepress/theme-without-fonts'
+import Layout from './Layout.vue'
+import { showActiveItem } from './sidebar'
 import { defineAsyncComponent, onMounted } from 'vue'
 import ByteRuler from './components/ByteRuler.vue'
 import DoorLayout from './components/DoorLayout.vue'
 import FrameBytes from './components/FrameBytes.vue'
 import SequencePicture from './components/SequencePicture.vue'
 import StatePicture from './components/StatePicture.vue'
+import { namePagesBelowBase } from './missing'
 import { followChoice, pressRemembered } from './samples'
 import './style.css'
 import './lab.css'
 
 export default {
   extends: DefaultTheme,
+  Layout,
   setup() {
     onContentUpdated(pressRemembered)
+    onContentUpdated(showActiveItem)
     onMounted(followChoice)
   },
-  enhanceApp({ app }) {
+  enhanceApp({ app, router, siteData }) {
+    namePagesBelowBase(router, siteData)
     app.component('ByteRuler', ByteRuler)
     app.component('DoorLayout', DoorLayout)
     app.component('FrameBytes', FrameBytes)

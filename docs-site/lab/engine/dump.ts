@@ -1,5 +1,5 @@
-// Hex dumps: lines of an offset, bytes, and perhaps the same bytes as text. Those of xxd, hexdump,
-// od, tcpdump -X, Wireshark (bytes of a packet, or a followed stream) and of this site.
+// Hex dumps: lines of an offset, bytes, and perhaps the same bytes as text. xxd, hexdump, od, tcpdump -X, Wireshark,
+// gdb, PowerShell and this site print them.
 
 /** A run of bytes, and which of several streams it belongs to. */
 export interface Segment {
@@ -7,7 +7,20 @@ export interface Segment {
   bytes: Uint8Array
 }
 
-export type Dump = { segments: Segment[] } | { missing: { line: number; offset: number; before: number } }
+interface Missing {
+  missing: { line: number; offset: number; before: number }
+}
+
+export type Dump = { segments: Segment[] } | Missing
+
+interface Group {
+  gap: number
+  /** Column behind its last digit, counted from the offset. */
+  end: number
+  digits: string
+  /** A number with `0x`: the lower byte first. */
+  swapped: boolean
+}
 
 interface Line {
   /** Counted from 1. */
@@ -16,12 +29,16 @@ interface Line {
   offset: string
   /** Followed by a colon or opened by 0x: surely an offset. */
   marked: boolean
-  groups: { gap: number; digits: string }[]
+  /** The text behind the offset. */
+  rest: string
+  groups: Group[]
   /** The line before is repeated down to here. */
   squeezed: boolean
 }
 
-const OFFSET = /^(\s*)(0x)?([0-9a-fA-F]{4,8})(:?)(?=\s|$)/
+const OFFSET = /^(\s*)(0x)?([0-9a-fA-F]{4,16})(?: <[^>]*>)?(:?)(?=\s|$)/
+/** Lines that PowerShell prints above a dump. */
+const CAPTION = /^\s*(?:(?:0?[0-9a-f] ){8,}.*|[-\s]+|(?:Offset|Label|Path)\b.*)$/i
 
 /** The lines of a text that look like those of a dump, if it can be one. */
 function linesOf(text: string): Line[] {
@@ -32,50 +49,83 @@ function linesOf(text: string): Line[] {
     if (/^\s*\*\s*$/.test(line)) squeezed = true
     const found = OFFSET.exec(line)
     if (!found) {
-      others ||= line.trim() !== '' && !squeezed
+      others ||= line.trim() !== '' && !squeezed && !CAPTION.test(line)
       return
     }
     const [all, indent, prefix, offset, colon] = found
-    const groups: Line['groups'] = []
-    for (const [, gap, token] of line.slice(all.length).matchAll(/(\s+)(\S+)/g)) {
-      if (!/^(?:[0-9a-fA-F]{2})+$/.test(token)) break
-      groups.push({ gap: gap.length, digits: token })
+    const rest = line.slice(all.length)
+    const groups: Group[] = []
+    for (const { 0: all, 1: gap, 2: token, index } of rest.matchAll(/(\s+)(\S+)/g)) {
+      const [, number, digits] = /^(0x)?((?:[0-9a-fA-F]{2})+)$/.exec(token) ?? []
+      if (digits === undefined) break
+      groups.push({ gap: gap.length, end: index + all.length, digits, swapped: number !== undefined })
     }
-    lines.push({ number: index + 1, indent, offset, marked: colon !== '' || prefix !== undefined, groups, squeezed })
+    lines.push({ number: index + 1, indent, offset, marked: colon !== '' || prefix !== undefined, rest, groups, squeezed })
     squeezed = false
   })
-  // Other lines stand between those of a dump only where a tool marks its offsets, as tcpdump does.
+  // Other lines are between those of a dump only where a tool marks its offsets, as tcpdump does.
   return others && lines.some(({ marked }) => !marked) ? [] : lines
 }
 
-/** Bytes of a line, of which at most `cap` belong to it: what follows is the column of text. */
-function bytesOf({ groups }: Line, cap: number, swapped: boolean): number[] {
+/** How a line spells its bytes: one after the other, the lower byte of a group first, or in bits. */
+interface Order {
+  is: 'plain' | 'swapped' | 'bits'
+  /** Column where the bytes end; `xxd -e` leaves a gap before the last of them. */
+  end?: number
+}
+const PLAIN: Order = { is: 'plain' }
+
+/** Bytes of a line, of which at most `cap` belong to it: the column of text follows. */
+function bytesOf({ groups }: Line, cap: number, order: Order): number[] {
   const bytes: number[] = []
-  for (const { gap, digits } of groups) {
-    if (bytes.length >= cap || (bytes.length > 0 && gap > 2)) break
+  for (const { gap, end, digits, swapped } of groups) {
+    const outside = order.end === undefined ? bytes.length > 0 && gap > 2 : end > order.end
+    if (bytes.length >= cap || outside) break
+    if (order.is === 'bits') {
+      bytes.push(Number.parseInt(digits, 2))
+      continue
+    }
     const pairs = digits.match(/../g) ?? []
-    for (const pair of swapped ? pairs.reverse() : pairs) bytes.push(Number.parseInt(pair, 16))
+    for (const pair of swapped || order.is === 'swapped' ? pairs.reverse() : pairs) bytes.push(Number.parseInt(pair, 16))
   }
   return bytes.slice(0, cap)
 }
 
-/** The bytes of a dump, or where it has a hole; `null` if the text is none. */
-export function readDump(text: string): Dump | null {
+/** The bytes of a dump, or where it has a hole; `null` if the text is none. `heads` decide between two readings. */
+export function readDump(text: string, heads: number[][] = []): Dump | null {
   const lines = linesOf(text)
   const first = lines[0]
   if (!first) return null
-  // `hexdump` and `od` without options print words of two bytes, the lower byte first, behind seven digits.
-  const seven = lines.every(({ offset, marked }) => offset.length === 7 && !marked)
-  const swapped = seven && lines.some(({ groups }) => groups.length > 0) && lines.every(({ groups }) => groups.every(({ digits }) => digits.length === 4))
+  // `od` and `hexdump` print numbers of several notations and sizes behind six or seven digits.
+  const { length } = first.offset
+  if ((length === 6 || length === 7) && lines.every(({ offset, marked }) => offset.length === length && !marked)) return readNumbered(lines)
 
-  // Seven digits are octal where `od` wrote them.
-  for (const radix of seven ? [16, 8] : [16]) {
-    const read = walk(lines, radix, swapped)
+  const order = orderOf(lines, heads)
+  for (const radix of first.marked && length === 8 ? [16, 10] : [16]) {
+    const read = walk(lines, radix, order)
     if ('segments' in read) return isDump(lines, radix) ? read : null
   }
   // With the marks of a dump it is one all the same: better to say what is missing than to read offsets as bytes.
   const marked = first.marked || (Number.parseInt(first.offset, 16) === 0 && lines.length > 1)
-  return marked ? walk(lines, 16, swapped) : null
+  return marked ? walk(lines, 16, order) : null
+}
+
+/** The order of `xxd -e`, which its column of text or the head of a frame shows; bits where `xxd -b` printed them. */
+function orderOf(lines: Line[], heads: number[][]): Order {
+  const [first, second] = lines
+  const all = (digits: RegExp) => lines.every(({ marked, groups }) => marked && groups.length > 0 && (groups[0].gap > 2 || digits.test(groups[0].digits)))
+  const size = second ? Number.parseInt(second.offset, 16) - Number.parseInt(first.offset, 16) : 16
+  const bits = first.groups.filter(({ digits }) => /^[01]{8}$/.test(digits)).length
+  if (all(/^[01]{8}$/) && (second ? bits === size : bits <= 6)) return { is: 'bits' }
+  if (!all(/^[0-9a-fA-F]{8}$/)) return PLAIN
+  const swapped: Order = { is: 'swapped', end: first.groups[Math.ceil(size / 4) - 1]?.end }
+  const agrees = (order: Order) => {
+    const bytes = bytesOf(first, size, order)
+    if (heads.some((head) => head.every((byte, index) => bytes[index] === byte))) return true
+    const text = bytes.map((byte) => (byte > 0x20 && byte < 0x7f ? String.fromCharCode(byte) : '.')).join('')
+    return bytes.length > 4 && first.rest.trimEnd().slice(-bytes.length) === text
+  }
+  return !agrees(PLAIN) && agrees(swapped) ? swapped : PLAIN
 }
 
 /** Plain hex can have four digits in front, too: a dump begins at zero, marks its offsets, or counts. */
@@ -86,8 +136,8 @@ function isDump(lines: Line[], radix: number): boolean {
   return second !== undefined && Number.parseInt(second.offset, radix) > Number.parseInt(first.offset, radix)
 }
 
-/** Reads the lines with offsets in one radix, or stops at the first that does not continue what is before. */
-function walk(lines: Line[], radix: number, swapped: boolean): Dump {
+/** Reads the lines with offsets in one radix, or stops at the first that does not continue the lines before. */
+function walk(lines: Line[], radix: number, order: Order): Dump {
   const segments: { stream: number; indent: string; bytes: number[] }[] = []
   const next = new Map<string, number>()
   const streams: string[] = []
@@ -107,25 +157,15 @@ function walk(lines: Line[], radix: number, swapped: boolean): Dump {
     const expected = next.get(line.indent)
     const last = segments.at(-1)
     if (line.squeezed && last && expected !== undefined && offset > expected) {
-      const repeated = last.bytes.slice(-width)
-      while (last.bytes.length > 0 && (next.get(line.indent) ?? 0) < offset) {
-        const some = repeated.slice(0, offset - (next.get(line.indent) ?? 0))
-        last.bytes.push(...some)
-        next.set(line.indent, (next.get(line.indent) ?? 0) + some.length)
-      }
+      repeat(last.bytes, width, offset - expected)
+      next.set(line.indent, offset)
     } else if (expected !== undefined && offset !== 0 && offset !== expected) {
-      // The last line of `hexdump` and `od` is only an offset: the length, one less than the words say if it is odd.
-      if (swapped && line.groups.length === 0 && offset === expected - 1 && last) {
-        last.bytes.pop()
-        continue
-      }
       return { missing: { line: line.number, offset, before: expected } }
     }
     const following = followers[index]
     const after = following ? Number.parseInt(following.offset, radix) : Number.NaN
-    const inside = after > offset && after - offset <= 64 && !following?.squeezed
-    const known = inside && !(swapped && following?.groups.length === 0)
-    const bytes = bytesOf(line, known ? after - offset : width, swapped)
+    const known = after > offset && after - offset <= 64 && !following?.squeezed
+    const bytes = bytesOf(line, known ? after - offset : width, order)
     if (known) width = Math.max(bytes.length, segments.length === 0 ? 0 : 1)
     next.set(line.indent, offset + bytes.length)
     // A block that begins anew is a packet of its own; so is the other side's turn.
@@ -133,4 +173,136 @@ function walk(lines: Line[], radix: number, swapped: boolean): Dump {
     else if (bytes.length > 0) segments.push({ stream: streams.indexOf(line.indent), indent: line.indent, bytes })
   }
   return { segments: segments.map(({ stream, bytes }) => ({ stream, bytes: Uint8Array.from(bytes) })) }
+}
+
+/** More than this is no dump of a capture: a star may stand for gigabytes. */
+const REPEATED_LIMIT = 4 * 1024 * 1024
+
+/** Adds the last row again and again, as `*` in a dump asks for. */
+function repeat(bytes: number[], width: number, count: number): void {
+  const row = bytes.slice(-width)
+  if (row.length === 0) return
+  for (let at = 0; at < Math.min(count, REPEATED_LIMIT); at++) bytes.push(row[at % row.length])
+}
+
+/** A way to spell one number, with the number of bytes that it has. */
+interface Notation {
+  size: number
+  spelled: RegExp
+  read: (token: string) => bigint
+}
+
+const hexadecimal = (token: string) => BigInt(`0x${token}`)
+const octal = (token: string) => BigInt(`0o${token}`)
+const NOTATIONS: Notation[] = [
+  { size: 1, spelled: /^[0-9a-fA-F]{2}$/, read: hexadecimal },
+  { size: 1, spelled: /^[0-3][0-7]{2}$/, read: octal },
+  { size: 2, spelled: /^[0-9a-fA-F]{4}$/, read: hexadecimal },
+  { size: 2, spelled: /^[01][0-7]{5}$/, read: octal },
+  { size: 4, spelled: /^[0-9a-fA-F]{8}$/, read: hexadecimal },
+  { size: 4, spelled: /^[0-3][0-7]{10}$/, read: octal },
+  { size: 8, spelled: /^[0-9a-fA-F]{16}$/, read: hexadecimal },
+  { size: 8, spelled: /^[01][0-7]{21}$/, read: octal },
+  { size: 1, spelled: /^[-+]?\d{1,3}$/, read: BigInt },
+  { size: 2, spelled: /^[-+]?\d{1,5}$/, read: BigInt },
+  { size: 4, spelled: /^[-+]?\d{1,10}$/, read: BigInt },
+  { size: 8, spelled: /^[-+]?\d{1,20}$/, read: BigInt },
+]
+
+/** The numbers of a line, without a column of text. */
+const tokensOf = ({ rest }: Line) => rest.replace(/\s{2}[>|].*$/, '').trim().split(/\s+/).filter(Boolean)
+
+/** The bytes of numbers, the lower byte of each first. */
+function littleEndian(tokens: string[], { size, read }: Notation): number[] {
+  return tokens.flatMap((token) => {
+    const value = BigInt.asUintN(64, read(token))
+    return Array.from({ length: size }, (_, at) => Number((value >> BigInt(8 * at)) & 0xffn))
+  })
+}
+
+/** Characters as `od -c` prints them, four columns each; `null` if the line is none, or has not `count` of them. */
+const NAMED: Record<string, number> = { '\\0': 0, '\\a': 7, '\\b': 8, '\\t': 9, '\\n': 10, '\\v': 11, '\\f': 12, '\\r': 13 }
+function characters({ rest }: Line, count: number | null): number[] | null {
+  const bytes: number[] = []
+  const end = count === null ? rest.length : 4 * count
+  if (rest.length <= end - 4 || rest.slice(end).trim() !== '') return null
+  for (let at = 0; at < Math.min(end, rest.length); at += 4) {
+    const cell = rest.slice(at, at + 4)
+    const word = cell.trim()
+    const byte = /^[0-3][0-7]{2}$/.test(word) ? Number.parseInt(word, 8) : NAMED[word]
+    if (byte === undefined && (word.length > 1 || word > '~')) return null
+    bytes.push(byte ?? (word === '' ? 0x20 : word.charCodeAt(0)))
+  }
+  return bytes
+}
+
+/** A dump of `od` or `hexdump`. The offsets tell how many bytes each number has. */
+function readNumbered(lines: Line[]): Dump | null {
+  const bare = lines.filter((line, index) => tokensOf(line).length === 0 && index < lines.length - 1)
+  if (bare.length > 0 || tokensOf(lines[0]).length === 0) return null
+  for (const radix of [8, 16, 10]) {
+    const digits = { 8: /^[0-7]+$/, 10: /^\d+$/, 16: /^[0-9a-fA-F]+$/ }[radix]!
+    if (!lines.every(({ offset }) => digits.test(offset))) continue
+    const read = numbered(lines, radix)
+    if (read) return read
+  }
+  // It counts from zero, so it is a dump: better to say what is missing than to read offsets as bytes.
+  if (/[^0]/.test(lines[0].offset) || lines.length < 2) return null
+  const radix = { '20': 8, '10': 16, '16': 10 }[lines[1].offset.replace(/^0+/, '')] ?? 16
+  let before = 0
+  for (const [index, { number, offset, squeezed }] of lines.entries()) {
+    const here = Number.parseInt(offset, radix)
+    if (index > 0 && !squeezed && here > before + 16) return { missing: { line: number, offset: here, before: before + 16 } }
+    before = here
+  }
+  return null
+}
+
+/** The bytes with offsets in this radix, if the lines are as long as these say. */
+function numbered(lines: Line[], radix: number): Dump | null {
+  const offsets = lines.map(({ offset }) => Number.parseInt(offset, radix))
+  if (offsets.some((offset, index) => index > 0 && offset <= offsets[index - 1])) return null
+  const full = offsets[1] - offsets[0]
+  /** Bytes of a line: a squeezed one tells only of those before it. */
+  const count = (index: number) => (index + 1 < lines.length && !lines[index + 1].squeezed ? offsets[index + 1] - offsets[index] : null)
+  const row = lines.length > 1 && !lines[1].squeezed ? full : 16
+  for (const notation of NOTATIONS) {
+    const fits = lines.every((line, index) => {
+      const tokens = tokensOf(line)
+      const bytes = count(index)
+      const enough = bytes === null ? tokens.length * notation.size <= Math.max(row, 16) : Math.ceil(bytes / notation.size) === tokens.length && bytes <= row
+      return enough && tokens.every((token) => notation.spelled.test(token) && fitsIn(token, notation))
+    })
+    if (fits) return joined(lines, offsets, (line) => littleEndian(tokensOf(line), notation), count, row)
+  }
+  if (!lines.every((line, index) => index === lines.length - 1 || characters(line, count(index)))) return null
+  return joined(lines, offsets, (line, index) => characters(line, count(index)) ?? [], count, row)
+}
+
+/** Whether a number has no more bytes than its notation gives it. */
+function fitsIn(token: string, { size, read }: Notation): boolean {
+  const value = read(token)
+  return value >= -(1n << BigInt(8 * size - 1)) && value < 1n << BigInt(8 * size)
+}
+
+function joined(lines: Line[], offsets: number[], bytesOf: (line: Line, index: number) => number[], count: (index: number) => number | null, row: number): Dump {
+  const bytes: number[] = []
+  for (const [index, line] of lines.entries()) {
+    if (line.squeezed) repeat(bytes, row, offsets[index] - offsets[0] - bytes.length)
+    bytes.push(...bytesOf(line, index).slice(0, count(index) ?? undefined))
+  }
+  return { segments: [{ stream: 0, bytes: Uint8Array.from(bytes) }] }
+}
+
+/** Numbers of `od -An`, which prints no offsets: read where a frame begins them, and only there. */
+export function readUnnumbered(text: string, heads: number[][]): Uint8Array | null {
+  const tokens = text.trim().split(/\s+/)
+  for (const notation of NOTATIONS) {
+    // Bytes in hex are hex, and decimal numbers of several bytes are anything.
+    if ((notation.size === 1 && notation.read === hexadecimal) || notation.read === BigInt) continue
+    if (!tokens.every((token) => notation.spelled.test(token))) continue
+    const bytes = littleEndian(tokens, notation)
+    if (heads.some((head) => head.every((byte, index) => bytes[index] === byte))) return Uint8Array.from(bytes)
+  }
+  return null
 }

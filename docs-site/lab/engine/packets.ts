@@ -1,13 +1,16 @@
-// Whole packets as capture tools print them: their Ethernet, IP and TCP headers come off, so that what
-// remains is the byte stream. Segments that are none stay as they are.
+// Whole packets as capture tools print and keep them: their Ethernet, IP and TCP headers come off, and the byte
+// streams remain. Segments that are no packets stay as they are.
 
 import { readUint } from '../fc'
 import type { Segment } from './dump'
 
 interface Packet {
-  /** Addresses and ports, from and to. */
-  flow: string
+  /** Addresses and ports of both ends, the sender first. */
+  from: string
+  to: string
   sequence: number
+  /** It opens a connection. */
+  opens: boolean
   payload: Uint8Array
 }
 
@@ -37,7 +40,7 @@ function inside(bytes: Uint8Array): Packet | null {
   if (offset < 20 || offset > tcp.length) return null
   const half = addresses.length / 2
   const end = (side: number) => `${addresses.subarray(side * half, side * half + half)}:${number(tcp, side * 2, 2)}`
-  return { flow: `${end(0)} ${end(1)}`, sequence: number(tcp, 4, 4), payload: tcp.subarray(offset) }
+  return { from: end(0), to: end(1), sequence: number(tcp, 4, 4), opens: (tcp[13] & 2) !== 0, payload: tcp.subarray(offset) }
 }
 
 /** Ethernet, the two "cooked" forms of Linux, BSD's loopback, or bare IP: where the version's nibble stands. */
@@ -49,25 +52,88 @@ function packetOf(bytes: Uint8Array): Packet | null {
   return null
 }
 
-/** Packets give their payload, each flow a stream of its own; what was sent again counts once. */
+/** One direction of a connection. */
+interface Flow {
+  stream: number
+  /** The ends of the connection, in one order for both directions. */
+  connection: string
+  /** The sequence number of the next byte. */
+  next: number
+  /** Packets that came before one that is still missing. */
+  early: Packet[]
+}
+
+/** What is new in a packet is added to `found`; a packet of the future waits. */
+function take(flow: Flow, packet: Packet, found: Segment[]): void {
+  const ahead = (packet.sequence - flow.next) | 0
+  if (ahead > 0) {
+    flow.early.push(packet)
+    return
+  }
+  const fresh = packet.payload.slice(Math.min(-ahead, packet.payload.length))
+  if (fresh.length === 0) return
+  found.push({ stream: flow.stream, bytes: fresh })
+  flow.next = (flow.next + fresh.length) >>> 0
+}
+
+/** Packets that waited, in the order of their bytes; `all` of them, or those that have become the next. */
+function takeEarly(flow: Flow, found: Segment[], all: boolean): void {
+  const from = flow.next
+  const waiting = flow.early.sort((a, b) => ((a.sequence - from) | 0) - ((b.sequence - from) | 0))
+  flow.early = []
+  for (const [index, packet] of waiting.entries()) {
+    if (((packet.sequence - flow.next) | 0) > 0) {
+      if (!all) {
+        flow.early = waiting.slice(index)
+        return
+      }
+      // The capture lacks what was between.
+      flow.next = packet.sequence
+    }
+    take(flow, packet, found)
+  }
+}
+
+/** The bytes of each flow in the order of its sequence numbers; bytes that were sent again count once. */
+function streamsOf(packets: Packet[]): { found: Segment[]; flows: Flow[] } {
+  const open = new Map<string, Flow>()
+  const flows: Flow[] = []
+  const found: Segment[] = []
+  for (const packet of packets) {
+    const { from, to, sequence, opens, payload } = packet
+    const name = `${from} ${to}`
+    let flow = open.get(name)
+    // A new connection between the same ports counts anew.
+    if (!flow || (opens && flow.next !== ((sequence + 1) >>> 0))) {
+      flow = { stream: flows.length, connection: [from, to].sort().join(' '), next: (sequence + Number(opens)) >>> 0, early: [] }
+      flows.push(flow)
+      open.set(name, flow)
+    }
+    if (payload.length === 0 || opens) continue
+    take(flow, packet, found)
+    if (flow.early.length > 0) takeEarly(flow, found, false)
+  }
+  for (const flow of flows) takeEarly(flow, found, true)
+  return { found, flows }
+}
+
+/** Printed packets give their payload, each flow a stream of its own. */
 export function parsePackets(segments: Segment[]): Segment[] {
   const packets = segments.map(({ bytes }) => packetOf(bytes))
-  if (packets.length === 0 || packets.some((packet) => packet === null)) return segments
-  const flows: string[] = []
-  const next = new Map<string, number>()
-  const streams: Segment[] = []
-  for (const packet of packets) {
-    if (!packet) continue
-    const { flow, sequence, payload } = packet
-    if (!flows.includes(flow)) flows.push(flow)
-    if (payload.length === 0) continue
-    const expected = next.get(flow)
-    const repeated = expected === undefined ? 0 : (expected - sequence) >>> 0
-    const skip = repeated < 2 ** 31 ? Math.min(repeated, payload.length) : 0
-    if (skip < payload.length) {
-      streams.push({ stream: flows.indexOf(flow), bytes: payload.slice(skip) })
-      next.set(flow, (sequence + payload.length) >>> 0)
-    }
-  }
-  return streams
+  const all = packets.filter((packet) => packet !== null)
+  return all.length === 0 || all.length < packets.length ? segments : streamsOf(all).found
+}
+
+/**
+ * The streams of captured IP packets that have frames: of a whole network, a file has other traffic as well. `tcp` is
+ * the number of its TCP packets.
+ */
+export function framesIn(packets: Uint8Array[], heads: number[][]): { segments: Segment[]; tcp: number } {
+  const all = packets.map(inside).filter((packet) => packet !== null)
+  const { found, flows } = streamsOf(all)
+  const begins = ({ bytes }: Segment) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
+  const connections = new Set(found.filter(begins).map(({ stream }) => flows[stream].connection))
+  const streams = flows.filter(({ connection }) => connections.has(connection)).map(({ stream }) => stream)
+  const kept = found.filter(({ stream }) => streams.includes(stream))
+  return { segments: kept.map(({ stream, bytes }) => ({ stream: streams.indexOf(stream), bytes })), tcp: all.length }
 }

@@ -28,9 +28,14 @@ export function toHash(state: LabState): string {
   return MARK + btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
 }
 
+/** The bytes of one frame in an address, as the frames of other pages link to the laboratory. */
+const FRAME = /^hex=((?:[0-9a-f]{2})+)$/i
+
 /** The state in such a part, with or without its `#`; `null` if it has none. */
 export function fromHash(hash: string): LabState | null {
   const text = hash.replace(/^#/, '')
+  const frame = FRAME.exec(text)?.[1]
+  if (frame) return { paste: frame.toUpperCase().replace(/..(?=.)/g, '$& '), operation: '', side: 'request', id: 1, gzip: false, json: null }
   if (!text.startsWith(MARK)) return null
   try {
     const binary = atob(text.slice(MARK.length).replace(/-/g, '+').replace(/_/g, '/'))

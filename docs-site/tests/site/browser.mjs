@@ -20,16 +20,16 @@ const TYPES = {
   '.svg': 'image/svg+xml', '.woff2': 'font/woff2',
 }
 
-/** Serves `dist` as a plain file server does, compressed. */
-export async function serve() {
+/** Serves a built site as a plain file server does, compressed. */
+export async function serve(folder = dist, base = '/') {
   const server = http.createServer((request, response) => {
     let name = decodeURIComponent(new URL(request.url, 'http://localhost').pathname)
     if (name.endsWith('/')) name += 'index.html'
-    let file = path.join(dist, name)
+    let file = path.join(folder, name.startsWith(base) ? name.slice(base.length) : '404')
     let status = 200
-    if (!file.startsWith(dist) || !existsSync(file) || !statSync(file).isFile()) {
+    if (!file.startsWith(folder) || !existsSync(file) || !statSync(file).isFile()) {
       status = 404
-      file = path.join(dist, '404.html')
+      file = path.join(folder, '404.html')
     }
     response.writeHead(status, {
       'content-type': TYPES[path.extname(file)] ?? 'application/octet-stream',
@@ -51,9 +51,9 @@ export const launch = () =>
     ],
   })
 
-/** Runs `use` with the site, a browser and a maker of pages that collect what must not happen. */
-export async function withSite(use) {
-  const site = await serve()
+/** Runs `use` with the site, or another one, a browser and a maker of pages that collect what must not happen. */
+export async function withSite(use, other = {}) {
+  const site = await serve(other.dist, other.base)
   const browser = await launch()
   const faults = []
   try {

@@ -3,8 +3,10 @@
 import assert from 'node:assert/strict'
 import { createHash, randomBytes } from 'node:crypto'
 import { test } from 'node:test'
+import { gzipSync } from 'node:zlib'
 import { engine, vectors } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
+import { html } from './site-pages.mjs'
 
 async function laboratory(open, url = '/lab/index.html') {
   const page = await open(url)
@@ -359,6 +361,69 @@ test('what is no frame is refused with the reason', driven, async () => {
       assert.match(await page.locator('[data-out=refused]').textContent(), english ? /^This is JSON/ : /^这是 JSON/)
       assert.equal(await page.locator('[data-out=overall]').count(), 0)
     })
+  })
+})
+
+test('without scripts there is no verdict, and the page says what it needs', driven, async () => {
+  for (const url of ['/lab/index.html', '/en/lab/index.html']) {
+    assert.doesNotMatch(html(url), /data-out="(?:overall|piece|fault|findings|refused)"|fc-verdict|✓|✕/, url)
+  }
+  await withSite(async ({ open }) => {
+    for (const [url, words] of [['/lab/index.html', /JavaScript/], ['/en/lab/index.html', /needs JavaScript/]]) {
+      const page = await open(url, { javaScriptEnabled: false })
+      assert.match(await page.locator('.fc-unscripted').innerText(), words)
+      assert.equal(await page.locator('.fc-lab').isVisible(), false)
+      const live = await open(url)
+      await live.locator('[data-out=overall]').waitFor()
+      assert.equal(await live.locator('.fc-unscripted').isVisible(), false)
+    }
+    // Nor does a frame of another page offer what only scripts can do.
+    const page = await open('/en/reference/commands/get_cell_config.html', { javaScriptEnabled: false })
+    assert.equal(await page.locator('.fc-frame button:visible, [data-do=open-in-lab]:visible').count(), 0)
+    const bytes = await page.locator('.fc-frame').last().evaluate((frame) => [
+      ...Array.from(frame.querySelectorAll('.fc-byte'), (byte) => byte.textContent),
+      ...frame.querySelector('.fc-rest').lastChild.textContent.trim().split(' '),
+    ])
+    assert.equal(bytes.length, Number(/\d+/.exec(await page.locator('.fc-frame').last().locator('[role=img]').getAttribute('aria-label'))[0]))
+  })
+})
+
+test('a file is opened, dropped or pasted', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const page = await laboratory(open, '/en/lab/index.html')
+    const overall = page.locator('[data-out=overall]')
+    const bytes = Buffer.from([...bytesOf(hexOf('request', 7)), ...bytesOf(hexOf('response', 7))])
+    const log = `17:40:01.123 [main] DEBUG fc.Client - sent ${hexOf('request', 7)}\n`
+    const files = [
+      ['frames.bin', bytes, '2 frames, all valid'],
+      ['app.log', Buffer.from(log), '1 frame, valid'],
+      ['app.log.gz', gzipSync(log), '1 frame, valid'],
+    ]
+    for (const [name, buffer, words] of files) {
+      await page.locator('[data-do=clear]').click()
+      await page.locator('[data-field=file]').setInputFiles({ name, mimeType: 'application/octet-stream', buffer })
+      await overall.getByText(words).waitFor()
+      for (const event of ['drop', 'paste']) {
+        await page.locator('[data-do=clear]').click()
+        await page.locator('[data-field=hex]').evaluate(
+          (box, [event, name, bytes]) => {
+            const data = new DataTransfer()
+            data.items.add(new File([Uint8Array.from(bytes)], name))
+            const given = event === 'drop' ? { dataTransfer: data } : { clipboardData: data }
+            box.dispatchEvent(Object.assign(new (event === 'drop' ? DragEvent : ClipboardEvent)(event, { bubbles: true, cancelable: true, ...given })))
+          },
+          [event, name, [...buffer]],
+        )
+        await overall.getByText(words).waitFor()
+      }
+    }
+    // What it refuses it names, until another text is pasted.
+    const empty = Buffer.from('d4c3b2a1020004000000000000000000ffff000001000000', 'hex')
+    await page.locator('[data-field=file]').setInputFiles({ name: 'a.pcap', mimeType: 'application/octet-stream', buffer: empty })
+    await page.locator('[data-out=refused]').getByText('0 packets').waitFor()
+    await paste(page, hexOf('request', 7))
+    await overall.getByText('1 frame, valid').waitFor()
+    assert.deepEqual(faults, [])
   })
 })
 

@@ -7,7 +7,7 @@ import { test } from 'node:test'
 import { gzipSync } from 'node:zlib'
 import { dist, needs } from '../support.mjs'
 import { alive, driven, withSite } from './browser.mjs'
-import { pages } from './site-pages.mjs'
+import { html, pages } from './site-pages.mjs'
 
 const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built site (npm run build)')
 
@@ -70,6 +70,122 @@ test('the language switch stays on the same page', driven, async () => {
     }
     assert.deepEqual(faults, [])
   })
+})
+
+test('headings have the same ids in both languages', built, () => {
+  // A list may be sorted by the words of its language.
+  const ids = (url) => Array.from(html(url).matchAll(/<h[1-6]\b[^>]*? id="([^"]*)"/g), ([, id]) => id).sort()
+  const different = pages()
+    .filter((url) => !url.startsWith('/en/'))
+    .filter((url) => JSON.stringify(ids(url)) !== JSON.stringify(ids(`/en${url}`)))
+  assert.deepEqual(different, [])
+})
+
+test('the language switch stays in the same section', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const url = pages().find((url) => /^\/en\/reference\/commands\//.test(url) && html(url).includes('id="open-questions-and-decisions"'))
+    const page = await open(`${url}#open-questions-and-decisions`)
+    await alive(page)
+    await page.locator('.VPNavBarTranslations button').hover()
+    await page.locator('.VPNavBarTranslations').getByText('简体中文', { exact: true }).click()
+    await page.waitForURL((now) => now.pathname === url.replace('/en', '') && now.hash === '#open-questions-and-decisions')
+    await page.locator('h2#open-questions-and-decisions', { hasText: '疑问与决定' }).waitFor()
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('without a connection, a page that does not come says so, and comes when there is one', driven, async () => {
+  await withSite(async ({ open }) => {
+    const follow = (page, to) =>
+      page.evaluate((to) => {
+        const link = Object.assign(document.createElement('a'), { href: to, textContent: 'x' })
+        document.body.append(link)
+        link.click()
+      }, to)
+    for (const [home, url, words, unknown] of [
+      ['/guides/testing.html', '/reference/commands/get_cell_config.html', '没有网络连接', '页面不存在'],
+      ['/en/guides/testing.html', '/en/reference/commands/get_cell_config.html', 'No connection', 'Page not found'],
+    ]) {
+      const page = await open(home)
+      await alive(page)
+      await follow(page, url.replace('get_cell_config', 'get_cell_confiq'))
+      await page.getByText(unknown).first().waitFor()
+      await page.context().setOffline(true)
+      await follow(page, url)
+      await page.locator('[data-out=no-connection]').getByText(words, { exact: true }).waitFor()
+      assert.equal(await page.getByText(unknown).count(), 0)
+      await page.context().setOffline(false)
+      await page.locator('.fc-frame').first().waitFor()
+    }
+  })
+})
+
+test('without a connection, a part that does not come is told', driven, async () => {
+  await withSite(async ({ open }) => {
+    const page = await open('/en/guides/testing.html')
+    await alive(page)
+    await page.context().setOffline(true)
+    await page.locator('.VPNavBarSearch button').first().click()
+    await page.locator('[data-out=no-part]').waitFor()
+  })
+})
+
+test('the item of the page is in view in the sidebar', driven, async () => {
+  await withSite(async ({ open, faults }) => {
+    const seen = (page) =>
+      page.waitForFunction(() => {
+        const item = document.querySelector('.VPSidebarItem.is-link.is-active > .item')
+        if (!item) return false
+        const { top, bottom } = item.getBoundingClientRect()
+        const { left, width } = document.querySelector('.VPSidebar').getBoundingClientRect()
+        return top >= 0 && bottom <= innerHeight && (left >= 0 || width === 0 || -left <= width)
+      })
+    const deep = '/reference/reports/task_progress.html'
+    for (const width of [375, 1440]) {
+      const page = await open(deep, { viewport: { width, height: 700 } })
+      await alive(page)
+      if (width < 960) await page.locator('.VPLocalNav .menu').click()
+      await seen(page)
+      assert.equal(await page.evaluate(() => scrollY), 0, 'the page itself stays')
+    }
+    assert.deepEqual(faults, [])
+  })
+})
+
+test('each code has its place on the page of codes, and the free ones come first', driven, async () => {
+  await withSite(async ({ base, open }) => {
+    for (const language of ['', '/en']) {
+      const text = html(`${language}/reference/codes.html`)
+      const ids = Array.from(text.matchAll(/ id="(0x[0-9a-f]{4})"/g), ([, id]) => id)
+      assert.equal(new Set(ids).size, ids.length, 'a code has two places')
+      assert.ok(['0x0a01', '0x0aff', '0x0b01', '0x0204', '0x0303'].every((id) => ids.includes(id)))
+      const places = ['id="free"', 'id="ranges"', 'id="in-use"'].map((id) => text.indexOf(id))
+      assert.ok(places.every((at, index) => at > 0 && (index === 0 || at > places[index - 1])), places.join())
+      const page = await open()
+      await page.goto(`${base}${language}/reference/codes.html#0x0aff`)
+      await alive(page)
+      const row = page.locator('tr:has(a[id="0x0aff"])')
+      await page.waitForFunction(() => {
+        const { top, bottom } = document.getElementById('0x0aff').closest('tr').getBoundingClientRect()
+        return top >= 0 && bottom <= innerHeight
+      })
+      assert.match(await row.textContent(), /0x0AFF/)
+    }
+  })
+})
+
+test('the changelog has a heading for each year, and a date below it', built, () => {
+  for (const language of ['', '/en']) {
+    const levels = Array.from(html(`${language}/reference/changelog.html`).matchAll(/<h([23]) id="([^"]+)"/g), ([, level, id]) => [level, id])
+    const years = levels.filter(([level]) => level === '2').map(([, id]) => id)
+    assert.ok(years.length > 1 && years.every((id) => /^\d{4}$|^date-unknown$/.test(id)), years.join())
+    assert.deepEqual([...years].sort().reverse(), [...years].sort().reverse())
+    let year = ''
+    for (const [level, id] of levels) {
+      if (level === '2') year = id
+      else assert.ok(id.startsWith(`on-${year}`), `${id} below ${year}`)
+    }
+  }
 })
 
 test('the first view of any page is under 300 kB compressed', driven, async () => {

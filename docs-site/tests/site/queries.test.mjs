@@ -32,13 +32,13 @@ for (const [language, locale, base] of [['zh', 'root', ''], ['en', 'en', '/en']]
     const search = await searcher(locale)
     const wrong = []
     for (const [query, ...pages] of queries[language]) {
-      const there = pages.filter((page) => existsSync(path.join(dist, base, page.endsWith('/') ? `${page}index.html` : page)))
+      const there = pages.filter((page) => existsSync(path.join(dist, base, page.split('#')[0].replace(/\/$/, '/index.html'))))
       if (there.length === 0) {
         t.diagnostic(`skipped ${query}: the spec has no ${pages.join(' or ')}`)
         continue
       }
       const found = search(query).slice(0, 3)
-      const urls = found.map(({ id }) => id.split('#')[0])
+      const urls = found.flatMap(({ id }, place) => [id.split('#')[0], ...(place === 0 ? [id] : [])])
       if (!urls.some((url) => there.some((page) => url === base + page))) {
         wrong.push(`${query}: ${found.map(({ id }) => id).join(' ') || 'nothing'}, not ${there.join(' or ')}`)
       }
@@ -55,6 +55,27 @@ for (const [language, locale, base] of [['zh', 'root', ''], ['en', 'en', '/en']]
     for (const { title } of search('MD5')) assert.doesNotMatch(title, /[<>]/)
   })
 }
+
+test('a code that no operation has says so', built, async () => {
+  for (const [locale, free, closed] of [['root', /可用/, /不再分配/], ['en', /^Free/, /must not take it/]]) {
+    const search = await searcher(locale)
+    assert.match(search('0x0A0E')[0].title, free)
+    assert.match(search('0x0303')[0].title, closed)
+    assert.match(search('0x1234')[0].title, locale === 'en' ? /do not use it/ : /不要分配/)
+    // No hit shows the names that only help to find it.
+    assert.doesNotMatch(search('GetRobotSnRequest')[0].title, /\u2063|GetRobotSnRequest/)
+  }
+})
+
+test('pages for people who write the spec come after those of the protocol', built, async () => {
+  for (const [locale, queries] of [['root', ['枚举', '默认值', '单位', '号段', '上报']], ['en', ['enum', 'default', 'unit', 'range', 'example', 'report', 'timeout']]]) {
+    const search = await searcher(locale)
+    for (const query of queries) {
+      const [first] = search(query)
+      assert.doesNotMatch(first.id, /\/(?:language|errors|cli)\.html/, `${query}: ${first.id}`)
+    }
+  }
+})
 
 test('words that only ask change nothing', built, async () => {
   for (const [locale, plain, asked] of [

@@ -2,8 +2,10 @@
 
 use crate::docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::markdown;
+use fc_codegen::inspect;
 use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
+use fc_spec::model::{Dump, Value as Json};
 use serde_yaml::{Mapping, Value};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -134,22 +136,32 @@ fn every_link_leads_somewhere() {
 #[test]
 fn every_table_is_straight() {
     for page in pages() {
-        let mut columns = None;
-        for line in outside_fences(&page.contents) {
-            if !line.starts_with('|') {
-                columns = None;
-                continue;
-            }
-            let bars = line.replace("\\|", "").matches('|').count();
-            let first = *columns.get_or_insert(bars);
-            assert_eq!(bars, first, "{}: {line}", page.path);
+        assert_straight(&page);
+    }
+}
+
+fn assert_straight(page: &Artifact) {
+    let mut columns = None;
+    for line in outside_fences(&page.contents) {
+        if !line.starts_with('|') {
+            columns = None;
+            continue;
         }
+        let bars = line.replace("\\|", "").matches('|').count();
+        let first = *columns.get_or_insert(bars);
+        assert_eq!(bars, first, "{}: {line}", page.path);
     }
 }
 
 /// Outside of fences, Vue must see no expression and no tag but the few that the pages use themselves.
 #[test]
 fn nothing_in_a_page_is_code_for_vue() {
+    for page in pages() {
+        assert_no_code(&page);
+    }
+}
+
+fn assert_no_code(page: &Artifact) {
     const TAGS: [&str; 10] = [
         "<a id=\"",
         "</a>",
@@ -162,23 +174,23 @@ fn nothing_in_a_page_is_code_for_vue() {
         "<div class=\"fc-question\"",
         "</div>",
     ];
-    for page in pages() {
-        // The front matter is no Markdown.
-        let body = page.contents.splitn(3, "---\n").last().unwrap_or_default();
-        for line in outside_fences(body) {
-            // Vue reads code spans as well, fences alone are left to themselves.
-            assert!(!line.contains("{{"), "{}: {line}", page.path);
-            let text = without_code(line);
-            let unescaped = text.replace("\\{", "");
-            assert!(!unescaped.contains('{'), "{}: {line}", page.path);
-            for (at, _) in text.match_indices('<') {
-                let tag = text.get(at..).unwrap_or_default();
-                assert!(
-                    TAGS.iter().any(|known| tag.starts_with(known)),
-                    "{}: {line}",
-                    page.path
-                );
-            }
+    // The front matter is no Markdown.
+    let body = page.contents.splitn(3, "---\n").last().unwrap_or_default();
+    for line in outside_fences(body) {
+        // Vue reads code spans as well, fences alone are left to themselves.
+        assert!(!line.contains("{{"), "{}: {line}", page.path);
+        let text = without_code(line);
+        let unescaped = text.replace("\\{", "");
+        assert!(!unescaped.contains('{'), "{}: {line}", page.path);
+        // Two of them would meet.
+        assert!(!text.contains("\\{\\{"), "{}: {line}", page.path);
+        for (at, _) in text.match_indices('<') {
+            let tag = text.get(at..).unwrap_or_default();
+            assert!(
+                TAGS.iter().any(|known| tag.starts_with(known)),
+                "{}: {line}",
+                page.path
+            );
         }
     }
 }
@@ -186,17 +198,79 @@ fn nothing_in_a_page_is_code_for_vue() {
 #[test]
 fn every_fence_is_closed() {
     for page in pages() {
-        let fences = page
-            .contents
-            .lines()
-            .filter(|line| line.starts_with("```"))
-            .count();
-        assert_eq!(fences % 2, 0, "{}", page.path);
-        assert!(
-            page.contents.ends_with('\n') && !page.contents.ends_with("\n\n"),
-            "{}",
-            page.path
-        );
+        assert_closed(&page);
+    }
+}
+
+fn assert_closed(page: &Artifact) {
+    let fences = page.contents.lines().filter(|line| line.starts_with("```"));
+    assert_eq!(fences.count() % 2, 0, "{}", page.path);
+    assert!(
+        page.contents.ends_with('\n') && !page.contents.ends_with("\n\n"),
+        "{}",
+        page.path
+    );
+}
+
+/// Texts that would leave their place in Markdown, in HTML, for Vue or for `VitePress`.
+const HOSTILE: [&str; 5] = [
+    "<!--@include: ../../../secret.txt--> `<!-- @include: ../../../secret.txt -->` </script> {{ 7 * 7 }} {\\{ 7 * 7 }}",
+    "<img src=x onerror=alert(1)> &#123;&#123; 7 * 7 }} \\`<b>` a | b ] [ ](x) {0} {1} {2} \"><b> #",
+    "ends in \\",
+    "`` ` ",
+    "a\n\n# b\n::: tip\n---\n[c]: d\n```\n<!--@include: x-->\n```\nb",
+];
+
+/// Characters that do not show. Reading a spec may refuse them instead.
+const INVISIBLE: &str = "\u{202e}\0\u{1b}[31m\u{2028}\u{fdd0}\u{e0001}";
+
+#[test]
+fn hostile_texts_stay_in_their_place() {
+    let plain = inspect::value(&model(&fixture()));
+    for text in HOSTILE.into_iter().chain([INVISIBLE]) {
+        let mut dump = plain.clone();
+        spoil(&mut dump, text);
+        let read = Dump::read(&dump.to_string());
+        let Ok(model) = read else {
+            assert_eq!(text, INVISIBLE, "it is refused");
+            continue;
+        };
+        for artifact in markdown::emit(&model, &Targets::default()) {
+            let contents = &artifact.contents;
+            let hidden = contents.chars().find(|it| {
+                it.is_control() && !matches!(it, '\n' | '\t') || "\u{202e}\u{2028}\u{fdd0}\u{e0001}".contains(*it)
+            });
+            assert_eq!(hidden, None, "{} of {text}", artifact.path);
+            if !is_page(&artifact) {
+                continue;
+            }
+            let comments = contents.split("<!--").skip(1);
+            let obeyed = comments.filter(|comment| comment.trim_start().starts_with("@include"));
+            assert_eq!(obeyed.count(), 0, "{} of {text}", artifact.path);
+            let front = contents.splitn(3, "---\n").nth(1).unwrap_or_default();
+            assert!(!front.contains("</") && !front.contains("<!"), "{front}");
+            assert_straight(&artifact);
+            assert_no_code(&artifact);
+            assert_closed(&artifact);
+            anchors(contents);
+        }
+    }
+}
+
+/// Adds a text to every text of a dump.
+fn spoil(value: &mut Json, text: &str) {
+    match value {
+        Json::Object(entries) => {
+            for (key, value) in entries {
+                let is_text = matches!(key.as_str(), "zh" | "en");
+                match value {
+                    Json::String(words) if is_text => words.extend([" ", text]),
+                    value => spoil(value, text),
+                }
+            }
+        }
+        Json::Array(items) => items.iter_mut().for_each(|item| spoil(item, text)),
+        _ => {}
     }
 }
 
@@ -212,22 +286,34 @@ fn pages() -> Vec<Artifact> {
     all.into_iter().flatten().filter(is_page).collect()
 }
 
+/// The lines of a page that are no code, neither in a fence nor as HTML.
 fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {
     let mut inside = false;
+    let mut in_html = false;
     contents.lines().filter(move |line| {
-        let mark = line.starts_with("```");
+        let mark = !in_html && line.starts_with("```");
         inside ^= mark;
-        !inside && !mark
+        in_html |= !inside && line.starts_with("<pre v-pre>");
+        let is_code = inside || mark || in_html;
+        in_html &= !line.ends_with("</pre>");
+        !is_code
     })
 }
 
-/// A line without its code spans.
+/// A line without its code spans. An escaped backtick opens none.
 fn without_code(line: &str) -> String {
     let mut out = String::new();
     let mut rest = line;
-    while let Some(start) = rest.find('`') {
+    while let Some(start) = rest.find(['`', '\\']) {
         let (before, from) = rest.split_at(start);
         out.push_str(before);
+        if from.starts_with('\\') {
+            let escaped = 1 + from.chars().nth(1).map_or(0, char::len_utf8);
+            let (escaped, behind) = from.split_at(escaped);
+            out.push_str(escaped);
+            rest = behind;
+            continue;
+        }
         let ticks = from.len() - from.trim_start_matches('`').len();
         let (marker, inside) = from.split_at(ticks);
         rest = inside.split_once(marker).map_or("", |(_, after)| after);

@@ -151,7 +151,7 @@ impl<'m> Book<'m> {
             None => (Page::Types, Anchor::none()),
         };
         match subject {
-            Subject::Protocol => (Page::Index, Anchor::named("answers")),
+            Subject::Protocol => (Page::Index, Anchor::named("open-questions-and-decisions")),
             Subject::Transport => (Page::Wire, Anchor::named("transport")),
             Subject::Frame(None) => (Page::Wire, Anchor::named("frame")),
             Subject::Frame(Some(name)) => {

@@ -12,19 +12,11 @@ use std::ops::Range;
 /// Bytes in a line of a dump.
 const PER_LINE: usize = 16;
 
-/// Lines of data up to which all of it is shown.
-const ALL_LINES: usize = 24;
-
-/// Lines of data shown at the start of a longer data area; one more is shown of its end.
-const FIRST_LINES: usize = 6;
-
 /// A real frame.
 #[derive(Debug, Serialize)]
 pub(super) struct FrameView {
     /// Lines of offset, bytes and field name, or of offset, bytes and ASCII.
     dump: String,
-    /// What the dump's fence is called: the site draws `fc-frame`, which must be all of a frame.
-    fence: &'static str,
     parts: Vec<PartView>,
     length: usize,
 }
@@ -69,7 +61,9 @@ pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) ->
     }
     let Range { start, end } = frame.packed;
     let data = bytes.get(frame.packed.clone()).unwrap_or_default();
-    dump_data(&mut dump, start, data, lang);
+    for (index, line) in data.chunks(PER_LINE).enumerate() {
+        dump_line(&mut dump, start + index * PER_LINE, line, &ascii(line));
+    }
     if !data.is_empty() {
         parts.push(PartView {
             offset: span(start, end),
@@ -82,10 +76,8 @@ pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) ->
             text: lang.text(&layout.data).to_owned(),
         });
     }
-    let all = data.len() <= ALL_LINES * PER_LINE;
     Some(FrameView {
         dump,
-        fence: if all { "fc-frame" } else { "text" },
         parts,
         length: bytes.len(),
     })
@@ -153,27 +145,6 @@ fn dump_line(dump: &mut String, offset: usize, bytes: &[u8], right: &str) {
     let _ = write!(dump, "{offset:04X}  {:<width$}  {right}", spaced(bytes));
     dump.truncate(dump.trim_end().len());
     dump.push('\n');
-}
-
-fn dump_data(dump: &mut String, start: usize, data: &[u8], lang: Lang) {
-    let lines: Vec<&[u8]> = data.chunks(PER_LINE).collect();
-    let skipped = if lines.len() <= ALL_LINES {
-        0
-    } else {
-        lines.len() - FIRST_LINES - 1
-    };
-    for (index, line) in lines.iter().enumerate() {
-        if index == FIRST_LINES && skipped > 0 {
-            let bytes = skipped * PER_LINE;
-            dump.push_str(&lang.pick(
-                format!("      …（略去 {bytes} 字节）\n"),
-                format!("      … ({bytes} bytes left out)\n"),
-            ));
-        }
-        if skipped == 0 || index < FIRST_LINES || index >= FIRST_LINES + skipped {
-            dump_line(dump, start + index * PER_LINE, line, &ascii(line));
-        }
-    }
 }
 
 fn ascii(bytes: &[u8]) -> String {

@@ -4,7 +4,7 @@
 //! are the further arguments. What is printed without a filter is escaped for a table cell, the
 //! strictest place, and is not taken for a sentence of the spec. Printing nothing, a list or an object is a fault of the template.
 
-use super::escape;
+use super::escape::{self, Place};
 use super::terms::marked;
 use fc_spec::model::Lang;
 use minijinja::syntax::SyntaxConfig;
@@ -37,6 +37,24 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "errors.md.j2"
 };
 
+/// Filters for sentences of the spec, which are marked.
+const SENTENCES: [(&str, Place<'_>); 4] = [
+    ("text", Place::Line),
+    ("cell", Place::Cell),
+    ("label", Place::Label),
+    ("prose", Place::Prose),
+];
+
+/// Filters for names and values.
+const NAMES: [(&str, Place<'_>); 6] = [
+    ("code", Place::Code),
+    ("code_cell", Place::CodeCell),
+    ("diagram", Place::Diagram),
+    ("yaml", Place::FrontMatter),
+    ("attribute", Place::Attribute),
+    ("target", Place::Target),
+];
+
 /// Renders pages.
 pub(super) struct Engine {
     environment: Environment<'static>,
@@ -56,17 +74,19 @@ impl Engine {
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
         environment.set_auto_escape_callback(|_| AutoEscape::Custom("markdown".into()));
         environment.set_formatter(print);
-        environment.add_filter("text", |source: &str| spec(&escape::text(source)));
-        environment.add_filter("cell", |source: &str| spec(&escape::cell(source)));
-        environment.add_filter("prose", |source: &str| spec(&escape::prose(source)));
-        environment.add_filter("code", |source: &str| safe(escape::code(source)));
-        environment.add_filter("code_cell", |source: &str| safe(escape::code_cell(source)));
+        for (name, place) in SENTENCES {
+            environment.add_filter(name, move |source: &str| {
+                safe(marked(&escape::write(source, place)))
+            });
+        }
+        for (name, place) in NAMES {
+            environment.add_filter(name, move |source: &str| safe(escape::write(source, place)));
+        }
         // The one space that Markdown keeps at the beginning of a cell.
         environment.add_filter("indent", |depth: usize| safe("\u{2003}".repeat(depth)));
         environment.add_filter("fence", |source: &str, language: &str| {
-            safe(escape::fence(source, language))
+            safe(escape::write(source, Place::Fence(language)))
         });
-        environment.add_filter("yaml", |source: &str| safe(escape::yaml(source)));
         for (name, source) in TEMPLATES {
             environment.add_template(name, source)?;
         }
@@ -117,21 +137,32 @@ pub(super) fn tidy(page: &str) -> String {
     out
 }
 
-/// A text of the spec.
-fn spec(markdown: &str) -> Value {
-    safe(marked(markdown))
-}
-
 fn safe(markdown: String) -> Value {
     Value::from_safe_string(markdown)
 }
 
-/// A phrase with its arguments in place.
+/// A phrase with its arguments in place. A brace in an argument names no other.
 fn phrase(pattern: &str, arguments: &[Value]) -> Result<Value, Error> {
-    let mut out = pattern.to_owned();
-    for (index, argument) in arguments.iter().enumerate() {
-        out = out.replace(&format!("{{{index}}}"), &spelled(argument)?);
+    let mut out = String::with_capacity(pattern.len());
+    let mut rest = pattern;
+    while let Some((before, behind)) = rest.split_once('{') {
+        out.push_str(before);
+        let named = behind.split_once('}').and_then(|(index, rest)| {
+            let index: usize = index.parse().ok()?;
+            Some((arguments.get(index)?, rest))
+        });
+        rest = match named {
+            Some((argument, rest)) => {
+                out.push_str(&spelled(argument)?);
+                rest
+            }
+            None => {
+                out.push('{');
+                behind
+            }
+        };
     }
+    out.push_str(rest);
     Ok(safe(out))
 }
 
@@ -145,7 +176,7 @@ fn spelled(value: &Value) -> Result<Cow<'_, str>, Error> {
         (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.into()),
         (ValueKind::Number, _) => Ok(value.to_string().into()),
         (ValueKind::String, Some(source)) if value.is_safe() => Ok(source.into()),
-        (ValueKind::String, Some(source)) => Ok(escape::cell(source).into()),
+        (ValueKind::String, Some(source)) => Ok(escape::write(source, Place::Cell).into()),
         (kind, _) => {
             let message = format!("a template prints {kind}, which has no spelling in Markdown");
             Err(Error::new(ErrorKind::InvalidOperation, message))

@@ -1,23 +1,133 @@
 //! From the spec's texts to Markdown that is safe in a table, in `VitePress` and on its own.
 //!
-//! The spec's texts are Markdown themselves, so code spans, emphasis and links in them stay. What
-//! they cannot do is break out of their place: `<` would open a Vue component, two braces a Vue
-//! expression, one brace the attributes of `VitePress`'s Markdown, `|` and a line break the next cell.
+//! The spec's texts are Markdown themselves, so code spans, emphasis and links in them stay. They cannot leave their
+//! place: `<` would open a Vue component, two braces a Vue expression, one brace the attributes of `VitePress`'s
+//! Markdown, `|` and a line break the next cell. `VitePress` also obeys `<!--@include: …-->` in front matter and code.
+//! Characters that do not show are spelled as `\u202e`.
 
-/// Text within a line, outside of tables.
-#[must_use]
-pub fn text(source: &str) -> String {
-    inline(&one_line(source))
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
+/// The part of a page that a text goes into.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place<'a> {
+    /// A line, outside of tables.
+    Line,
+    /// A table cell.
+    Cell,
+    /// The words of a link, also in a table.
+    Label,
+    /// Paragraphs and lists; fenced code in them stays.
+    Prose,
+    /// A code span, outside of tables. Empty for an empty text: Markdown has no empty code span.
+    Code,
+    /// A code span in a table cell.
+    CodeCell,
+    /// A fenced code block with this language.
+    Fence(&'a str),
+    /// A line of a diagram in a fence.
+    Diagram,
+    /// A string of the YAML front matter.
+    FrontMatter,
+    /// An attribute of HTML, between double quotes.
+    Attribute,
+    /// The target of a link.
+    Target,
+    /// A string of a JSON file.
+    Data,
 }
 
-/// Text in a table cell.
+/// A text as the place spells it. Every text of a page goes through here.
 #[must_use]
-pub fn cell(source: &str) -> String {
+pub(super) fn write(source: &str, place: Place<'_>) -> String {
+    let source = &*visible(source);
+    match place {
+        Place::Line => line(source),
+        Place::Cell => cell(source),
+        Place::Label => label(source),
+        Place::Prose => prose(source),
+        Place::Code => code(source),
+        Place::CodeCell => bars_escaped(code(source)),
+        Place::Fence(language) => fence(source, language),
+        Place::Diagram => one_line(source),
+        Place::FrontMatter => front_matter(source),
+        Place::Attribute => html(&one_line(source)),
+        Place::Target => target(source),
+        Place::Data => source.to_owned(),
+    }
+}
+
+/// A text with every character that does not show, or turns the direction of others, spelled as JSON spells it.
+fn visible(source: &str) -> Cow<'_, str> {
+    if !source.contains(is_invisible) {
+        return source.into();
+    }
+    let mut out = String::with_capacity(source.len());
+    for character in source.chars() {
+        if is_invisible(character) {
+            for unit in character.encode_utf16(&mut [0; 2]) {
+                // Writing to a String cannot fail.
+                let _ = write!(out, "\\u{unit:04x}");
+            }
+        } else {
+            out.push(character);
+        }
+    }
+    out.into()
+}
+
+const fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\0'..='\u{8}'
+            | '\u{b}'..='\u{1f}'
+            | '\u{7f}'..='\u{9f}'
+            | '\u{61c}'
+            | '\u{200b}'
+            | '\u{200e}'
+            | '\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}'
+            | '\u{fff9}'..='\u{fffb}'
+            | '\u{fdd0}'..='\u{fdef}'
+            | '\u{fffe}'
+            | '\u{ffff}'
+            | '\u{e0000}'..='\u{e007f}'
+    )
+}
+
+fn line(source: &str) -> String {
+    unmarked_start(inline(&one_line(source)))
+}
+
+fn cell(source: &str) -> String {
     let lines = source.trim().lines();
     let mut lines = lines.map(|line| bars_escaped(inline(line.trim())));
     let mut out = lines.next().unwrap_or_default();
     for line in lines {
         out.extend(["<br>", &line]);
+    }
+    out
+}
+
+/// Brackets that belong to no link would end the words of this one.
+fn label(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    for piece in pieces(&cell(source)) {
+        match piece {
+            Piece::Code(span) => out.push_str(span),
+            Piece::Text(text) => {
+                let mut escaped = false;
+                for character in text.chars() {
+                    if matches!(character, '[' | ']') && !escaped {
+                        out.push('\\');
+                    }
+                    escaped = character == '\\' && !escaped;
+                    out.push(character);
+                }
+            }
+        }
     }
     out
 }
@@ -31,12 +141,11 @@ fn bars_escaped(markdown: String) -> String {
     }
 }
 
-/// Paragraphs and lists; fenced code in them stays as it is.
-#[must_use]
-pub fn prose(source: &str) -> String {
+fn prose(source: &str) -> String {
     let mut out = String::new();
     let mut open_fence: Option<&str> = None;
     let mut paragraph = String::new();
+    let mut fenced = String::new();
     for line in source.trim_end().lines() {
         let start = line.trim_start();
         let marker = ["```", "~~~"]
@@ -47,20 +156,76 @@ pub fn prose(source: &str) -> String {
             paragraph.push('\n');
             continue;
         }
-        out.push_str(&inline(&std::mem::take(&mut paragraph)));
-        out.push_str(line);
-        out.push('\n');
+        out.push_str(&paragraphs(&std::mem::take(&mut paragraph)));
+        fenced.push_str(line);
+        fenced.push('\n');
         match (open_fence, marker) {
             (None, Some(_)) => open_fence = marker,
-            (Some(open), Some(close)) if open == close && is_bare(start) => open_fence = None,
+            (Some(open), Some(close)) if open == close && is_bare(start) => {
+                open_fence = None;
+                out.push_str(&block(&std::mem::take(&mut fenced)));
+            }
             _ => {}
         }
     }
-    out.push_str(&inline(&paragraph));
+    out.push_str(&paragraphs(&paragraph));
     // A fence that its author forgot to close would swallow the rest of the page.
-    out.push_str(open_fence.unwrap_or_default());
+    if let Some(open) = open_fence {
+        fenced.push_str(open);
+        out.push_str(&block(&fenced));
+    }
     out.truncate(out.trim_end().len());
     out
+}
+
+/// A fence that an author has written, or its code as HTML where `VitePress` would obey it.
+fn block(fence: &str) -> String {
+    if !is_obeyed(fence) {
+        return fence.to_owned();
+    }
+    let code = fence.trim_end().split_once('\n').map_or("", |(_, code)| code);
+    let code = code.rsplit_once('\n').map_or("", |(code, _)| code);
+    preformatted(code) + "\n"
+}
+
+/// Paragraphs and lists. No line of them begins another block, such as a heading or a container of `VitePress`.
+fn paragraphs(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    for line in inline(source).lines() {
+        let start = line.len() - line.trim_start().len();
+        let (indent, text) = line.split_at(start);
+        out.push_str(indent);
+        let begins = [":::", "[[", "#"].iter().any(|mark| text.starts_with(mark));
+        let underlines = !text.is_empty() && (text.chars().all(|it| it == '=') || text.chars().all(|it| it == '-'));
+        let defines = text.starts_with('[') && text.contains("]:");
+        if begins || underlines || defines {
+            out.push('\\');
+        }
+        out.push_str(text);
+        out.push('\n');
+    }
+    out
+}
+
+/// A line that begins no list, quotation, heading, fence or container.
+fn unmarked_start(mut markdown: String) -> String {
+    let first_word = markdown.split(' ').next().unwrap_or_default();
+    let digits = first_word.trim_start_matches(|it: char| it.is_ascii_digit());
+    let is_number = digits.len() < first_word.len() && matches!(digits, "." | ")");
+    let is_mark = matches!(first_word, "-" | "+" | "*" | "=") || first_word.chars().all(|it| it == '#');
+    let begins = [">", ":::", "```", "~~~", "---", "===", "[["].iter().any(|mark| markdown.starts_with(mark));
+    if is_number {
+        markdown.insert(first_word.len() - 1, '\\');
+    } else if !first_word.is_empty() && (is_mark || begins) {
+        markdown.insert(0, '\\');
+    }
+    // Those at the end would close a heading.
+    let closed = markdown.trim_end_matches('#');
+    if closed.len() < markdown.len() && closed.ends_with(' ') {
+        let at = closed.len();
+        markdown.insert(at, '\\');
+    }
+    markdown
 }
 
 /// Whether a line is nothing but a fence, as a closing one is.
@@ -70,17 +235,16 @@ fn is_bare(fence: &str) -> bool {
     characters.all(|character| Some(character) == first)
 }
 
-/// A code span, outside of tables. Empty for an empty text: Markdown has no empty code span.
+/// A code span.
 ///
-/// Vue looks for its braces in code spans too, so two braces that meet end one span and begin
-/// another, with a comment between them that nobody sees.
-#[must_use]
-pub fn code(source: &str) -> String {
+/// Vue looks for its braces in code spans too, and `VitePress` for comments. Where such begins, one span ends and
+/// another begins, with a comment between them that does not show.
+fn code(source: &str) -> String {
     let source = one_line(source);
     let mut out = String::with_capacity(source.len() + 2);
     let mut rest = source.as_str();
-    while let Some(brace) = rest.find("{{") {
-        let (span, behind) = rest.split_at(brace + 1);
+    while let Some(at) = [rest.find("{{"), rest.find("<!--")].into_iter().flatten().min() {
+        let (span, behind) = rest.split_at(at + 1);
         push_span(&mut out, span);
         out.push_str("<!-- -->");
         rest = behind;
@@ -104,26 +268,58 @@ fn push_span(out: &mut String, source: &str) {
     out.extend(ticks);
 }
 
-/// A code span in a table cell.
-#[must_use]
-pub fn code_cell(source: &str) -> String {
-    bars_escaped(code(source))
-}
-
-/// A fenced code block.
-#[must_use]
-pub fn fence(source: &str, language: &str) -> String {
+fn fence(source: &str, language: &str) -> String {
+    let source = source.trim_end_matches('\n');
+    if is_obeyed(source) {
+        return preformatted(source);
+    }
     let ticks = "`".repeat((longest_run(source) + 1).max(3));
-    format!(
-        "{ticks}{language}\n{}\n{ticks}",
-        source.trim_end_matches('\n')
-    )
+    format!("{ticks}{language}\n{source}\n{ticks}")
 }
 
-/// A string of a YAML front matter: JSON strings are YAML.
-#[must_use]
-pub fn yaml(source: &str) -> String {
-    fc_spec::model::Value::String(one_line(source)).to_string()
+/// Whether `VitePress` would put a file in place of a part of the text, also in a fence.
+fn is_obeyed(source: &str) -> bool {
+    let mut comments = source.split("<!--").skip(1);
+    comments.any(|comment| comment.trim_start().starts_with("@include"))
+}
+
+/// Code as HTML, which has another spelling for `<`.
+fn preformatted(source: &str) -> String {
+    format!("<pre v-pre><code>{}</code></pre>", html(source))
+}
+
+fn html(source: &str) -> String {
+    let source = source.replace('&', "&amp;").replace('<', "&lt;");
+    source.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// JSON strings are YAML. `VitePress` writes them into a script, so that a tag in one would end that: it gets a wide `<`.
+fn front_matter(source: &str) -> String {
+    let source = one_line(source);
+    let mut out = String::with_capacity(source.len());
+    let mut characters = source.chars().peekable();
+    while let Some(character) = characters.next() {
+        let next = characters.peek();
+        let opens = next.is_some_and(|it| it.is_ascii_alphabetic() || matches!(it, '/' | '!' | '?'));
+        out.push(if character == '<' && opens { '＜' } else { character });
+    }
+    fc_spec::model::Value::String(out).to_string()
+}
+
+/// Paths and anchors of any letters; what would end the link is spelled in hexadecimal.
+fn target(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    for character in source.chars() {
+        if character.is_alphanumeric() || "/#.-_~:?=+,@!$;".contains(character) {
+            out.push(character);
+        } else {
+            for byte in character.encode_utf8(&mut [0; 4]).bytes() {
+                // Writing to a String cannot fail.
+                let _ = write!(out, "%{byte:02X}");
+            }
+        }
+    }
+    out
 }
 
 fn one_line(source: &str) -> String {
@@ -137,26 +333,47 @@ fn one_line(source: &str) -> String {
     out
 }
 
-/// Escapes what stands outside of code spans.
+/// A part of Markdown.
+enum Piece<'s> {
+    /// A code span with its backticks.
+    Code(&'s str),
+    Text(&'s str),
+}
+
+/// The code spans of a text, and what is between them. An escaped backtick is text, and so is one that no other closes.
+fn pieces(source: &str) -> Vec<Piece<'_>> {
+    let mut pieces = Vec::new();
+    let (mut from, mut at) = (0, 0);
+    let get = |from: usize, to: usize| source.get(from..to).unwrap_or_default();
+    while let Some(found) = source.get(at..).and_then(|rest| rest.find(['`', '\\'])) {
+        let start = at + found;
+        let rest = get(start, source.len());
+        if rest.starts_with('\\') {
+            at = start + 1 + rest.chars().nth(1).map_or(0, char::len_utf8);
+            continue;
+        }
+        let ticks = rest.len() - rest.trim_start_matches('`').len();
+        at = start + ticks;
+        if let Some(end) = closing(get(at, source.len()), ticks) {
+            pieces.push(Piece::Text(get(from, start)));
+            at += end;
+            pieces.push(Piece::Code(get(start, at)));
+            from = at;
+        }
+    }
+    pieces.push(Piece::Text(get(from, source.len())));
+    pieces
+}
+
+/// Escapes what is outside of code spans.
 fn inline(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
-    let mut rest = source;
-    while let Some(start) = rest.find('`') {
-        let (before, from_ticks) = rest.split_at(start);
-        let ticks = from_ticks.len() - from_ticks.trim_start_matches('`').len();
-        let (opening, inside) = from_ticks.split_at(ticks);
-        push_outside_code(&mut out, before);
-        rest = if let Some(end) = closing(inside, ticks) {
-            let (span, after) = inside.split_at(end);
-            let content = span.strip_suffix(opening).unwrap_or(span);
-            out.push_str(&code(content.trim()));
-            after
-        } else {
-            out.push_str(opening);
-            inside
-        };
+    for piece in pieces(source) {
+        match piece {
+            Piece::Code(span) => out.push_str(&code(span.trim_matches('`').trim())),
+            Piece::Text(text) => push_text(&mut out, text),
+        }
     }
-    push_outside_code(&mut out, rest);
     out
 }
 
@@ -175,25 +392,47 @@ pub(super) fn closing(inside: &str, ticks: usize) -> Option<usize> {
     }
 }
 
-fn push_outside_code(out: &mut String, source: &str) {
-    let mut rest = source;
-    while let Some(at) = rest.find(['<', '{', '\\']) {
-        let (plain, from) = rest.split_at(at);
-        let (special, behind) = from.split_at(1);
-        let before_brace = behind.starts_with('{');
-        out.push_str(plain);
-        out.push_str(match special {
-            "<" => "&lt;",
+/// Escapes a text without code spans.
+fn push_text(out: &mut String, source: &str) {
+    // The last character that a reader sees is a brace.
+    let mut after_brace = false;
+    let mut characters = source.chars().peekable();
+    while let Some(character) = characters.next() {
+        let next = characters.peek().copied();
+        let is_brace = match (character, next) {
+            ('{', _) => true,
+            // An escape of the author, which escapes once.
+            ('\\', Some('{')) => {
+                characters.next();
+                true
+            }
+            _ => false,
+        };
+        if is_brace {
             // The comment keeps Vue from seeing two braces; a reader of the page sees none.
-            "{" if before_brace => "\\{<!-- -->",
-            "{" => "\\{",
-            // What the author escaped himself stays escaped once.
-            _ if before_brace => "",
-            backslash => backslash,
-        });
-        rest = behind;
+            out.push_str(if after_brace { "<!-- -->\\{" } else { "\\{" });
+            after_brace = true;
+            continue;
+        }
+        after_brace = false;
+        match (character, next) {
+            ('<', _) => out.push_str("&lt;"),
+            ('\\', Some('<')) => {
+                characters.next();
+                out.push_str("&lt;");
+            }
+            // At an end it would escape what comes next in the page.
+            ('\\', None | Some('\n')) => out.push_str("\\\\"),
+            ('\\', Some(escaped)) if escaped.is_ascii_punctuation() => {
+                characters.next();
+                out.extend(['\\', escaped]);
+            }
+            // An entity could spell braces, and a picture could take in any file.
+            ('&', Some(next)) if next == '#' || next.is_ascii_alphabetic() => out.push_str("&amp;"),
+            ('!', Some('[')) => out.push_str("\\!"),
+            (plain, _) => out.push(plain),
+        }
     }
-    out.push_str(rest);
 }
 
 fn longest_run(source: &str) -> usize {
@@ -210,44 +449,138 @@ fn longest_run(source: &str) -> usize {
 mod tests {
     use super::*;
 
-    #[test]
-    fn texts_stay_in_their_place() {
-        for (source, expected) in [
-            ("a <b> c", "a &lt;b> c"),
-            ("`a <b>` c", "`a <b>` c"),
-            ("{x} {{ y }}", "\\{x} \\{<!-- -->\\{ y }}"),
-            ("\\{x}", "\\{x}"),
-            ("`{{ y }}`", "`{`<!-- -->`{ y }}`"),
-            ("`{{{`", "`{`<!-- -->`{`<!-- -->`{`"),
-            ("a ` b <c>", "a ` b &lt;c>"),
-            ("``a ` b``", "``a ` b``"),
-            ("one\n  two\n", "one two"),
-        ] {
-            assert_eq!(text(source), expected, "{source}");
+    fn check(place: Place<'_>, cases: &[(&str, &str)]) {
+        for (source, expected) in cases {
+            assert_eq!(write(source, place), *expected, "{source} in {place:?}");
         }
     }
 
     #[test]
+    fn texts_stay_in_their_place() {
+        check(
+            Place::Line,
+            &[
+                ("a <b> c", "a &lt;b> c"),
+                ("`a <b>` c", "`a <b>` c"),
+                ("{x} {{ y }}", "\\{x} \\{<!-- -->\\{ y }}"),
+                ("\\{x}", "\\{x}"),
+                ("{\\{ y }}", "\\{<!-- -->\\{ y }}"),
+                ("&#123;&#123; y }} R&D &", "&amp;#123;&amp;#123; y }} R&amp;D &"),
+                ("`{{ y }}`", "`{`<!-- -->`{ y }}`"),
+                ("`{{{`", "`{`<!-- -->`{`<!-- -->`{`"),
+                ("a ` b <c>", "a ` b &lt;c>"),
+                ("\\`<c>`", "\\`&lt;c>`"),
+                ("``a ` b``", "``a ` b``"),
+                ("one\n  two\n", "one two"),
+                ("\\<c>", "&lt;c>"),
+                ("![a](../../secret.txt)", "\\![a](../../secret.txt)"),
+                ("Say <!--@include: x-->", "Say &lt;!--@include: x-->"),
+                ("`<!--@include: x-->`", "`<`<!-- -->`!--@include: x-->`"),
+            ],
+        );
+    }
+
+    #[test]
+    fn a_backslash_at_the_end_is_text() {
+        check(Place::Line, &[("a\\", "a\\\\"), ("a\\\\", "a\\\\"), ("`a\\`", "`a\\`"), ("\\d", "\\d")]);
+        check(Place::Cell, &[("a\\\nb\\", "a\\\\<br>b\\\\")]);
+        check(Place::Label, &[("a\\", "a\\\\"), ("a [b] `[c]` \\]", "a \\[b\\] `[c]` \\]")]);
+    }
+
+    #[test]
+    fn lines_begin_no_other_block() {
+        check(
+            Place::Line,
+            &[
+                ("# a #", "\\# a \\#"),
+                ("C#", "C#"),
+                ("- a", "\\- a"),
+                ("-1 to 1", "-1 to 1"),
+                ("1. a", "1\\. a"),
+                ("1.5 a", "1.5 a"),
+                ("> a", "\\> a"),
+                ("::: tip", "\\::: tip"),
+                ("[[toc]]", "\\[[toc]]"),
+                ("", ""),
+            ],
+        );
+        check(
+            Place::Prose,
+            &[
+                ("a\n---\n# b\n- c", "a\n\\---\n\\# b\n- c"),
+                ("::: tip\n[a]: x", "\\::: tip\n\\[a]: x"),
+            ],
+        );
+    }
+
+    #[test]
     fn cells_hold_one_line_and_no_bar() {
-        assert_eq!(cell("a|b\n`c|d`"), "a\\|b<br>`c\\|d`");
-        assert_eq!(code_cell("a|b"), "`a\\|b`");
+        check(Place::Cell, &[("a|b\n`c|d`", "a\\|b<br>`c\\|d`")]);
+        check(Place::CodeCell, &[("a|b", "`a\\|b`")]);
     }
 
     #[test]
     fn code_spans_outlast_their_backticks() {
-        assert_eq!(code("a"), "`a`");
-        assert_eq!(code("a`b"), "``a`b``");
-        assert_eq!(code("`"), "`` ` ``");
-        assert_eq!(code(" "), "");
-        assert_eq!(fence("```", "text"), "````text\n```\n````");
+        check(Place::Code, &[("a", "`a`"), ("a`b", "``a`b``"), ("`", "`` ` ``"), (" ", "")]);
+        check(Place::Fence("text"), &[("```", "````text\n```\n````")]);
     }
 
     #[test]
     fn prose_keeps_its_fences() {
-        let source = "a {b}\n\n```text\n{{ c }} <d>\n```\n\n<e>\n";
-        let expected = "a \\{b}\n\n```text\n{{ c }} <d>\n```\n\n&lt;e>";
-        assert_eq!(prose(source), expected);
-        assert_eq!(prose("```\n<a>"), "```\n<a>\n```");
-        assert_eq!(prose("~~~\n```x\n~~~\n<a>"), "~~~\n```x\n~~~\n&lt;a>");
+        check(
+            Place::Prose,
+            &[
+                (
+                    "a {b}\n\n```text\n{{ c }} <d>\n```\n\n<e>\n",
+                    "a \\{b}\n\n```text\n{{ c }} <d>\n```\n\n&lt;e>",
+                ),
+                ("```\n<a>", "```\n<a>\n```"),
+                ("~~~\n```x\n~~~\n<a>", "~~~\n```x\n~~~\n&lt;a>"),
+                (
+                    "```\n<!-- @include: x -->\n```",
+                    "<pre v-pre><code>&lt;!-- @include: x --&gt;</code></pre>",
+                ),
+            ],
+        );
+    }
+
+    #[test]
+    fn vitepress_obeys_no_comment() {
+        let text = "Say <!--@include: ../secret.txt-->";
+        check(
+            Place::Fence("json"),
+            &[(text, "<pre v-pre><code>Say &lt;!--@include: ../secret.txt--&gt;</code></pre>")],
+        );
+        check(Place::FrontMatter, &[(text, "\"Say ＜!--@include: ../secret.txt-->\"")]);
+        check(Place::Attribute, &[("a\"<b\nc", "a&quot;&lt;b c")]);
+    }
+
+    #[test]
+    fn a_title_ends_no_script() {
+        check(
+            Place::FrontMatter,
+            &[("a </script> < 3", "\"a ＜/script> < 3\""), ("a\"b\\", "\"a\\\"b\\\\\"")],
+        );
+    }
+
+    #[test]
+    fn invisible_characters_are_spelled() {
+        let hostile = "a\u{202e}b\0c\u{1b}d\u{2028}e\u{fdd0}f\u{e0001}";
+        let shown = "a\\u202eb\\u0000c\\u001bd\\u2028e\\ufdd0f\\udb40\\udc01";
+        for place in [Place::Line, Place::Cell, Place::Label, Place::Prose, Place::Diagram, Place::Data] {
+            assert_eq!(write(hostile, place), shown, "{place:?}");
+        }
+        assert_eq!(write(hostile, Place::Code), format!("`{shown}`"));
+        // YAML reads the spelling, and not the character.
+        let spelled = shown.replace('\\', "\\\\");
+        assert_eq!(write(hostile, Place::FrontMatter), format!("\"{spelled}\""));
+    }
+
+    #[test]
+    fn targets_have_nothing_that_ends_a_link() {
+        check(
+            Place::Target,
+            &[("../a b(1).yaml#x-序.2E.", "../a%20b%281%29.yaml#x-序.2E."), ("a\\<b>", "a%5C%3Cb%3E")],
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! `navigation.json`: groups and their operations, for the site's sidebar, map and search.
 
+use super::escape::{self, Place};
 use super::links::Page;
 use fc_spec::model::{Group, Model, Text, Value};
 
@@ -51,7 +52,7 @@ pub(super) fn navigation(model: &Model) -> String {
 
 fn titled(title: &Text, more: Vec<(&str, Value)>) -> Value {
     let texts = [("zh", &title.zh), ("en", &title.en)]
-        .map(|(key, text)| (key.to_owned(), Value::String(text.clone())));
+        .map(|(key, text)| (key.to_owned(), Value::String(escape::write(text, Place::Data))));
     let more = more.into_iter().map(|(key, value)| (key.to_owned(), value));
     Value::Object(texts.into_iter().chain(more).collect())
 }

@@ -195,9 +195,9 @@ fn link(page: Page<'_>, term: &Term, word: &str) -> String {
 }
 
 /// With what [`markup`] begins.
-const MARKUP: [char; 4] = ['`', '[', '<', '\\'];
+const MARKUP: [char; 5] = ['`', '[', '<', '\\', '&'];
 
-/// Length of the code span, link, tag or escaped character with which a text begins.
+/// Length of the code span, link, tag, entity or escaped character with which a text begins.
 fn markup(text: &str) -> Option<usize> {
     match text.chars().next()? {
         '`' => {
@@ -231,6 +231,12 @@ fn markup(text: &str) -> Option<usize> {
             Some(text.find(&closing)? + closing.len())
         }
         '\\' => Some(1 + text.chars().nth(1)?.len_utf8()),
+        '&' => {
+            let end = text.find(';')?;
+            let name = text.get(1..end)?;
+            let is_name = !name.is_empty() && name.chars().all(|it| it.is_ascii_alphanumeric());
+            is_name.then_some(end + 1)
+        }
         _ => None,
     }
 }

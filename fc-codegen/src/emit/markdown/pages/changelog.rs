@@ -10,9 +10,15 @@ use std::collections::BTreeMap;
 /// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ChangelogView {
-    days: Vec<Day>,
+    years: Vec<Year>,
     /// Withdrawn at an unknown date.
     undated: Vec<Entry>,
+}
+
+#[derive(Debug, Serialize)]
+struct Year {
+    name: String,
+    days: Vec<Day>,
 }
 
 #[derive(Debug, Serialize)]
@@ -42,13 +48,19 @@ pub(in crate::emit::markdown) fn changelog(desk: Desk<'_, '_>) -> ChangelogView 
         log.operation(operation);
     }
     log.types(desk.book);
-    let days = log
-        .days
-        .into_iter()
-        .rev()
-        .map(|(date, entries)| Day { date, entries });
+    let mut years: Vec<Year> = Vec::new();
+    for (date, entries) in log.days.into_iter().rev() {
+        let name = date.split('-').next().unwrap_or_default().to_owned();
+        if years.last().is_none_or(|year| year.name != name) {
+            let days = Vec::new();
+            years.push(Year { name, days });
+        }
+        if let Some(year) = years.last_mut() {
+            year.days.push(Day { date, entries });
+        }
+    }
     ChangelogView {
-        days: days.collect(),
+        years,
         undated: log.undated,
     }
 }

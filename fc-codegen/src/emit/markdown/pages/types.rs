@@ -18,6 +18,7 @@ pub(in crate::emit::markdown) struct TypesView {
 /// Types of one file.
 #[derive(Debug, Serialize)]
 struct Section {
+    anchor: String,
     title: String,
     types: Vec<TypeView>,
 }
@@ -45,6 +46,7 @@ struct TypeView {
 pub(in crate::emit::markdown) fn types(desk: Desk<'_, '_>) -> TypesView {
     let model = desk.book.model;
     let mut sections = vec![Section {
+        anchor: "shared-by-several-groups".to_owned(),
         title: desk
             .lang
             .pick("多组共用", "Shared by several groups")
@@ -52,6 +54,7 @@ pub(in crate::emit::markdown) fn types(desk: Desk<'_, '_>) -> TypesView {
         types: Vec::new(),
     }];
     sections.extend(model.groups.iter().map(|group| Section {
+        anchor: Anchor::of("group", &group.id).id(),
         title: desk.lang.text(&group.title).to_owned(),
         types: Vec::new(),
     }));

@@ -2,10 +2,10 @@
 """上装
 Upper body
 
-0x0200～0x0300 的指令直接透传给上装（箱体）。源文档只给出了其中一条的报文，没有给出开锁、打开格口的指令。
+0x0200～0x0300 的指令直接透传给上装（箱体）。源文档只给出了其中一条的报文，没有给出开锁、开门、打开格口的指令。
 
 Commands in the range 0x0200 to 0x0300 are passed straight through to the upper body, the cabinet of compartments.
-The source shows the bodies of one of them only. It has no command to unlock or open a compartment.
+The source shows the bodies of one of them only. It has no command to unlock or open a compartment or its door.
 """
 
 from __future__ import annotations
