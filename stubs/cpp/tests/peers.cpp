@@ -347,10 +347,11 @@ class Robot {
         is_read = true;
         return fc_runtime::Result<tests::Nothing, fc_runtime::Refusal>(fc_runtime::Refusal());
       };
-      const auto handled =
-          request.frame.code == tests::kEcho
-              ? fc_runtime::serve<tests::Echo, tests::Nothing>(protocol(), {}, request.text, handle)
-              : fc_runtime::serve<tests::Go, tests::Nothing>(protocol(), {}, request.text, handle);
+      const auto handled = request.frame.code == tests::kEcho
+                               ? fc_runtime::serve<tests::Echo, tests::Nothing>(
+                                     protocol(), {}, *request.text.lock(), handle)
+                               : fc_runtime::serve<tests::Go, tests::Nothing>(
+                                     protocol(), {}, *request.text.lock(), handle);
       if (!is_read) {
         core_.finish(request.handler, handled, now);
         continue;
