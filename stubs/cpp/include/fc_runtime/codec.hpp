@@ -346,7 +346,7 @@ bool Codec<T>::read_beside(Reader& reader, T& out, Beside* beside) {
       detail::ReadKey visit(reader, key, places);
       Fields<T>::each(visit, out);
       if (!visit.good()) return false;
-      if (!visit.taken() && (!reader.count(1) || !reader.keep(key, out.extra))) return false;
+      if (!visit.taken() && (!reader.count(1) || !reader.keep(out.extra))) return false;
     }
     if (!reader.end_value()) return false;
   }
