@@ -144,6 +144,14 @@ int main(int count, char** arguments) {
   tally.check(fc_runtime::to_json(kept).value_or("") == R"({"k\u0065y":3,"other":"\/"})", "is set");
   kept.extra.erase("key");
   tally.check(fc_runtime::to_json(kept).value_or("") == R"({"other":"\/"})", "and taken out");
+  // Values are counted while they are read: the rest of the text costs nothing.
+  std::string lists = "{";
+  for (int at = 0; at < 100'000; ++at) lists += R"("a":[[]],)";
+  fc_runtime::Allowance few;
+  few.values = 1000;
+  const auto many = fc_runtime::from_json<OneKey<int>>(lists + R"("a":0})", few);
+  tally.check(!many && many.error().name() == "too_many_values" && many.error().offset < 20'000,
+              "a hundred thousand lists");
   // Nesting far beyond the stack is refused by its depth.
   const auto deep =
       fc_runtime::from_json<OneKey<fc_runtime::Json>>("{\"value\":" + std::string(100'000, '['));

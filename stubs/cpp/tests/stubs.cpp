@@ -214,7 +214,7 @@ void required(Tally& tally) {
   const auto server =
       *fc_runtime::Server::bind(fc::protocol(), fc::service(std::make_shared<Forgetful>()), config);
   const auto client = app_of(server);
-  const auto call = client.get_task_history({});
+  const auto call = client.delete_station({});
   tally.check(!call && call.error().name() == "invalid_request", "a call is not sent");
   const auto answer = client.get_robot_sn({});
   tally.check(!answer && answer.error().refusal && answer.error().refusal->code == 2001,
