@@ -1,4 +1,4 @@
-// What clients and servers write to a log.
+// The log of clients and servers.
 #pragma once
 
 #include <functional>

@@ -19,7 +19,7 @@ class Required<T, false> {
  public:
   /// Unset.
   constexpr Required() noexcept = default;
-  // NOLINTBEGIN(google-explicit-constructor): it stands for a `T`
+  // NOLINTBEGIN(google-explicit-constructor): it is used like a `T`
   constexpr Required(T value) noexcept : value_(value), is_set_(true) {}
   constexpr operator T() const noexcept { return value_; }
   // NOLINTEND(google-explicit-constructor)
@@ -53,7 +53,7 @@ class Required<T, true> : public T {
  public:
   /// Unset.
   Required() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): it stands for a `T`
+  // NOLINTNEXTLINE(google-explicit-constructor): it is used like a `T`
   template <class U = T, class = IfOther<U>, class = std::enable_if_t<std::is_convertible_v<U, T>>>
   Required(U&& value) : T(std::forward<U>(value)), is_set_(true) {}
   template <class U = T, class = IfOther<U>, class = std::enable_if_t<std::is_assignable_v<T&, U>>>

@@ -29,7 +29,7 @@ struct Allowed {
   std::vector<Effect> effects;
 };
 
-/// What a server can be told beforehand. Whatever is not set is the protocol's default.
+/// The settings of a server. Unset ones are the protocol's defaults.
 struct ServerConfig {
   /// Address to listen at.
   std::string address = "0.0.0.0";
@@ -37,10 +37,10 @@ struct ServerConfig {
   std::optional<std::uint16_t> command_port;
   /// Port of streams; 0 for any that is free.
   std::optional<std::uint16_t> data_port;
-  /// How long a handler may take before the app is answered with the result of a timeout. The handler
+  /// Longest time of a handler. Then the app gets the result of a timeout. The handler
   /// runs on, since a function cannot be stopped; `Context::is_abandoned` tells it.
   std::optional<std::chrono::milliseconds> handler_timeout;
-  /// How many handlers run at the same time. While all are busy, requests wait.
+  /// Most handlers that run at the same time. While all are busy, requests wait.
   std::size_t handler_threads = 16;
   /// Most handlers that continue or wait for a thread without a waiting app. While there are as many,
   /// the server refuses commands before they begin.
@@ -73,12 +73,12 @@ struct ServerConfig {
   bool verify_digest = true;
   /// Whether to search for the next frame where one should begin and does not.
   bool resync = false;
-  /// How long a header may take from its first byte to its last.
+  /// Longest time of a header, from its first byte to its last.
   std::chrono::milliseconds header_timeout{5000};
   /// How long a connection may make no progress, in the middle of a frame or while it has something
   /// to read, before it is closed.
   std::chrono::milliseconds stall_timeout{30000};
-  /// How long a connection may be silent in between frames.
+  /// Longest silence of a connection in between frames.
   std::optional<std::chrono::milliseconds> idle_timeout;
   /// After how much silence TCP asks whether the app is still there, or none not to ask.
   std::optional<std::chrono::milliseconds> keepalive = std::chrono::seconds(30);

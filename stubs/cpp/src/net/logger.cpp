@@ -76,7 +76,7 @@ void Logger::write(LogLevel level, std::string_view cause, const std::string& te
   try {
     log_(level, line);
   } catch (...) {
-    // A log that fails has nowhere to say so.
+    // There is no other log for the errors of the log.
   }
 }
 
