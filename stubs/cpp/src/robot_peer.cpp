@@ -43,12 +43,17 @@ RobotPeer::RobotPeer(RobotShared& shared, ConnectionId id, std::vector<Effect> e
 }
 
 RobotPeer::~RobotPeer() {
-  for (auto& [handler, at_work] : handlers_) {
-    at_work.abandoned->store(true);
+  for (const auto& [handler, at_work] : handlers_) {
+    abandon(at_work);
     shared_->handlers.erase(handler);
-    ++shared_->abandoned;
   }
   drain();
+}
+
+/// The app waits no more. A handler that has begun cannot be stopped; any other does not begin.
+void RobotPeer::abandon(const AtWork& handler) {
+  handler.abandoned->store(true);
+  if (handler.settled->exchange(true)) ++shared_->abandoned;
 }
 
 void RobotPeer::drain() {
@@ -148,9 +153,11 @@ void RobotPeer::begin(FrameId frame, std::string_view text, Instant now) {
   *shared_->handled_bytes += text.size();
   const std::shared_ptr<const std::string> held(new std::string(text), forget);
   handled_bytes_ += text.size();
-  handlers_[handler] = {frame, after(now, shared_->settings.handler_timeout), abandoned, held};
+  auto settled = std::make_shared<std::atomic<bool>>(false);
+  handlers_[handler] = {frame, after(now, shared_->settings.handler_timeout), abandoned, settled,
+                        held};
   shared_->handlers[handler] = id_;
-  shared_->begin({handler, id_, frame, held, std::move(abandoned)});
+  shared_->begin({handler, id_, frame, held, std::move(settled), std::move(abandoned)});
 }
 
 bool RobotPeer::may_call(const OperationInfo* command) const {
@@ -288,9 +295,7 @@ void RobotPeer::advance(Instant now) {
       ++at;
       continue;
     }
-    // A function that runs cannot be stopped: its result is not sent.
-    at->second.abandoned->store(true);
-    ++shared_->abandoned;
+    abandon(at->second);
     shared_->handlers.erase(at->first);
     ++shared_->counters.calls_timed_out;
     answer(at->second.frame, shared_->protocol->results.timeout);

@@ -342,6 +342,7 @@ class Robot {
     std::vector<fc_runtime::Request> begun;
     begun.swap(begun_);
     for (const auto& request : begun) {
+      if (request.settled->exchange(true)) continue;
       bool is_read = false;
       const auto handle = [&is_read](const fc_runtime::Context&, const auto&) {
         is_read = true;

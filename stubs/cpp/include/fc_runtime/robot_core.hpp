@@ -39,7 +39,7 @@ struct RobotCounters {
   Count calls_timed_out;        ///< Commands whose handler took too long.
   Count calls_refused;          ///< Commands answered with another result than success.
   Count handlers_panicked;      ///< Handlers that threw, or whose response could not be sent.
-  Count abandoned_reached;      ///< Commands refused: too many handlers at work for nobody.
+  Count abandoned_reached;      ///< Commands refused: too many handlers continue without an app.
   Count in_flight_reached;      ///< Times that a connection was not read: too many at work.
   Count reports_acknowledged;   ///< Reports that an app has acknowledged.
   Count reports_dropped;        ///< Reports that gave way to newer ones.
@@ -54,9 +54,11 @@ struct Request {
   ConnectionId connection = 0;
   /// Code and message id.
   FrameId frame;
-  /// The whole JSON text, envelope included. Expires when the app waits no more; the handler then need
-  /// not begin.
+  /// The whole JSON text, envelope included. Expires when the app waits no more.
   std::weak_ptr<const std::string> text;
+  /// Settles whether the handler begins: the thread that sets it first lets it begin, or drops it if
+  /// that is the core, because the app waits no more. A dropped handler is not given to `finish`.
+  std::shared_ptr<std::atomic<bool>> settled;
   /// Set as soon as nobody waits for the answer any more.
   std::shared_ptr<const std::atomic<bool>> abandoned;
 };
@@ -110,7 +112,7 @@ struct RobotShared {
   std::uint64_t next_handler = 1;
   /// Handlers at work, each with its connection; those that nobody waits for are not here.
   std::unordered_map<std::uint64_t, ConnectionId> handlers;
-  /// Handlers at work that nobody waits for any more.
+  /// Handlers that have begun and whose app waits no more.
   std::size_t abandoned = 0;
   /// Pushes that have ended, and not been told so yet.
   std::vector<std::shared_ptr<Push>> ended;
@@ -151,12 +153,14 @@ class RobotPeer {
     FrameId frame;
     Instant due;
     std::shared_ptr<std::atomic<bool>> abandoned;
+    std::shared_ptr<std::atomic<bool>> settled;
     std::shared_ptr<const std::string> text;
   };
 
   void pump(Instant now);
   void arrive(const Frame& frame, Instant now);
   void begin(FrameId frame, std::string_view text, Instant now);
+  void abandon(const AtWork& handler);
   void acknowledged(Queued report, std::string_view text);
   void answer(FrameId id, const Refusal& refusal);
   void append(FrameId id, std::string_view body);

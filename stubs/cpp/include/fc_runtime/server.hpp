@@ -42,8 +42,8 @@ struct ServerConfig {
   std::optional<std::chrono::milliseconds> handler_timeout;
   /// Most handlers that run at the same time. While all are busy, requests wait.
   std::size_t handler_threads = 16;
-  /// Most handlers that continue or wait for a thread without a waiting app. While there are as many,
-  /// the server refuses commands before they begin.
+  /// Most handlers that continue without a waiting app. While there are as many, the server refuses
+  /// commands. Has no effect above `handler_threads`.
   std::size_t abandoned_handlers = 64;
   /// Oldest request that is still served, by the time in its envelope.
   std::optional<std::chrono::milliseconds> max_age;

@@ -353,10 +353,10 @@ void ServerImpl::forget(ConnectionId id) {
 }
 
 void ServerImpl::begin(const Request& request) {
-  workers_.run([this, request] {
+  const auto work = [this, request] {
     auto text = request.text.lock();
     if (!text) {
-      // The app waits no more: the handler does not begin.
+      // The app has gone at this very moment.
       ended(request.handler, Refusal(protocol_->results.timeout));
       return;
     }
@@ -371,7 +371,8 @@ void ServerImpl::begin(const Request& request) {
     // Its memory has to be free when the server looks for some.
     text.reset();
     ended(request.handler, std::move(handled));
-  });
+  };
+  workers_.run(work, request.settled);
 }
 
 /// Runs the handler of a request. An exception becomes an answer, so that the robot lives.
