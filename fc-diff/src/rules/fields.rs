@@ -17,8 +17,8 @@ rules! {
         title: ["a required field is new", "新增必填字段"],
         text: [
             "Old senders do not send it, and new receivers refuse the message. Programs in Kotlin and C++ compile without the \
-             field. In Kotlin the message cannot be built, and in C++ the field is empty or zero. Make it optional, with a default.",
-            "旧发送方不发这个字段，新接收方会拒绝。Kotlin 和 C++ 的代码不写这个字段也能编译：Kotlin 在构造消息时报错，C++ 中字段为空或零。请改为可选，并说明缺省含义。",
+             field. In Kotlin the message cannot be built, and in C++ it is not sent. Make it optional, with a default.",
+            "旧发送方不发这个字段，新接收方会拒绝。Kotlin 和 C++ 的代码不写这个字段也能编译：Kotlin 在构造消息时报错，C++ 中消息不会发出。请改为可选，并说明缺省含义。",
         ],
     }
     OPTIONAL_ADDED {

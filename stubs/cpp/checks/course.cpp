@@ -1,5 +1,6 @@
 // Every command of the odd protocol, called over TCP; and what its types say that are called like something else.
 #include <cstdio>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 
@@ -66,6 +67,16 @@ void said() {
   check(Drive::is_accepted_in(Going::Mro) && !Drive::is_accepted_in(Going::Name), "states");
   check(normally_follows(Going::Name, Going::Mro), "an order");
   check(odd_line::list().at(0).near == 1, "a table called like a type");
+  // Macros and the ends of integers.
+  const auto ends = fc_runtime::example<odd_line::UnixResponse>();
+  check(ends.lowest == std::numeric_limits<std::int64_t>::min(), "the lowest");
+  check(ends.highest == std::numeric_limits<std::uint64_t>::max(), "the highest");
+  check(odd_line::unix_().at(0).high == odd_line::High::Highest, "a row of both");
+  check(odd_line::unix_().at(0).linux_ == "?\?/", "a trigraph");
+  odd_line::UnixRequest unset;
+  check(!fc_runtime::to_json(unset) && unset.minor_or_default() == 1, "nothing is set");
+  unset = fc_runtime::example<odd_line::UnixRequest>();
+  check(unset.stdin_ == "what?\?/" && fc_runtime::to_json(unset), "all is set");
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ CHECKS = Path(__file__).resolve().parent
 PACKAGE = CHECKS.parent
 ROOT = PACKAGE.parents[1]
 FC = os.environ.get("FC", str(ROOT / "target/debug/fcproto"))
-STRICT = "-std=c++17 -O0 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
+# GNU C++ is what compilers and CMake take by default; only there `linux` is a macro.
+STRICT = "-std=gnu++17 -O0 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
 ASIO = "-DASIO_STANDALONE -DASIO_NO_DEPRECATED -DASIO_DISABLE_STD_ALIGNED_ALLOC".split()
 
 

@@ -40,7 +40,7 @@ double use(const meter::Client& client) {
   auto following = client.follow<meter::SwitchMoved>(meter::CloseSwitchRequest{});
   if (following) static_cast<void>(following->next(std::chrono::milliseconds(1)));
   const auto power = client.read_power({});
-  return power ? power->watts : 0;
+  return power ? power->watts.value() : 0;
 }
 
 }  // namespace

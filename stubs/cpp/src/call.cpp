@@ -34,6 +34,8 @@ std::string_view Loss::name() const noexcept {
       return "closed_here";
     case LossKind::Ended:
       return "ended";
+    case LossKind::Settings:
+      return "invalid_settings";
   }
   return "";
 }

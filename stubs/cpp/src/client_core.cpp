@@ -98,6 +98,14 @@ std::uint64_t ClientCore::call(std::uint16_t code, std::string body, const CallO
     ended_.emplace_back(std::move(done), failed(CallErrorKind::Closed, why_));
     return token;
   }
+  if (options.timeout && options.timeout->count() < 0) {
+    CallError error = failed(CallErrorKind::InvalidRequest);
+    error.body =
+        BodyError{BodyErrorKind::OutOfRange, "CallOptions::timeout", 0,
+                  std::to_string(options.timeout->count()) + " ms, expected a time from 0"};
+    ended_.emplace_back(std::move(done), std::move(error));
+    return token;
+  }
   const AckPolicy policy{options.timeout.value_or(settings_.call_timeout), 0};
   const auto frame = session_.open(protocol_->command_kind, code, policy, now, token);
   if (!frame) {

@@ -28,7 +28,6 @@ void Decoder::push(std::string_view bytes) {
   if (start_ == received_.size()) {
     received_.clear();
     start_ = 0;
-    if (received_.capacity() > kKeep) received_.shrink_to_fit();
   } else if (start_ > 0 && received_.size() + bytes.size() > received_.capacity()) {
     received_.erase(0, start_);
     start_ = 0;
@@ -38,6 +37,10 @@ void Decoder::push(std::string_view bytes) {
 
 void Decoder::release() {
   if (inflated_.capacity() > kKeep) std::string().swap(inflated_);
+  if (start_ == received_.size() && received_.capacity() > kKeep) {
+    std::string().swap(received_);
+    start_ = 0;
+  }
 }
 
 bool Decoder::may_open(std::string_view bytes) const {

@@ -41,21 +41,34 @@ Json Json::string(std::string_view value) {
 
 std::ostream& operator<<(std::ostream& out, const Json& value) { return out << value.text(); }
 
-std::vector<std::pair<std::string, Json>> Extra::members() const {
-  std::vector<std::pair<std::string, Json>> members;
+namespace {
+
+/// Visits the members of an `Extra`: the key, the text of the key, and the value.
+template <class Visit>
+void each_member(const std::string& members, const Visit& visit) {
   std::string text = "{";
-  if (!text_.empty()) text.append(text_, 1);
+  if (!members.empty()) text.append(members, 1);
   text.push_back('}');
   Reader reader(text, kAny);
-  if (!reader.begin_object()) return members;
+  if (!reader.begin_object()) return;
   while (!reader.end_object()) {
     std::string_view key;
-    if (!reader.key(key)) break;
-    std::string owned(key);
+    if (!reader.key(key)) return;
+    const std::string name(key);
+    const std::string_view raw = reader.raw_key();
     Json value;
-    if (!reader.json(value) || !reader.end_value()) break;
-    members.emplace_back(std::move(owned), std::move(value));
+    if (!reader.json(value) || !reader.end_value()) return;
+    visit(name, raw, std::move(value));
   }
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, Json>> Extra::members() const {
+  std::vector<std::pair<std::string, Json>> members;
+  each_member(text_, [&members](const std::string& name, std::string_view /*raw*/, Json value) {
+    members.emplace_back(name, std::move(value));
+  });
   return members;
 }
 
@@ -71,32 +84,25 @@ std::optional<Json> Extra::get(std::string_view key) const {
 
 void Extra::append(std::string_view key, std::string_view value) {
   text_.push_back(',');
-  Writer(text_).string(key);
+  text_.append(key);
   text_.push_back(':');
   text_.append(value);
 }
 
-void Extra::set(std::string_view key, const Json& value) {
-  const auto before = members();
-  text_.clear();
-  bool is_set = false;
-  for (const auto& [name, held] : before) {
+void Extra::replace(std::string_view key, const Json* value) {
+  const std::string before = std::exchange(text_, std::string());
+  each_member(before, [&](const std::string& name, std::string_view raw, const Json& held) {
     if (name != key) {
-      append(name, held.text());
-    } else if (!is_set) {
-      append(key, value.text());
-      is_set = true;
+      append(raw, held.text());
+    } else if (value != nullptr) {
+      append(raw, std::exchange(value, nullptr)->text());
     }
-  }
-  if (!is_set) append(key, value.text());
+  });
+  if (value != nullptr) append(Json::string(key).text(), value->text());
 }
 
-void Extra::erase(std::string_view key) {
-  const auto before = members();
-  text_.clear();
-  for (const auto& [name, held] : before) {
-    if (name != key) append(name, held.text());
-  }
-}
+void Extra::set(std::string_view key, const Json& value) { replace(key, &value); }
+
+void Extra::erase(std::string_view key) { replace(key, nullptr); }
 
 }  // namespace fc_runtime

@@ -91,7 +91,10 @@ bool Reader::end_object() {
 }
 
 bool Reader::key(std::string_view& out) {
+  peek();
+  const std::size_t start = at_;
   if (!text(out)) return false;
+  raw_key_ = since(start);
   if (peek() != ':') return bad_json("`:` is expected after a key");
   ++at_;
   return true;
@@ -376,46 +379,20 @@ bool Reader::skip() {
   }
 }
 
-namespace {
-
-/// The text without white space outside of strings.
-void append_compact(std::string& out, std::string_view text) {
-  bool quoted = false;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char next = text[at];
-    if (quoted) {
-      out.push_back(next);
-      if (next == '\\') {
-        out.push_back(text[++at]);
-      } else if (next == '"') {
-        quoted = false;
-      }
-    } else if (next != ' ' && next != '\n' && next != '\t' && next != '\r') {
-      quoted = next == '"';
-      out.push_back(next);
-    }
-  }
-}
-
-}  // namespace
-
 bool Reader::json(Json& out) {
   peek();
   const std::size_t start = at_;
   if (!skip()) return false;
-  out.text_.clear();
-  append_compact(out.text_, since(start));
+  out.text_.assign(since(start));
   return true;
 }
 
-bool Reader::keep(std::string_view key, Extra& extra) {
-  const std::string owned(key);
+bool Reader::keep(Extra& extra) {
+  const std::string_view key = raw_key_;
   peek();
   const std::size_t start = at_;
   if (!skip()) return false;
-  std::string value;
-  append_compact(value, since(start));
-  extra.append(owned, value);
+  extra.append(key, since(start));
   return true;
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "fc_runtime/session.hpp"
+
 namespace fc_runtime {
 
 std::optional<RawReport> ReportQueue::pop() {
@@ -45,14 +47,15 @@ std::optional<RawReport> ReportQueue::try_next() {
 
 std::optional<RawReport> ReportQueue::next(std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
-  changed_.wait_for(held, wait, [this] { return !reports_.empty() || is_closed_; });
+  changed_.wait_for(held, detail::bounded(wait),
+                    [this] { return !reports_.empty() || is_closed_; });
   return pop();
 }
 
 std::optional<ReportEvent> ReportQueue::next_event(std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
   std::optional<ReportEvent> event;
-  changed_.wait_for(held, wait, [&] {
+  changed_.wait_for(held, detail::bounded(wait), [&] {
     event = pop_event();
     return event.has_value();
   });

@@ -34,7 +34,7 @@ detail::RobotPeer* RobotCore::find(ConnectionId id) const {
 }
 
 std::optional<ConnectionId> RobotCore::connect(Instant now, std::vector<Effect> effects) {
-  if (over_by_ || peers_.size() >= shared_->settings.limits.connections) {
+  if (!takes_connections()) {
     ++shared_->counters.connections_refused;
     return std::nullopt;
   }
@@ -42,6 +42,10 @@ std::optional<ConnectionId> RobotCore::connect(Instant now, std::vector<Effect> 
   const ConnectionId id = next_id_++;
   peers_.emplace(id, std::make_unique<detail::RobotPeer>(*shared_, id, std::move(effects), now));
   return id;
+}
+
+bool RobotCore::takes_connections() const {
+  return !over_by_ && peers_.size() < shared_->settings.limits.connections;
 }
 
 void RobotCore::received(ConnectionId id, std::string_view bytes, Instant now) {
@@ -79,6 +83,24 @@ std::size_t RobotCore::push(std::uint16_t code, std::string body, std::optional<
   if (audience.empty()) shared_->ended.push_back(push);
   for (auto* peer : audience) peer->push({code, policy, whole, push}, now);
   return audience.size();
+}
+
+std::size_t RobotCore::held(ConnectionId id) const {
+  const auto* peer = find(id);
+  return peer != nullptr ? peer->held() : 0;
+}
+
+std::size_t RobotCore::held_for_nobody() const {
+  std::size_t counted = 0;
+  for (const auto& [id, peer] : peers_) counted += peer->handled_bytes();
+  const std::size_t all = *shared_->handled_bytes;
+  // A handler may let go of its request meanwhile.
+  return all > counted ? all - counted : 0;
+}
+
+bool RobotCore::is_heard(ConnectionId id) const {
+  const auto* peer = find(id);
+  return peer != nullptr && peer->is_heard();
 }
 
 void RobotCore::shutdown(std::chrono::milliseconds grace, Instant now) {

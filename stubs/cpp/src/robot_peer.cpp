@@ -43,12 +43,17 @@ RobotPeer::RobotPeer(RobotShared& shared, ConnectionId id, std::vector<Effect> e
 }
 
 RobotPeer::~RobotPeer() {
-  for (auto& [handler, at_work] : handlers_) {
-    at_work.abandoned->store(true);
+  for (const auto& [handler, at_work] : handlers_) {
+    abandon(at_work);
     shared_->handlers.erase(handler);
-    ++shared_->abandoned;
   }
   drain();
+}
+
+/// The app waits no more. A handler that has begun cannot be stopped; any other does not begin.
+void RobotPeer::abandon(const AtWork& handler) {
+  handler.abandoned->store(true);
+  if (handler.settled->exchange(true)) ++shared_->abandoned;
 }
 
 void RobotPeer::drain() {
@@ -61,7 +66,7 @@ void RobotPeer::drain() {
 }
 
 bool RobotPeer::wants_bytes() const {
-  return !deaf_ && !draining_ && !killed_ && unsent() < kHighWater &&
+  return !deaf_ && !draining_ && !killed_ && !shared_->is_pressed && unsent() < kHighWater &&
          handlers_.size() < shared_->settings.limits.in_flight;
 }
 
@@ -128,12 +133,31 @@ void RobotPeer::arrive(const Frame& frame, Instant now) {
     answer(id, shared_->protocol->results.protocol);
     return;
   }
+  if (shared_->abandoned >= shared_->settings.abandoned_handlers) {
+    ++shared_->counters.abandoned_reached;
+    answer(id, shared_->protocol->results.protocol);
+    return;
+  }
+  begin(id, frame.data, now);
+}
+
+void RobotPeer::begin(FrameId frame, std::string_view text, Instant now) {
   ++shared_->counters.calls;
   const std::uint64_t handler = shared_->next_handler++;
   auto abandoned = std::make_shared<std::atomic<bool>>(false);
-  handlers_[handler] = {id, after(now, shared_->settings.handler_timeout), abandoned};
+  // The last to let go of it may be the handler.
+  const auto forget = [bytes = shared_->handled_bytes](const std::string* held) {
+    *bytes -= held->size();
+    delete held;
+  };
+  *shared_->handled_bytes += text.size();
+  const std::shared_ptr<const std::string> held(new std::string(text), forget);
+  handled_bytes_ += text.size();
+  auto settled = std::make_shared<std::atomic<bool>>(false);
+  handlers_[handler] = {frame, after(now, shared_->settings.handler_timeout), abandoned, settled,
+                        held};
   shared_->handlers[handler] = id_;
-  shared_->begin({handler, id_, id, std::string(frame.data), std::move(abandoned)});
+  shared_->begin({handler, id_, frame, held, std::move(settled), std::move(abandoned)});
 }
 
 bool RobotPeer::may_call(const OperationInfo* command) const {
@@ -146,6 +170,7 @@ void RobotPeer::finish(std::uint64_t handler, const Handled& handled, Instant no
   const auto found = handlers_.find(handler);
   if (found == handlers_.end()) return;
   const FrameId frame = found->second.frame;
+  handled_bytes_ -= found->second.text->size();
   handlers_.erase(found);
   shared_->handlers.erase(handler);
   if (handled) {
@@ -174,8 +199,9 @@ void RobotPeer::append(FrameId id, std::string_view body) {
   const std::size_t before = out_.size();
   FrameId response = id;
   response.response = true;
-  if (!encoder_.append(out_, response, body)) {
+  if (const auto appended = encoder_.append(out_, response, body); !appended) {
     const auto& protocol = *shared_->protocol;
+    if (shared_->unsendable) shared_->unsendable(id_, id, appended.error());
     const Envelope envelope{unix_ms(), protocol.results.protocol.code,
                             std::string(protocol.results.protocol.text)};
     static_cast<void>(
@@ -269,12 +295,11 @@ void RobotPeer::advance(Instant now) {
       ++at;
       continue;
     }
-    // A function that runs cannot be stopped: its result is not sent.
-    at->second.abandoned->store(true);
-    ++shared_->abandoned;
+    abandon(at->second);
     shared_->handlers.erase(at->first);
     ++shared_->counters.calls_timed_out;
     answer(at->second.frame, shared_->protocol->results.timeout);
+    handled_bytes_ -= at->second.text->size();
     at = handlers_.erase(at);
   }
   pump(now);

@@ -37,9 +37,11 @@ milliseconds age(AckPolicy ack) {
 
 namespace detail {
 
-Instant after(Instant now, milliseconds wait) {
-  return now + std::min<milliseconds>(wait, std::chrono::duration_cast<milliseconds>(kFar));
+milliseconds bounded(milliseconds wait) {
+  return std::clamp<milliseconds>(wait, milliseconds(0), kFar);
 }
+
+Instant after(Instant now, milliseconds wait) { return now + bounded(wait); }
 
 Outgoing::Outgoing(std::size_t limit, std::uint32_t first_id, std::uint32_t id_max)
     : limit_(limit), next_id_(first_id & id_max), id_max_(id_max) {}

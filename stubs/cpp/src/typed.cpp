@@ -1,6 +1,13 @@
 #include "fc_runtime/typed.hpp"
 
+#include "fc_runtime/session.hpp"
+
 namespace fc_runtime {
+
+Refusal handler_failed(const Protocol& protocol) {
+  const ResultText& result = protocol.results.protocol;
+  return {result.code, std::string(result.text) + ": the handler failed"};
+}
 
 Refusal unknown_command(const Protocol& protocol) { return Refusal(protocol.results.protocol); }
 
@@ -16,8 +23,9 @@ Result<std::string, Refusal> serve_raw(const Protocol& protocol, Context context
   std::string whole =
       write_envelope(protocol.response_envelope, detail::envelope_of(protocol.results.success));
   const std::string& own = answered->text();
-  // An answer that is no object is the handler's fault and not the app's.
-  if (own.front() != '{') return Refusal(protocol.results.protocol);
+  if (own.front() != '{') {
+    throw UnsendableResponse(BodyError{BodyErrorKind::NotAnObject, "", 0, "return an object"});
+  }
   if (own == "{}") return whole;
   if (whole == "{}") return own;
   whole.back() = ',';
@@ -50,7 +58,8 @@ std::optional<Refusal> expired(const Protocol& protocol,
                                std::optional<std::chrono::milliseconds> max_age,
                                const Envelope& envelope) {
   if (!max_age || !envelope.time_ms) return std::nullopt;
-  if (unix_ms() - *envelope.time_ms <= max_age->count()) return std::nullopt;
+  // The app chooses its time: no sum may overflow.
+  if (*envelope.time_ms >= unix_ms() - bounded(*max_age).count()) return std::nullopt;
   return Refusal(protocol.results.expired);
 }
 

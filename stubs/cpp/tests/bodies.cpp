@@ -128,6 +128,30 @@ int main(int count, char** arguments) {
     const std::string name = std::isnan(none) ? "nan" : none > 0 ? "inf" : "-inf";
     tally.check(text == "OneKey{value: [" + name + ", 0.5]}", text);
   }
+  // Unknown keys and JSON are sent as they came, whatever they look like.
+  for (const std::string& odd :
+       {std::string(
+            R"({"value":{ "a" : [ 1.50, 1E+2 , "\u00e9\/" ] , "a":null},"k\u0065y":{"b" : -0.0 },)"
+            R"("\/":"\ud83d\ude00","key":[ ]})"),
+        std::string(R"({"x":"\ud800","x":1,"y":{ "z":9007199254740993 }})")}) {
+    const auto read = fc_runtime::from_json<OneKey<fc_runtime::Json>>(odd);
+    const auto again = read ? fc_runtime::to_json(*read) : read.error();
+    tally.check(again && *again == odd, "byte for byte: " + again.value_or(""));
+  }
+  auto kept = *fc_runtime::from_json<OneKey<int>>(R"({"k\u0065y":1,"other":"\/","key":2})");
+  tally.check(kept.extra.get("key") == fc_runtime::Json::integer(2), "a key by its name");
+  kept.extra.set("key", fc_runtime::Json::integer(3));
+  tally.check(fc_runtime::to_json(kept).value_or("") == R"({"k\u0065y":3,"other":"\/"})", "is set");
+  kept.extra.erase("key");
+  tally.check(fc_runtime::to_json(kept).value_or("") == R"({"other":"\/"})", "and taken out");
+  // Values are counted while they are read: the rest of the text costs nothing.
+  std::string lists = "{";
+  for (int at = 0; at < 100'000; ++at) lists += R"("a":[[]],)";
+  fc_runtime::Allowance few;
+  few.values = 1000;
+  const auto many = fc_runtime::from_json<OneKey<int>>(lists + R"("a":0})", few);
+  tally.check(!many && many.error().name() == "too_many_values" && many.error().offset < 20'000,
+              "a hundred thousand lists");
   // Nesting far beyond the stack is refused by its depth.
   const auto deep =
       fc_runtime::from_json<OneKey<fc_runtime::Json>>("{\"value\":" + std::string(100'000, '['));

@@ -1,13 +1,18 @@
 // Clients and robots over TCP: with each other, and with peers that misbehave.
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
+#include <functional>
 #include <future>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 #include "fc_runtime/client.hpp"
 #include "fc_runtime/server.hpp"
 #include "support/check.hpp"
+#include "support/lines.hpp"
 #include "support/raw.hpp"
 #include "support/toy_messages.hpp"
 
@@ -31,6 +36,7 @@ using std::chrono::seconds;
 using tests::Echo;
 using tests::Frames;
 using tests::Go;
+using tests::Lines;
 using tests::Nothing;
 using tests::Tally;
 
@@ -451,10 +457,290 @@ void hostile(Tally& tally) {
   const auto echo = good.call(Echo{"fine", {}});
   tally.check(echo && echo->text == "fine", "others go on");
 
-  std::vector<tests::Socket> many;
-  for (int at = 0; at < 9; ++at) many.push_back(tests::dial(server.command_port()));
-  // One more than may come from one address.
-  tally.check(many.back().receive().empty(), "too many from one address");
+  std::vector<Frames> many;
+  for (int at = 0; at < 7; ++at) {
+    many.emplace_back(tests::dial(server.command_port()), protocol());
+    many.back().send({false, 1, tests::kEcho, 1}, R"({"text":"here"})");
+    tally.check(bool(many.back().receive()), "as many as may come from one address");
+  }
+  tally.check(tests::dial(server.command_port()).receive().empty(), "and not one more");
+  tally.check(server.counters().connections_refused == 1, "which is counted");
+}
+
+/// Connections over which nothing comes do not keep apps out.
+void silent(Tally& tally) {
+  ServerConfig few = free_ports();
+  few.limits = protocol().defaults.limits;
+  few.limits->connections = 8;
+  few.connections_per_address = 100;
+  for (const ServerConfig& config : {free_ports(), few}) {
+    const auto server = *Server::bind(protocol(), service(), config);
+    std::vector<tests::Socket> commands;
+    std::vector<tests::Socket> streams;
+    for (int at = 0; at < 8; ++at) {
+      commands.push_back(tests::dial(server.command_port()));
+      streams.push_back(tests::dial(server.data_port()));
+    }
+    // Before its app has sent anything.
+    const tests::Socket early = tests::dial(server.data_port());
+    tally.check(streams.front().receive().empty(), "the oldest silent data connection gives way");
+    const Connection app = connected(server);
+    tally.check(commands.front().receive().empty(), "the oldest silent connection gives way");
+    tally.check(bool(app.call(Echo{"hello", {}})), "to an app, which is served");
+    tally.check(server.counters().connections_displaced == 2, "both are counted");
+    tally.check(server.counters().connections_refused == 0, "and nobody is refused");
+    tally.check(server.connections().size() == 8, "there are as many as there may be");
+  }
+}
+
+/// An exception that is no `std::exception`.
+struct Odd {};
+
+/// Throws as the request asks.
+Handled throwing(const Context& context, std::string_view text) {
+  return fc_runtime::serve<Echo, Echo>(
+      protocol(), context, text, [](const Context&, const Echo& request) -> Result<Echo, Refusal> {
+        if (request.text == "secret range") {
+          return Echo{std::to_string(std::vector<int>().at(request.text.size())), {}};
+        }
+        if (request.text == "secret number") throw 42;
+        if (request.text == "secret odd") throw Odd();
+        if (request.text == "secret body") return Echo{"\xFF", {}};
+        if (request.text == "secret long") return Echo{std::string(1U << 16U, 'x'), {}};
+        return request;
+      });
+}
+
+void handler_errors(Tally& tally) {
+  Lines lines;
+  std::mutex mutex;
+  std::vector<std::pair<std::exception_ptr, std::uint32_t>> told;
+  ServerConfig config = free_ports();
+  config.limits = protocol().defaults.limits;
+  config.limits->frame_bytes = 1U << 15U;
+  config.log = lines.log();
+  config.on_handler_error = [&](const std::exception_ptr& error, const Context& context) {
+    const std::lock_guard held(mutex);
+    told.emplace_back(error, context.id);
+    if (told.size() == 1) throw Odd();
+  };
+  const auto server = *Server::bind(protocol(), throwing, config);
+  ClientConfig there = to(server.command_port());
+  there.first_id = 500;
+  const auto app = *Connection::connect(protocol(), there);
+  for (const char* text :
+       {"secret range", "secret number", "secret odd", "secret body", "secret long"}) {
+    const auto failed = app.call(Echo{text, {}});
+    tally.check(!failed && failed.error().refusal && failed.error().refusal->code == 2001,
+                std::string(text) + " is answered");
+  }
+  const auto echo = app.call(Echo{"hello", {}});
+  tally.check(echo && echo->text == "hello", "the robot lives");
+  tally.check(server.counters().handlers_panicked == 5, "errors are counted");
+  for (const char* part : {"error toy: the handler of `echo` threw `std::out_of_range`",
+                           "error toy: the handler of `echo` threw `int`",
+                           "error toy: the handler of `echo` threw `(anonymous namespace)::Odd`",
+                           "error toy: the response to `echo` cannot be sent: not_utf8 at `text`",
+                           "error toy: the response to `echo` cannot be sent: frame_too_long",
+                           "error toy: `on_handler_error` threw `(anonymous namespace)::Odd`"}) {
+    tally.check(lines.has(part), part);
+  }
+  tally.check(!lines.has_now("secret"), "no contents of a body");
+  const std::lock_guard held(mutex);
+  tally.check(told.size() == 5 && told[0].second == 500 && told[3].second == 503,
+              "the hook has each error with its call");
+  try {
+    std::rethrow_exception(told.at(3).first);
+  } catch (const fc_runtime::UnsendableResponse& error) {
+    tally.check(std::string(error.what()).find("not_utf8") == 0, "and what is wrong");
+  } catch (...) {
+    tally.check(false, "a response that breaks the spec has an error of its own");
+  }
+}
+
+/// An exception of a callback harms neither an app nor a robot.
+void callbacks_throw(Tally& tally) {
+  ServerConfig config = free_ports();
+  Lines lines;
+  const fc_runtime::Log log = lines.log();
+  // A log may fail as well.
+  config.log = [log](fc_runtime::LogLevel level, std::string_view line) {
+    log(level, line);
+    throw Odd();
+  };
+  const auto server = *Server::bind(protocol(), service(), config);
+  ClientConfig there = to(server.command_port());
+  there.log = config.log;
+  const auto app = *Connection::connect(protocol(), there);
+  app.call_async(Echo{"secret", {}}, [](const auto&) { throw Odd(); });
+  tally.check(lines.has("error toy: the callback of `echo` threw"), "a callback of a call");
+  const auto queue = app.reports();
+  tally.check(bool(app.call(Echo{"hello", {}})), "the app lives");
+  tally.check(bool(server.push_async(Go{1, {}},
+                                     [](const std::vector<fc_runtime::AckOutcome>&) { throw 42; })),
+              "a report is queued");
+  tally.check(lines.has("error toy: a callback of a report threw `int`"), "its callback");
+  tally.check(bool(app.call(Echo{"hello", {}})), "the robot lives");
+  tally.check(!lines.has_now("secret"), "no contents of a body");
+}
+
+/// A flood of errors is none in the log.
+void log_flood(Tally& tally) {
+  std::atomic<int> lines{0};
+  ServerConfig config = free_ports();
+  config.log = [&](fc_runtime::LogLevel, std::string_view) { ++lines; };
+  const auto server = *Server::bind(
+      protocol(), [](const Context&, std::string_view) -> Handled { throw Odd(); }, config);
+  const Connection app = connected(server);
+  for (std::uint16_t code = 400; code < 420; ++code) {
+    tally.check(bool(app.call_body(code, "{}")), "each is answered");
+  }
+  tally.check(lines == 5 && server.counters().handlers_panicked == 20, "five lines for 20 errors");
+}
+
+/// Apps cannot make a robot hold more than it may.
+void memory(Tally& tally) {
+  ServerConfig config = free_ports();
+  config.memory = std::size_t{256} << 10U;
+  const auto server = *Server::bind(protocol(), service(), config);
+  const Connection app = connected(server);
+  tally.check(bool(app.call(Echo{"hello", {}})), "it is connected");
+  std::string frame;
+  tally.check(bool(fc_runtime::Encoder(protocol())
+                       .append(frame, {false, 1, tests::kEcho, 1}, std::string(2U << 20U, ' '))),
+              "a frame of 2 MiB");
+  const tests::Socket commands = tests::dial(server.command_port());
+  commands.send(std::string_view(frame).substr(0, 1U << 20U));
+  tally.check(commands.receive().empty(), "who holds most is closed");
+  const tests::Socket streams = tests::dial(server.data_port());
+  streams.send(std::string_view(frame).substr(0, 1U << 20U));
+  tally.check(streams.receive().empty(), "also at the data port");
+  tally.check(server.counters().connections_evicted == 2, "both are counted");
+  tally.check(bool(app.call(Echo{"hello", {}})), "others go on");
+}
+
+/// Requests of apps that have gone do not begin.
+void gone(Tally& tally) {
+  Door door;
+  std::atomic<int> begun{0};
+  const auto handles = service(&door);
+  ServerConfig config = free_ports();
+  config.handler_threads = 1;
+  const auto server = *Server::bind(
+      protocol(),
+      [&](const Context& context, std::string_view text) {
+        if (text.find("late") != std::string_view::npos) ++begun;
+        return handles(context, text);
+      },
+      config);
+  const Connection app = connected(server);
+  auto waits = std::async(std::launch::async, [&] { return app.call(Go{1, {}}); });
+  tally.check(door.has(1), "the only thread is busy");
+  {
+    Frames other(tests::dial(server.command_port()), protocol());
+    other.send({false, 1, tests::kEcho, 1}, R"({"text":"late"})");
+    while (server.counters().calls < 2) std::this_thread::yield();
+    other.socket().reset();
+  }
+  while (server.connections().size() > 1) std::this_thread::yield();
+  door.open();
+  tally.check(bool(waits.get()), "the first is answered");
+  tally.check(bool(app.call(Echo{"hello", {}})) && begun == 0, "the other has not begun");
+}
+
+/// At the limit of abandoned handlers, no more begin.
+void abandoned(Tally& tally) {
+  Door door;
+  ServerConfig config = free_ports();
+  config.handler_timeout = milliseconds(50);
+  config.abandoned_handlers = 2;
+  const auto server = *Server::bind(protocol(), service(&door), config);
+  const Connection app = connected(server);
+  for (int at = 0; at < 2; ++at) {
+    const auto late = app.call(Go{1, {}});
+    tally.check(!late && late.error().refusal->code == 2002, "a handler that takes too long");
+  }
+  const auto refused = app.call(Go{1, {}});
+  tally.check(!refused && refused.error().refusal->code == 2001, "one too many");
+  tally.check(server.counters().abandoned_reached == 1, "it is counted");
+  door.open();
+}
+
+void settings(Tally& tally) {
+  using Change = std::function<void(ServerConfig&)>;
+  for (const auto& [name, change] : std::vector<std::pair<std::string, Change>>{
+           {"address", [](ServerConfig& it) { it.address = ""; }},
+           {"address", [](ServerConfig& it) { it.address = "robot"; }},
+           {"handler_timeout", [](ServerConfig& it) { it.handler_timeout = milliseconds(-1); }},
+           {"handler_threads", [](ServerConfig& it) { it.handler_threads = 0; }},
+           {"abandoned_handlers", [](ServerConfig& it) { it.abandoned_handlers = 0; }},
+           {"max_age", [](ServerConfig& it) { it.max_age = milliseconds(-1); }},
+           {"limits.frame_bytes", [](ServerConfig& it) { it.limits.emplace().frame_bytes = 0; }},
+           {"limits.in_flight", [](ServerConfig& it) { it.limits.emplace().in_flight = 0; }},
+           {"limits.connections", [](ServerConfig& it) { it.limits.emplace().connections = 0; }},
+           {"limits.json_depth",
+            [](ServerConfig& it) { it.limits.emplace().json_depth = 100'000; }},
+           {"connections_per_address", [](ServerConfig& it) { it.connections_per_address = 0; }},
+           {"gzip.level",
+            [](ServerConfig& it) {
+              it.gzip = fc_runtime::Gzip{0, 10};
+            }},
+           {"header_timeout", [](ServerConfig& it) { it.header_timeout = milliseconds(-1); }},
+           {"stall_timeout", [](ServerConfig& it) { it.stall_timeout = milliseconds(-1); }},
+           {"idle_timeout", [](ServerConfig& it) { it.idle_timeout = milliseconds(-1); }},
+           {"keepalive", [](ServerConfig& it) { it.keepalive = milliseconds(-1); }},
+           {"keepalive", [](ServerConfig& it) { it.keepalive = std::chrono::hours(24); }},
+       }) {
+    ServerConfig config = free_ports();
+    change(config);
+    const auto bound = Server::bind(protocol(), service(), config);
+    tally.check(!bound && bound.error().detail.find("`ServerConfig::" + name + "`") == 0, name);
+  }
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  using Other = std::function<void(ClientConfig&)>;
+  for (const auto& [name, change] : std::vector<std::pair<std::string, Other>>{
+           {"host", [](ClientConfig& it) { it.host = ""; }},
+           {"host", [](ClientConfig& it) { it.host = " "; }},
+           {"host", [](ClientConfig& it) { it.host = std::string("robot\0", 6); }},
+           {"command_port", [](ClientConfig& it) { it.command_port = std::uint16_t{0}; }},
+           {"data_port", [](ClientConfig& it) { it.data_port = std::uint16_t{0}; }},
+           {"connect_timeout", [](ClientConfig& it) { it.connect_timeout = milliseconds(-1); }},
+           {"call_timeout", [](ClientConfig& it) { it.call_timeout = milliseconds(-1); }},
+           {"reconnect.first", [](ClientConfig& it) { it.reconnect->first = milliseconds(-1); }},
+           {"reconnect.longest",
+            [](ClientConfig& it) { it.reconnect->longest = milliseconds(-1); }},
+           {"keepalive", [](ClientConfig& it) { it.keepalive = milliseconds(-1); }},
+           {"stall_timeout", [](ClientConfig& it) { it.stall_timeout = milliseconds(-1); }},
+           {"limits.inflated_bytes",
+            [](ClientConfig& it) { it.limits.emplace().inflated_bytes = 0; }},
+           {"gzip.level",
+            [](ClientConfig& it) {
+              it.gzip = fc_runtime::Gzip{0, 0};
+            }},
+       }) {
+    ClientConfig config = to(server.command_port(), server.data_port());
+    change(config);
+    const auto app = Connection::connect(protocol(), config);
+    tally.check(!app && app.error().kind == LossKind::Settings &&
+                    app.error().detail.find("`ClientConfig::" + name + "`") == 0,
+                name);
+    const auto call = Connection::connect_lazy(protocol(), config).call(Echo{"hello", {}});
+    tally.check(!call && call.error().name() == "closed", name + ", connected lazily");
+  }
+  // For ever is as long as the clock goes.
+  ClientConfig patient = to(server.command_port());
+  patient.connect_timeout = patient.stall_timeout = milliseconds::max();
+  patient.call_timeout = milliseconds::max();
+  const auto app = *Connection::connect(protocol(), patient);
+  const auto queue = app.reports();
+  CallOptions options;
+  options.timeout = milliseconds::max();
+  tally.check(bool(app.call(Echo{"hello", {}}, options)), "a call that may take for ever");
+  tally.check(bool(server.push_async(Go{1, {}}, nullptr)), "a report");
+  tally.check(bool(queue->next(milliseconds::max())), "and who waits for it for ever");
+  options.timeout = milliseconds(-1);
+  const auto early = app.call(Echo{"hello", {}}, options);
+  tally.check(!early && early.error().name() == "invalid_request", "a time below 0");
 }
 
 void shutdown(Tally& tally) {
@@ -509,8 +795,9 @@ void handler_timeout(Tally& tally) {
 int main() {
   Tally tally;
   for (const auto test : {calls, compressed, reports, streams, subscriptions, allowed, losses,
-                          stalls, hostile, shutdown, handler_timeout}) {
+                          stalls, hostile, silent, handler_errors, callbacks_throw, log_flood,
+                          memory, gone, abandoned, settings, shutdown, handler_timeout}) {
     test(tally);
   }
-  return tally.outcome("things over TCP", 200);
+  return tally.outcome("things over TCP", 300);
 }

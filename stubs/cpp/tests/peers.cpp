@@ -342,15 +342,17 @@ class Robot {
     std::vector<fc_runtime::Request> begun;
     begun.swap(begun_);
     for (const auto& request : begun) {
+      if (request.settled->exchange(true)) continue;
       bool is_read = false;
       const auto handle = [&is_read](const fc_runtime::Context&, const auto&) {
         is_read = true;
         return fc_runtime::Result<tests::Nothing, fc_runtime::Refusal>(fc_runtime::Refusal());
       };
-      const auto handled =
-          request.frame.code == tests::kEcho
-              ? fc_runtime::serve<tests::Echo, tests::Nothing>(protocol(), {}, request.text, handle)
-              : fc_runtime::serve<tests::Go, tests::Nothing>(protocol(), {}, request.text, handle);
+      const auto handled = request.frame.code == tests::kEcho
+                               ? fc_runtime::serve<tests::Echo, tests::Nothing>(
+                                     protocol(), {}, *request.text.lock(), handle)
+                               : fc_runtime::serve<tests::Go, tests::Nothing>(
+                                     protocol(), {}, *request.text.lock(), handle);
       if (!is_read) {
         core_.finish(request.handler, handled, now);
         continue;
@@ -426,6 +428,34 @@ void patience(tests::Tally& tally) {
   tally.check(core.is_done(id) && core.counters().connections_timed_out == 1, "now it is");
 }
 
+/// An app that sends requests and reads no responses is not read either.
+void back_pressure(tests::Tally& tally) {
+  fc_runtime::RobotSettings settings;
+  settings.limits = protocol().defaults.limits;
+  std::vector<std::uint64_t> begun;
+  RobotCore core(protocol(), settings,
+                 [&](const fc_runtime::Request& request) { begun.push_back(request.handler); });
+  const Instant now = Instant() + std::chrono::hours(1);
+  const auto id = core.connect(now).value();
+  const std::string body = R"({"text":")" + std::string(64U << 10U, 'x') + "\"}";
+  fc_runtime::Encoder encoder(protocol());
+  std::size_t handled = 0;
+  for (std::uint32_t at = 0; at < 1000 && core.wants_bytes(id); ++at) {
+    std::string bytes;
+    tally.check(bool(encoder.append(bytes, {false, 1, tests::kEcho, at}, body)), "a request");
+    core.received(id, bytes, now);
+    for (const std::uint64_t handler : std::exchange(begun, {})) {
+      core.finish(handler, body, now);
+      ++handled;
+    }
+  }
+  tally.check(!core.wants_bytes(id) && handled == 4, "its responses wait");
+  tally.check(core.held(id) < std::size_t{512} << 10U, "and no more than those are held");
+  static_cast<void>(core.take_out(id));
+  core.set_unwritten(id, 0, now);
+  tally.check(core.wants_bytes(id) && core.held(id) == 0, "once they are read, it is read again");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -433,5 +463,6 @@ int main(int count, char** arguments) {
   tests::Tally tally;
   tests::hold(tally, arguments[1], "peer", run);
   patience(tally);
+  back_pressure(tally);
   return tally.outcome("scripts of peers", 50);
 }

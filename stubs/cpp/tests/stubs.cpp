@@ -9,10 +9,12 @@
 #include "fc/robot.hpp"
 #include "fc/tables.hpp"
 #include "support/check.hpp"
+#include "support/lines.hpp"
 
 namespace {
 
 using std::chrono::seconds;
+using tests::Lines;
 using tests::Tally;
 
 constexpr seconds kPatience{20};
@@ -47,12 +49,16 @@ class Docking : public fc::PartialRobot {
   bool is_busy_ = false;
 };
 
-fc_runtime::Server robot_of(std::shared_ptr<fc::Robot> robot) {
+fc_runtime::ServerConfig free_ports() {
   fc_runtime::ServerConfig config;
   config.address = "127.0.0.1";
   config.command_port = std::uint16_t{0};
   config.data_port = std::uint16_t{0};
-  return *fc_runtime::Server::bind(fc::protocol(), fc::service(std::move(robot)), config);
+  return config;
+}
+
+fc_runtime::Server robot_of(std::shared_ptr<fc::Robot> robot) {
+  return *fc_runtime::Server::bind(fc::protocol(), fc::service(std::move(robot)), free_ports());
 }
 
 fc::Client app_of(const fc_runtime::Server& server) {
@@ -161,6 +167,66 @@ void follow(Tally& tally) {
   tally.check(!refused && refused.error().name() == "refused", "a refusal is not followed");
 }
 
+/// A robot that answers without the required fields.
+class Forgetful : public fc::PartialRobot {
+ public:
+  fc_runtime::Replied<fc::GetRobotSnResponse> get_robot_sn(
+      const fc_runtime::Context& /*context*/, const fc::GetRobotSnRequest& /*request*/) override {
+    return fc::GetRobotSnResponse{};
+  }
+};
+
+/// A required field that was left out is not sent as 0 or "".
+void required(Tally& tally) {
+  const auto refused = [&tally](const auto& message, const std::string& path) {
+    const auto text = fc_runtime::to_json(message);
+    tally.check(!text && text.error().kind == fc_runtime::BodyErrorKind::MissingField &&
+                    text.error().path == path,
+                path + ": " + (text ? *text : to_string(text.error())));
+  };
+  refused(fc::GetRobotSnResponse{}, "data.robotSn");
+  refused(fc::GetTaskHistoryRequest{}, "taskId");
+  fc::RechargeProgress half;
+  half.data.recharge_status = fc::RechargeStatus{};
+  refused(half, "data.errorStatus");
+  std::ostringstream printed;
+  printed << fc::GetTaskHistoryRequest{};
+  tally.check(printed.str() == "GetTaskHistoryRequest{taskId: (unset)}", printed.str());
+
+  // A field that was set to 0 is sent.
+  fc::GetTaskHistoryRequest request;
+  tally.check(!request.task_id.is_set() && request.task_id == 0, "it reads as its type");
+  request.task_id = 0;
+  tally.check(fc_runtime::to_json(request).value_or("") == R"({"taskId":0})", "0 that is meant");
+  tally.check(request != fc::GetTaskHistoryRequest{}, "which is not the same as none");
+  const auto read = fc_runtime::from_json<fc::GetTaskHistoryRequest>(R"({"taskId":0})");
+  tally.check(read && *read == request, "and is read so");
+  fc_runtime::Required<std::string> text;
+  tally.check(!text.is_set() && text.empty() && (text = "").is_set(),
+              "a text that is meant to be empty");
+  fc_runtime::Required<std::string> appended;
+  appended.append("x");
+  tally.check(appended.is_set(), "that is changed by its members");
+
+  Lines lines;
+  fc_runtime::ServerConfig config = free_ports();
+  config.log = lines.log();
+  const auto server =
+      *fc_runtime::Server::bind(fc::protocol(), fc::service(std::make_shared<Forgetful>()), config);
+  const auto client = app_of(server);
+  const auto call = client.delete_station({});
+  tally.check(!call && call.error().name() == "invalid_request", "a call is not sent");
+  const auto answer = client.get_robot_sn({});
+  tally.check(!answer && answer.error().refusal && answer.error().refusal->code == 2001,
+              "a response is refused");
+  tally.check(lines.has("the response to `get_robot_sn` cannot be sent: missing_field at "
+                        "`data.robotSn`"),
+              "and logged");
+  const auto pushed = fc::Reporter(server).recharge_progress({});
+  tally.check(!pushed && pushed.error().kind == fc_runtime::PushErrorKind::Invalid,
+              "a report is not sent");
+}
+
 void messages(Tally& tally) {
   using fc::StationType;
   auto station = fc_runtime::example<fc::AddStationRequest>();
@@ -196,6 +262,6 @@ void messages(Tally& tally) {
 
 int main() {
   Tally tally;
-  for (const auto test : {partial, examples, reports, follow, messages}) test(tally);
+  for (const auto test : {partial, examples, reports, follow, required, messages}) test(tally);
   return tally.outcome("things about stubs", 139);
 }

@@ -1,10 +1,13 @@
 // Threads that run handlers: each handler gets one, as long as there are any.
 #include "../src/net/workers.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "support/check.hpp"
 
@@ -63,10 +66,32 @@ void in_turn(Tally& tally) {
   tally.check(second.has_met(), "and the others when these are free");
 }
 
+/// Settled work does not run, and does not pile up.
+void settled(Tally& tally) {
+  Meeting first(2);
+  std::atomic<int> done{0};
+  fc_runtime::detail::Workers workers(1);
+  workers.run([&first] { first.join(); });
+  std::vector<std::weak_ptr<std::atomic<bool>>> dropped;
+  for (int at = 0; at < 100'000; ++at) {
+    const auto is_settled = std::make_shared<std::atomic<bool>>(false);
+    workers.run([&done] { ++done; }, is_settled);
+    *is_settled = true;
+    dropped.push_back(is_settled);
+  }
+  const auto is_left = [](const auto& one) { return !one.expired(); };
+  tally.check(std::count_if(dropped.begin(), dropped.end(), is_left) < 3000, "it is forgotten");
+  Meeting last(2);
+  workers.run([&last] { last.join(); });
+  first.join();
+  last.join();
+  tally.check(done == 0, "and not done");
+}
+
 }  // namespace
 
 int main() {
   Tally tally;
-  for (const auto test : {all_at_once, in_turn}) test(tally);
+  for (const auto test : {all_at_once, in_turn, settled}) test(tally);
   return tally.outcome("things about threads", 3);
 }

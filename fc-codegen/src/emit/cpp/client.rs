@@ -2,6 +2,7 @@
 
 use super::groups::Group;
 use super::layout::{Includes, literal};
+use super::types::namespace;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -10,7 +11,7 @@ use crate::surface::package::Call;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
     out.blank();
@@ -286,7 +287,7 @@ fn each(out: &mut Source, groups: &[Group<'_>]) {
 
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/client.hpp\""));
     out.blank();

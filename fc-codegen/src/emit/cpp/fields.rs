@@ -4,7 +4,7 @@ use super::groups::{self, Group};
 use super::layout::{float, integer, literal, raw};
 use super::messages::opens;
 use super::process;
-use super::types::Header;
+use super::types::{Header, namespace};
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::source::Source;
@@ -23,7 +23,7 @@ pub fn source(
     header: &Header<'_, '_>,
     groups: &[&Group<'_>],
 ) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/groups/{}.hpp\"", header.id));
     out.blank();
@@ -47,7 +47,7 @@ pub fn source(
 
 /// What is declared of the message types of a header, and of their operations.
 fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
             out.blank();
@@ -96,7 +96,7 @@ fn record(
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let name = &item.ty.name;
     let expressions = Expressions::new(&context.package, samples);
     let conditions = Conditions {
@@ -170,12 +170,22 @@ fn lists(out: &mut Source, field: &Spelled<'_, Field>) {
         } else {
             "std::int64_t"
         };
-        let taken: Vec<String> = details.only.iter().map(scalar).collect();
+        let taken: Vec<String> = details.only.iter().map(taken).collect();
         out.line(format!(
             "static constexpr {ty} only_{}[] = {{{}}};",
             field.name,
             taken.join(", ")
         ));
+    }
+}
+
+/// A value that a field takes, as the runtime compares it: all integers as signed ones.
+fn taken(value: &Scalar) -> String {
+    match value {
+        Scalar::Number(Number::Int(value)) if i64::try_from(*value).is_err() => {
+            format!("static_cast<std::int64_t>({})", integer(*value))
+        }
+        value => scalar(value),
     }
 }
 

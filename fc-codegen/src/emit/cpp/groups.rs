@@ -2,7 +2,7 @@
 //! groups alone, so that they stay as they are when an operation is added.
 
 use super::layout::Includes;
-use super::types::Header;
+use super::types::{Header, namespace};
 use super::{client, protocol, robot};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::source::Source;
@@ -105,7 +105,7 @@ pub fn declare(
     };
     includes.standard("vector");
     includes.own("fc_runtime/protocol.hpp");
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     out.blank();
     out.namespace(&format!("{space}::{}", first.space), |out| {
         for group in groups {
@@ -143,7 +143,7 @@ pub fn define(out: &mut Source, context: &Context<'_>, groups: &[&Group<'_>]) {
     let Some(first) = groups.first() else {
         return;
     };
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     out.blank();
     out.namespace(&format!("{space}::{}", first.space), |out| {
         for group in groups {

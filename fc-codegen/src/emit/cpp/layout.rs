@@ -27,11 +27,14 @@ pub static CPP: Style = Style {
 };
 
 /// A line of a comment in which no backslash can come last, wherever it is wrapped: the next line would be joined to it.
+/// `??/` is a backslash for compilers that read trigraphs, and others warn of it.
 fn unspliced<'l>(line: &'l str, shown: &str) -> Cow<'l, str> {
-    if !line.ends_with('\\') && !line.contains("\\ ") {
+    const TRIGRAPH: &str = "??/";
+    if !line.ends_with('\\') && !line.contains("\\ ") && !line.contains(TRIGRAPH) {
         return Cow::Borrowed(line);
     }
     let mut out = line.replace("\\ ", &format!("{shown} "));
+    out = out.replace(TRIGRAPH, "?\u{FF1F}/");
     if out.ends_with('\\') {
         out.pop();
         out.push_str(shown);
@@ -160,6 +163,8 @@ pub fn literal(text: &str) -> String {
     out.push('"');
     for character in text.chars() {
         match character {
+            // Two question marks may begin a trigraph.
+            '?' if out.ends_with('?') => out.push_str("\\?"),
             '"' => out.push_str("\\\""),
             '\\' => out.push_str("\\\\"),
             '\n' => out.push_str("\\n"),

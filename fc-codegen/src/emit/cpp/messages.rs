@@ -2,10 +2,10 @@
 //! what both stubs have of their operations.
 
 use super::groups::{self, Group};
-use super::layout::{CPP, Includes, literal};
+use super::layout::{CPP, Includes, integer, literal};
 use super::process;
 use super::tables;
-use super::types::{Header, integer_type, name_of};
+use super::types::{Header, integer_type, name_of, namespace};
 use crate::emit::stub::about;
 use crate::emit::stub::conditions::Conditions;
 use crate::emit::stub::context::Context;
@@ -27,7 +27,7 @@ pub fn header(
     header: &Header<'_, '_>,
     groups: &[&Group<'_>],
 ) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut body = Source::cpp();
     let mut includes = Includes::default();
     includes.standard("iosfwd");
@@ -56,7 +56,7 @@ fn types(
     samples: &Samples<'_>,
     header: &Header<'_, '_>,
 ) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     body.namespace(space, |out| {
         for item in &header.items {
             out.blank();
@@ -138,12 +138,10 @@ fn structure(
                 includes.standard("optional");
                 ty = format!("std::optional<{ty}>");
             }
-            let start = if field.optional {
-                ""
-            } else {
-                initial(context, &field.ty)
-            };
-            out.line(format!("{ty} {}{start};", field.name));
+            if !field.optional && must_be_set(context, &field.ty) {
+                ty = format!("fc_runtime::Required<{ty}>");
+            }
+            out.line(format!("{ty} {};", field.name));
         }
         out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
         out.line("fc_runtime::Extra extra;");
@@ -188,16 +186,13 @@ fn structure(
     }
 }
 
-/// What a field begins with whose type has no beginning of its own.
-fn initial(context: &Context<'_>, ty: &Type) -> &'static str {
+/// Returns `true` for a required field that begins unset. A list begins empty. A struct or a choice begins
+/// with unset fields.
+fn must_be_set(context: &Context<'_>, ty: &Type) -> bool {
     match ty {
-        Type::Bool => " = false",
-        Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => " = 0",
-        Type::Named(named) => match &context.package.item(named).shape {
-            Shape::Enum(shape, _) if shape.repr != EnumRepr::String => "{}",
-            _ => "",
-        },
-        _ => "",
+        Type::Array(_) => false,
+        Type::Named(named) => matches!(context.package.item(named).shape, Shape::Enum(..)),
+        _ => true,
     }
 }
 
@@ -240,7 +235,7 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, comm
         |out| {
             for (error, result) in package.errors(command) {
                 out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
-                out.line(format!("{} = {},", result.name, result.code));
+                out.line(format!("{} = {},", result.name, integer(result.code.into())));
             }
         },
     );
@@ -276,7 +271,9 @@ fn enumeration(
         for value in values {
             out.docs(&facts::value_docs(value));
             match &value.wire {
-                Scalar::Number(Number::Int(wire)) => out.line(format!("{} = {wire},", value.name)),
+                Scalar::Number(Number::Int(wire)) => {
+                    out.line(format!("{} = {},", value.name, integer(*wire)));
+                }
                 _ => out.line(format!("{},", value.name)),
             }
         }
@@ -384,7 +381,7 @@ fn choice(
 
 /// What ties a request or a report to its code.
 fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let code = &call.operation.code.spelling;
     let is_command = call.operation.kind() == Kind::Command;
     let template = if is_command { "Command" } else { "Report" };

@@ -31,7 +31,7 @@ const SOURCES: &str = "sources.cmake";
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &CPP, &layout::CPP, Some(targets));
     let samples = &Samples::new(model);
-    let space = &model.protocol.id;
+    let space = &types::namespace(context);
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);
     let ids: Vec<&str> = headers.iter().map(|header| header.id).collect();

@@ -1,6 +1,7 @@
 //! Helpers for processes: the states of an enum, the reports of a command, and the state in a report.
 
 use super::fields::enumerators;
+use super::types::namespace;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::process::{set_off, state};
 use crate::emit::stub::source::Source;
@@ -157,7 +158,7 @@ pub fn define(
 
 /// Declares the functions that check the states in which a command is accepted.
 pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Operation) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let sets = command
         .accepted()
         .into_iter()
@@ -172,7 +173,7 @@ pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Opera
 
 /// Defines the functions of [`declare_accepted`].
 fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let sets = call
         .operation
         .accepted()
@@ -211,7 +212,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
 
 /// Declares the functions that tie a command to the reports that it sets off.
 pub fn declare_set_off(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     for (_, _, report) in set_off(context, call.operation) {
         let (request, response) = (&call.request.ty.name, &call.response.ty.name);
         let report = context.name_of(&report.request.ty);
@@ -232,7 +233,7 @@ pub fn declare_set_off(out: &mut Source, context: &Context<'_>, call: &Call<'_>)
 
 /// Defines the functions of a command and of a report.
 pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     define_accepted(out, context, call);
     for (set_off, _, report) in set_off(context, call.operation) {
         let (request, response) = (&call.request.ty.name, &call.response.ty.name);
@@ -277,7 +278,7 @@ pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
 
 /// Defines the functions over the state in a report.
 fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let name = &call.request.ty.name;
     let body = call.operation.messages().map(|it| &it.request.ty);
     let way = body.and_then(|body| {
@@ -349,7 +350,7 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
 
 /// A pointer to a field inside a message. It is null if a field on the path is absent.
 fn at(context: &Context<'_>, message: &str, body: &StructRef, keys: &[String]) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut holder: Option<&TypeRef> = Some(body);
     let mut out = format!("&{message}");
     for field in context.model().way(body, keys) {

@@ -3,6 +3,7 @@
 use super::groups::Group;
 use super::layout::{Includes, integer, literal};
 use super::messages::effect_name;
+use super::types::namespace;
 use crate::emit::stub::about;
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
@@ -16,7 +17,7 @@ use fc_spec::model::{
 
 /// The header.
 pub fn header(context: &Context<'_>) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
     out.blank();
@@ -48,7 +49,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             let mut docs = Docs::of(&result.text);
             docs.text(&result.about);
             out.docs(&docs);
-            out.line(format!("{} = {},", result.name, result.code));
+            out.line(format!("{} = {},", result.name, integer(result.code.into())));
         }
     });
     out.blank();
@@ -79,8 +80,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let model = context.model();
-    let space = &model.protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/protocol.hpp\""));
     out.blank();
@@ -243,7 +243,7 @@ fn frames(out: &mut Source, context: &Context<'_>) {
             out.line(format!(
                 "protocol.results.{} = {{{}, {}}};",
                 role.name(),
-                result.code,
+                integer(result.code.into()),
                 literal(&result.text.zh)
             ));
         }

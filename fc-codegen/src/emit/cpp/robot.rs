@@ -3,6 +3,7 @@
 
 use super::groups::Group;
 use super::layout::Includes;
+use super::types::namespace;
 use crate::emit::stub::context::{Context, page_of};
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -11,7 +12,7 @@ use crate::emit::stub::source::Source;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
     out.blank();
@@ -335,7 +336,7 @@ pub fn serve(out: &mut Source, group: &Group<'_>) {
 
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let ranges = pass_through(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/robot.hpp\""));

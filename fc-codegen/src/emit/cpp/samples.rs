@@ -3,6 +3,7 @@
 
 use super::assignments::{Assignments, assign};
 use super::layout::{CPP, Includes, literal};
+use super::types::namespace;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::samples as stub;
 use crate::emit::stub::source::Source;
@@ -69,7 +70,7 @@ impl<'p, 'm> Snippets<'p, 'm> {
     /// Of the C++ package, with values from `samples`.
     #[must_use]
     pub fn new(context: &'p Context<'m>, samples: &'p Samples<'m>) -> Self {
-        let space = format!("{}::", context.model().protocol.id);
+        let space = format!("{}::", namespace(context));
         Self {
             context,
             samples,
@@ -276,7 +277,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let (commands, reports) = (context.commands(), context.reports());
     let streams = [Side::Robot, Side::App].map(|side| stub::streams(&context.package, side));
     let [from_robot, from_app] = &streams;
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("// The samples of the documentation. They call every command and receive every report and stream.");
     let mut includes = Includes::default();

@@ -2,7 +2,7 @@
 
 use super::fields::enumerators;
 use super::layout::{Includes, float, integer, literal, raw};
-use super::types::{name_in, name_of};
+use super::types::{name_in, name_of, namespace};
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
@@ -13,7 +13,7 @@ use fc_spec::model::Type;
 
 /// The header.
 pub fn header(context: &Context<'_>) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
     out.blank();
@@ -44,7 +44,7 @@ pub fn header(context: &Context<'_>) -> String {
 
 /// The source.
 pub fn source(context: &Context<'_>) -> String {
-    let space = &context.model().protocol.id;
+    let space = &namespace(context);
     let package = &context.package;
     let samples = Samples::new(package.model);
     let expressions = Expressions::new(package, &samples);

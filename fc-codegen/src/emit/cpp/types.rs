@@ -2,9 +2,17 @@
 
 use crate::emit::stub::context::Context;
 use crate::emit::stub::process::set_off;
+use crate::surface::language::{CPP, Role};
 use crate::surface::package::{Item, Shape};
 use fc_spec::model::{Accepted, Direction, Type, TypeRef};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// The namespace and folder of the package.
+pub fn namespace<'c>(context: &'c Context<'_>) -> Cow<'c, str> {
+    let (Ok(name) | Err(name)) = CPP.spelling(Role::Module, &context.model().protocol.id);
+    name
+}
 
 /// The C++ type of a type of the spec, inside of the package's namespace.
 pub fn name_of(context: &Context<'_>, ty: &Type) -> String {

@@ -2,7 +2,8 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Keywords of C++17 and those of C++20 that a newer compiler refuses; macros of the C library; the types of the package.
+/// Keywords of C++17 and those of C++20 that a newer compiler refuses; macros of GCC (`linux`), of the C library and of POSIX;
+/// the types of the package.
 pub static CPP: Language = Language {
     name: "cpp",
     title: "C++",
@@ -18,11 +19,16 @@ pub static CPP: Language = Language {
         nullptr operator or or_eq private protected public register reinterpret_cast requires return short \
         signed sizeof static static_assert static_cast stderr stdin stdout struct switch template this \
         thread_local throw true try typedef typeid typename union unsigned using virtual void volatile \
-        wchar_t while xor xor_eq",
+        wchar_t while xor xor_eq \
+        alloca be16toh be32toh be64toh d_fileno h_addr h_errno htobe16 htobe32 htobe64 htole16 htole32 htole64 i386 \
+        le16toh le32toh le64toh linux major makedev math_errhandling minor mips offsetof s6_addr s6_addr16 s6_addr32 \
+        sa_handler sa_sigaction sched_priority setjmp si_addr si_band si_fd si_int si_lower si_overrun si_pid si_ptr \
+        si_status si_stime si_syscall si_timerid si_uid si_upper si_utime si_value sigmask sigsetjmp st_atime st_ctime \
+        st_mtime strdupa strndupa timeradd timerclear timercmp timerisset timersub unix va_arg va_copy va_end va_start",
     ),
     types: Words::new(
-        "AnyReport BOOL Client EOF ERROR ExampleRobot FALSE FILE NULL PartialRobot Reporter Reports \
-        ResultCode Robot StreamCode TRUE Value",
+        "AnyReport BOOL Client ECHO EOF ERROR ExampleRobot FALSE FAR FILE INFINITY NAN NULL PartialRobot Reporter \
+        Reports ResultCode Robot StreamCode TRUE Value",
     ),
     fields: Words::new("extra"),
     methods: Words::new(

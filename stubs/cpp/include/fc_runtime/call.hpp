@@ -55,6 +55,7 @@ enum class LossKind {
   Renewed,         ///< The command connection was made again, and the data connection with it.
   Here,            ///< This side has closed the connection.
   Ended,           ///< The client is gone.
+  Settings,        ///< A setting of the client is out of range; `detail` names it.
 };
 
 /// Why a connection was lost, or why there is none.

@@ -12,6 +12,7 @@
 
 #include "fc_runtime/client_core.hpp"
 #include "fc_runtime/data.hpp"
+#include "fc_runtime/log.hpp"
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/reports.hpp"
 #include "fc_runtime/typed.hpp"
@@ -62,6 +63,8 @@ struct ClientConfig {
   /// Whether to search for the next frame where one should begin and does not, instead of closing the
   /// connection.
   bool resync = false;
+  /// Receives the lines of the log. Without it, errors go to the standard error.
+  Log log;
 };
 
 namespace detail {
@@ -96,7 +99,7 @@ class PendingCall {
 
 /// A connection to a robot's command port. Cheap to copy; all copies share one connection, which is
 /// closed with the last of them. May be used from any thread. A thread of its own does the work:
-/// callbacks run there, and must not block or call what waits.
+/// callbacks run there, and must not block or call what waits. An exception of a callback is logged.
 class Connection {
  public:
   /// Connects. If the first attempt fails, says why. The protocol has to outlive the connection.

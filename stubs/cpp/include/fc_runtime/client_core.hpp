@@ -67,7 +67,7 @@ class Life {
 /// 16 KiB of it that have come: what a wrong length swallows must not pass for progress.
 class Progress {
  public:
-  explicit Progress(std::chrono::milliseconds limit) : limit_(limit) {}
+  explicit Progress(std::chrono::milliseconds limit) : limit_(detail::bounded(limit)) {}
 
   void whole() { since_.reset(); }
   void came(Instant now) {

@@ -17,6 +17,7 @@
 #include "fc_runtime/field.hpp"
 #include "fc_runtime/message.hpp"
 #include "fc_runtime/reader.hpp"
+#include "fc_runtime/required.hpp"
 #include "fc_runtime/value.hpp"
 #include "fc_runtime/writer.hpp"
 
@@ -136,7 +137,9 @@ class CollectRequired {
 
 template <class T>
 void write_value(Writer& writer, const Field& field, const T& value) {
-  if constexpr (IsOptional<T>::value) {
+  if constexpr (IsRequired<T>::value) {
+    write_value(writer, field, value.value());
+  } else if constexpr (IsOptional<T>::value) {
     write_value(writer, field, *value);
   } else if constexpr (std::is_same_v<T, bool>) {
     if (field.is_numeric()) {
@@ -207,6 +210,10 @@ class WriteMembers {
     writer_.raw(field.key());
     writer_.raw("\":");
     const bool had_failed = writer_.has_failed();
+    if constexpr (IsRequired<T>::value) {
+      if (!member.is_set())
+        writer_.fail(BodyErrorKind::MissingField, "the key is required; set it");
+    }
     Breach breach;
     if (!keeps(field, member, breach)) writer_.fail(breach.kind, breach.detail);
     write_value(writer_, field, member);
@@ -243,8 +250,13 @@ class CompareMembers {
 
   template <class T>
   void operator()(const Field& /*field*/, const T& member) {
-    equal_ = equal_ && *static_cast<const T*>(members_[index_]) == member;
+    const T& other = *static_cast<const T*>(members_[index_]);
     ++index_;
+    if constexpr (IsRequired<T>::value) {
+      equal_ = equal_ && other.is_set() == member.is_set() && other.value() == member.value();
+    } else {
+      equal_ = equal_ && other == member;
+    }
   }
 
   [[nodiscard]] bool equal() const { return equal_; }
@@ -259,7 +271,13 @@ class CompareMembers {
 
 template <class T>
 void print_value(std::ostream& out, const Field& field, const T& value) {
-  if constexpr (IsOptional<T>::value) {
+  if constexpr (IsRequired<T>::value) {
+    if (value.is_set()) {
+      print_value(out, field, value.value());
+    } else {
+      out << "(unset)";
+    }
+  } else if constexpr (IsOptional<T>::value) {
     print_value(out, field, *value);
   } else if constexpr (std::is_same_v<T, bool>) {
     out << (value ? "true" : "false");
@@ -346,7 +364,7 @@ bool Codec<T>::read_beside(Reader& reader, T& out, Beside* beside) {
       detail::ReadKey visit(reader, key, places);
       Fields<T>::each(visit, out);
       if (!visit.good()) return false;
-      if (!visit.taken() && (!reader.count(1) || !reader.keep(key, out.extra))) return false;
+      if (!visit.taken() && (!reader.count(1) || !reader.keep(out.extra))) return false;
     }
     if (!reader.end_value()) return false;
   }

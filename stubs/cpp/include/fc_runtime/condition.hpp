@@ -19,7 +19,9 @@ namespace detail {
 
 template <class T>
 void ask_conditions(const T& value, std::optional<ConditionError>& found) {
-  if constexpr (IsOptional<T>::value) {
+  if constexpr (IsRequired<T>::value) {
+    // A value without fields.
+  } else if constexpr (IsOptional<T>::value) {
     if (value.has_value()) ask_conditions(*value, found);
   } else if constexpr (IsList<T>::value) {
     if constexpr (std::is_class_v<typename T::value_type>) {

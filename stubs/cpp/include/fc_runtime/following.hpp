@@ -10,6 +10,7 @@
 
 #include "fc_runtime/client.hpp"
 #include "fc_runtime/operation.hpp"
+#include "fc_runtime/session.hpp"
 
 namespace fc_runtime {
 
@@ -59,7 +60,7 @@ class Following {
   [[nodiscard]] const Response& answer() const { return answer_; }
   /// What comes next; none if nothing has come in time, or after the last.
   [[nodiscard]] std::optional<Followed<Message>> next(std::chrono::milliseconds wait) {
-    const auto until = std::chrono::steady_clock::now() + wait;
+    const auto until = detail::after(std::chrono::steady_clock::now(), wait);
     while (queue_) {
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());

@@ -29,7 +29,8 @@ struct Allowance {
   std::size_t list_bytes = std::size_t{32} << 20U;
 };
 
-/// A JSON value, kept as its text: numbers keep all their digits. Compared by its text.
+/// A JSON value, kept byte for byte: numbers keep all their digits, strings their escapes, and white
+/// space stays. Compared by its text.
 class Json {
  public:
   /// `null`.
@@ -60,7 +61,8 @@ class Json {
 };
 
 /// The keys of an object that its type does not know, in the order in which they came, with
-/// duplicates. Kept as one text, so that they cost about as many bytes as they were sent with.
+/// duplicates. Keys and values are kept byte for byte, and compared so; white space between them is
+/// dropped. Kept as one text, so that they cost no more bytes than they were sent with.
 class Extra {
  public:
   /// Whether there are none.
@@ -85,7 +87,10 @@ class Extra {
  private:
   friend class Reader;
   friend class Writer;
+  /// Appends the texts of a key, with its quotes, and of its value.
   void append(std::string_view key, std::string_view value);
+  /// Replaces all values of a key by one, or removes them if `value` is null.
+  void replace(std::string_view key, const Json* value);
   /// The members as they are written, each with a comma in front.
   std::string text_;
 };

@@ -10,6 +10,7 @@
 
 #include "fc_runtime/error.hpp"
 #include "fc_runtime/json.hpp"
+#include "fc_runtime/required.hpp"
 #include "fc_runtime/result.hpp"
 
 namespace fc_runtime {

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "fc_runtime/operation.hpp"
+#include "fc_runtime/required.hpp"
 
 namespace fc_runtime::detail {
 
@@ -13,6 +14,10 @@ namespace fc_runtime::detail {
 template <class Holder, class Member>
 const Member* at(const Holder* holder, Member Holder::*member) {
   return holder == nullptr ? nullptr : &(holder->*member);
+}
+template <class Holder, class Member>
+const Member* at(const Holder* holder, Required<Member> Holder::*member) {
+  return holder == nullptr ? nullptr : &(holder->*member).value();
 }
 template <class Holder, class Member>
 const Member* at(const Holder* holder, std::optional<Member> Holder::*member) {

@@ -45,6 +45,8 @@ class Reader {
   [[nodiscard]] bool end_object();
   /// Reads a key and its colon. The view holds until the next key or string is read.
   [[nodiscard]] bool key(std::string_view& out);
+  /// The text of the last key, with its quotes and escapes.
+  [[nodiscard]] std::string_view raw_key() const { return raw_key_; }
   /// What follows a value in an object, up to the next key or the brace.
   [[nodiscard]] bool end_value();
   [[nodiscard]] bool begin_list();
@@ -88,8 +90,8 @@ class Reader {
   [[nodiscard]] bool take_empty();
   /// Reads a value and forgets it.
   [[nodiscard]] bool skip();
-  /// Reads the value of an unknown key and keeps it.
-  [[nodiscard]] bool keep(std::string_view key, Extra& extra);
+  /// Reads the value of the last key, which is unknown, and keeps the text of both.
+  [[nodiscard]] bool keep(Extra& extra);
   /// Nothing but white space is left.
   [[nodiscard]] bool finish();
 
@@ -127,6 +129,7 @@ class Reader {
   std::size_t values_;
   std::size_t lists_;
   std::string buffer_;
+  std::string_view raw_key_;
   BodyError error_;
 };
 

@@ -46,8 +46,7 @@ class [[nodiscard]] Result {
   /// The value, or `other` in its place.
   [[nodiscard]] T value_or(T other) const& { return has_value() ? **this : std::move(other); }
 
-  /// The value; without one a `std::runtime_error` with the error's text. For those who ask for
-  /// exceptions: nothing else in this library throws one.
+  /// The value. Without one, throws a `std::runtime_error` with the error's text.
   T& value_or_throw() & {
     if (!has_value()) throw std::runtime_error(to_string(error()));
     return **this;

@@ -29,6 +29,8 @@ struct RobotCounters {
   Count connections;            ///< Connections taken.
   Count connections_refused;    ///< Connections closed at once because there were too many.
   Count connections_forbidden;  ///< Connections closed at once because of their address.
+  Count connections_displaced;  ///< Silent connections closed to make room for another.
+  Count connections_evicted;    ///< Connections closed because memory was short and they held most.
   Count connections_timed_out;  ///< Connections closed because they made no progress.
   Count bytes_in;               ///< Bytes received.
   Count bytes_out;              ///< Bytes handed to connections to be sent.
@@ -36,6 +38,8 @@ struct RobotCounters {
   Count calls_forbidden;        ///< Commands refused because of the address that they came from.
   Count calls_timed_out;        ///< Commands whose handler took too long.
   Count calls_refused;          ///< Commands answered with another result than success.
+  Count handlers_panicked;      ///< Handlers that threw, or whose response could not be sent.
+  Count abandoned_reached;      ///< Commands refused: too many handlers continue without an app.
   Count in_flight_reached;      ///< Times that a connection was not read: too many at work.
   Count reports_acknowledged;   ///< Reports that an app has acknowledged.
   Count reports_dropped;        ///< Reports that gave way to newer ones.
@@ -50,8 +54,11 @@ struct Request {
   ConnectionId connection = 0;
   /// Code and message id.
   FrameId frame;
-  /// The whole JSON text, envelope included.
-  std::string text;
+  /// The whole JSON text, envelope included. Expires when the app waits no more.
+  std::weak_ptr<const std::string> text;
+  /// Settles whether the handler begins: the thread that sets it first lets it begin, or drops it if
+  /// that is the core, because the app waits no more. A dropped handler is not given to `finish`.
+  std::shared_ptr<std::atomic<bool>> settled;
   /// Set as soon as nobody waits for the answer any more.
   std::shared_ptr<const std::atomic<bool>> abandoned;
 };
@@ -64,6 +71,7 @@ struct RobotSettings {
   std::chrono::milliseconds stall_timeout{30000};
   std::optional<std::chrono::milliseconds> idle_timeout;
   std::size_t queued_bytes = 0;
+  std::size_t abandoned_handlers = 64;
   std::uint32_t first_id = 0;
   std::optional<Gzip> gzip;
   bool verify_digest = true;
@@ -95,10 +103,16 @@ struct RobotShared {
   RobotSettings settings;
   RobotCounters counters;
   std::function<void(Request)> begin;
+  std::function<void(ConnectionId, FrameId, const FrameError&)> unsendable;
+  /// Memory is short: nothing is read.
+  bool is_pressed = false;
+  /// Bytes of all requests in handlers, including those of closed connections.
+  std::shared_ptr<std::atomic<std::size_t>> handled_bytes =
+      std::make_shared<std::atomic<std::size_t>>(0);
   std::uint64_t next_handler = 1;
   /// Handlers at work, each with its connection; those that nobody waits for are not here.
   std::unordered_map<std::uint64_t, ConnectionId> handlers;
-  /// Handlers at work that nobody waits for any more.
+  /// Handlers that have begun and whose app waits no more.
   std::size_t abandoned = 0;
   /// Pushes that have ended, and not been told so yet.
   std::vector<std::shared_ptr<Push>> ended;
@@ -127,16 +141,26 @@ class RobotPeer {
   [[nodiscard]] bool is_done() const;
   [[nodiscard]] std::string take_out() { return std::exchange(out_, std::string()); }
   [[nodiscard]] bool is_heard() const { return heard_; }
+  /// Bytes that the app makes the robot hold.
+  [[nodiscard]] std::size_t held() const {
+    return decoder_.pending() + handled_bytes_ + queued_bytes_ + unsent();
+  }
+  /// Bytes of its requests that handlers have.
+  [[nodiscard]] std::size_t handled_bytes() const { return handled_bytes_; }
 
  private:
   struct AtWork {
     FrameId frame;
     Instant due;
     std::shared_ptr<std::atomic<bool>> abandoned;
+    std::shared_ptr<std::atomic<bool>> settled;
+    std::shared_ptr<const std::string> text;
   };
 
   void pump(Instant now);
   void arrive(const Frame& frame, Instant now);
+  void begin(FrameId frame, std::string_view text, Instant now);
+  void abandon(const AtWork& handler);
   void acknowledged(Queued report, std::string_view text);
   void answer(FrameId id, const Refusal& refusal);
   void append(FrameId id, std::string_view body);
@@ -158,6 +182,8 @@ class RobotPeer {
   Encoder encoder_;
   Session session_;
   std::map<std::uint64_t, AtWork> handlers_;
+  /// Bytes of their requests.
+  std::size_t handled_bytes_ = 0;
   std::deque<Queued> queue_;
   std::unordered_map<Token, Queued> in_flight_;
   std::size_t queued_bytes_ = 0;
@@ -188,14 +214,28 @@ class RobotCore {
   /// An app connects; none if there are too many. It may call what has these effects; none of them is
   /// all of them.
   [[nodiscard]] std::optional<ConnectionId> connect(Instant now, std::vector<Effect> effects = {});
+  /// Returns `true` while there is room for one more connection.
+  [[nodiscard]] bool takes_connections() const;
   /// Bytes have come over a connection.
   void received(ConnectionId id, std::string_view bytes, Instant now);
   /// The app has closed its half of a connection: what has been begun is still answered.
   void ended(ConnectionId id);
   /// A connection is no more, broken or closed.
   void closed(ConnectionId id);
-  /// A connection was closed at once because of its address.
-  void note_forbidden() { ++shared_->counters.connections_forbidden; }
+  /// The counters. The owner of the sockets counts connections that it closes itself.
+  [[nodiscard]] RobotCounters& counting() { return shared_->counters; }
+  /// Is told of responses that do not fit into a frame.
+  void set_unsendable(std::function<void(ConnectionId, FrameId, const FrameError&)> told) {
+    shared_->unsendable = std::move(told);
+  }
+  /// Memory is short, or no longer: while it is, no connection takes bytes.
+  void set_pressed(bool is_pressed) { shared_->is_pressed = is_pressed; }
+  /// Bytes that a connection makes the robot hold.
+  [[nodiscard]] std::size_t held(ConnectionId id) const;
+  /// Bytes of requests in handlers whose app waits no more. No connection counts them.
+  [[nodiscard]] std::size_t held_for_nobody() const;
+  /// Returns `true` once a byte has come over a connection.
+  [[nodiscard]] bool is_heard(ConnectionId id) const;
   /// What a handler has come to.
   void finish(std::uint64_t handler, const Handled& handled, Instant now);
   /// Sends a report, a whole body, to every app connected or to one. `done` is called by `settle` once

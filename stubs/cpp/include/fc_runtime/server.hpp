@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "fc_runtime/data.hpp"
+#include "fc_runtime/log.hpp"
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/push.hpp"
 #include "fc_runtime/robot_core.hpp"
@@ -27,7 +29,7 @@ struct Allowed {
   std::vector<Effect> effects;
 };
 
-/// What a server can be told beforehand. Whatever is not set is the protocol's default.
+/// The settings of a server. Unset ones are the protocol's defaults.
 struct ServerConfig {
   /// Address to listen at.
   std::string address = "0.0.0.0";
@@ -35,19 +37,30 @@ struct ServerConfig {
   std::optional<std::uint16_t> command_port;
   /// Port of streams; 0 for any that is free.
   std::optional<std::uint16_t> data_port;
-  /// How long a handler may take before the app is answered with the result of a timeout. The handler
+  /// Longest time of a handler. Then the app gets the result of a timeout. The handler
   /// runs on, since a function cannot be stopped; `Context::is_abandoned` tells it.
   std::optional<std::chrono::milliseconds> handler_timeout;
-  /// How many handlers run at the same time. While all are busy, requests wait.
+  /// Most handlers that run at the same time. While all are busy, requests wait.
   std::size_t handler_threads = 16;
+  /// Most handlers that continue without a waiting app. While there are as many, the server refuses
+  /// commands. Has no effect above `handler_threads`.
+  std::size_t abandoned_handlers = 64;
   /// Oldest request that is still served, by the time in its envelope.
   std::optional<std::chrono::milliseconds> max_age;
   /// Bounds of everything that grows with what apps send.
   std::optional<Limits> limits;
   /// Most bytes of reports that wait for one app or for its acknowledgement.
   std::optional<std::size_t> queued_bytes;
-  /// Most connections from one address, at each port.
+  /// Most connections from one address, at each port. Apps behind one router share an address.
+  ///
+  /// At this limit, or at `Limits::connections`, a new connection takes the place of a silent one: the
+  /// oldest from the address with most connections. No byte has come over a silent connection yet. A
+  /// data connection keeps its place if a command connection of its address has sent something.
   std::size_t connections_per_address = 8;
+  /// Most bytes that apps may make the server hold: received data, requests in handlers, and unsent
+  /// responses, reports and streams. Above it, the server closes the connection that holds most. While
+  /// handlers of closed connections hold too much, it reads no commands.
+  std::size_t memory = std::size_t{256} << 20U;
   /// Who may connect, and who may call what; everyone and all if nothing is here. Of several networks
   /// that have an address, the smallest holds. Any other connection is closed at once, and any other
   /// command refused as unknown; both are counted.
@@ -60,15 +73,21 @@ struct ServerConfig {
   bool verify_digest = true;
   /// Whether to search for the next frame where one should begin and does not.
   bool resync = false;
-  /// How long a header may take from its first byte to its last.
+  /// Longest time of a header, from its first byte to its last.
   std::chrono::milliseconds header_timeout{5000};
   /// How long a connection may make no progress, in the middle of a frame or while it has something
   /// to read, before it is closed.
   std::chrono::milliseconds stall_timeout{30000};
-  /// How long a connection may be silent in between frames.
+  /// Longest silence of a connection in between frames.
   std::optional<std::chrono::milliseconds> idle_timeout;
   /// After how much silence TCP asks whether the app is still there, or none not to ask.
   std::optional<std::chrono::milliseconds> keepalive = std::chrono::seconds(30);
+  /// Receives the lines of the log. Without it, errors go to the standard error.
+  Log log;
+  /// Is called with each exception of a handler, and with an `UnsendableResponse` if its response
+  /// cannot be sent. The exception may quote the request; the log has only its type. Runs in a thread of
+  /// the server, and must not block. An exception of this function is logged.
+  std::function<void(const std::exception_ptr& error, const Context& context)> on_handler_error;
 };
 
 /// Why a server could not be started.
@@ -89,7 +108,7 @@ struct AppStream {
 };
 
 /// Handles requests, on any of several threads at once: the context, the code and the whole text, and
-/// gives the body of the response or a refusal.
+/// gives the body of the response or a refusal. The server answers, counts and logs an exception.
 using Service = std::function<Handled(const Context& context, std::string_view text)>;
 
 namespace detail {
@@ -121,7 +140,8 @@ class Server {
     return push_body(Report<Message>::code, *std::move(body), to);
   }
 
-  /// The same without waiting; `done` is called on the server's thread, and must not block.
+  /// The same without waiting; `done` is called on the server's thread, and must not block. An
+  /// exception of it is logged.
   template <class Message>
   Result<Done, PushError> push_async(const Message& report, Pushed done,
                                      std::optional<ConnectionId> to = std::nullopt) const {

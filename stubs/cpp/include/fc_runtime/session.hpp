@@ -169,7 +169,10 @@ class Session {
 
 namespace detail {
 
-/// The time `wait` after `now`; a wait too long for the clock is cut to one that nobody lives to see.
+/// A wait that can be added to the time: a negative one is 0, and one too long for the clock a year.
+[[nodiscard]] std::chrono::milliseconds bounded(std::chrono::milliseconds wait);
+
+/// The time `wait` after `now`, as far as the clock goes.
 [[nodiscard]] Instant after(Instant now, std::chrono::milliseconds wait);
 
 }  // namespace detail

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,20 @@ using Called = Result<Response, CallError>;
 /// What a handler answers with.
 template <class Response>
 using Replied = Result<Response, Refusal>;
+
+/// A handler's response that cannot be sent: it breaks the spec, or does not fit into a frame. `serve`
+/// throws it to the server, which answers the app and tells `ServerConfig::on_handler_error`.
+class UnsendableResponse : public std::exception {
+ public:
+  explicit UnsendableResponse(const BodyError& error) : text_(to_string(error)) {}
+  explicit UnsendableResponse(const FrameError& error) : text_(to_string(error)) {}
+
+  /// The name of the error, and where it is. Quotes no value.
+  [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
+
+ private:
+  std::string text_;
+};
 
 /// What a handler knows beside the request.
 struct Context {
@@ -67,11 +82,13 @@ using RawReplied = Result<Json, Refusal>;
 /// Handles a command without a type: the context, and its whole text, envelope included, unread.
 using RawHandle = std::function<RawReplied(const Context& context, std::string_view text)>;
 
-/// Has a command without a type handled, and writes the response.
+/// Has a command without a type handled, and writes the response. Throws `UnsendableResponse`.
 [[nodiscard]] Result<std::string, Refusal> serve_raw(const Protocol& protocol, Context context,
                                                      std::string_view text,
                                                      const RawHandle& handle);
 
+/// The answer to a command whose handler has failed.
+[[nodiscard]] Refusal handler_failed(const Protocol& protocol);
 /// A command that the spec does not know.
 [[nodiscard]] Refusal unknown_command(const Protocol& protocol);
 /// A command of the spec that this robot does not carry out.
@@ -119,7 +136,7 @@ std::optional<typename Command<Request>::Error> declared(const CallError& error)
 }
 
 /// Reads a request, has it handled, and writes the response. `handle` takes the context and the
-/// request, and gives a `Result` of the response or a `Refusal`.
+/// request, and gives a `Result` of the response or a `Refusal`. Throws `UnsendableResponse`.
 template <class Request, class Response, class Handle>
 Result<std::string, Refusal> serve(const Protocol& protocol, Context context, std::string_view text,
                                    const Handle& handle) {
@@ -132,8 +149,7 @@ Result<std::string, Refusal> serve(const Protocol& protocol, Context context, st
   if (!answered) return std::move(answered).error();
   auto written = write_enveloped(protocol.response_envelope,
                                  detail::envelope_of(protocol.results.success), *answered);
-  // A response that breaks the spec is the handler's fault and not the app's.
-  if (!written) return Refusal(protocol.results.protocol);
+  if (!written) throw UnsendableResponse(written.error());
   return *std::move(written);
 }
 

@@ -14,6 +14,7 @@
 #include "fc_runtime/field.hpp"
 #include "fc_runtime/message.hpp"
 #include "fc_runtime/reader.hpp"
+#include "fc_runtime/required.hpp"
 #include "fc_runtime/writer.hpp"
 
 namespace fc_runtime {
@@ -156,7 +157,9 @@ bool read_choice(Reader& reader, Choice& out, std::index_sequence<I...> /*indice
 
 template <class T>
 bool read_value(Reader& reader, const Field& field, T& out) {
-  if constexpr (IsOptional<T>::value) {
+  if constexpr (IsRequired<T>::value) {
+    return read_value(reader, field, out.emplace());
+  } else if constexpr (IsOptional<T>::value) {
     out.reset();
     if (field.is_empty_absent() ? reader.take_empty() : reader.take_null()) return true;
     return read_value(reader, field, out.emplace());
@@ -199,7 +202,9 @@ bool keeps_items(const Field& field, const T& value, Breach& breach);
 /// Whether a value keeps the constraints of its field; an absent one does.
 template <class T>
 bool keeps(const Field& field, const T& value, Breach& breach) {
-  if constexpr (IsOptional<T>::value) {
+  if constexpr (IsRequired<T>::value) {
+    return keeps(field, value.value(), breach);
+  } else if constexpr (IsOptional<T>::value) {
     return !value.has_value() || keeps(field, *value, breach);
   } else {
     if (field.has_length()) {

@@ -5,6 +5,7 @@
 
 #include "clock.hpp"
 #include "data.hpp"
+#include "settings.hpp"
 #include "waiting.hpp"
 
 namespace fc_runtime {
@@ -42,6 +43,7 @@ ConnectionImpl::ConnectionImpl(const Protocol& protocol, const ClientConfig& con
     : protocol_(&protocol),
       config_(config),
       settings_(filled_in(protocol, config)),
+      logger_(config.log, protocol.name),
       core_(protocol, settings_),
       work_(asio::make_work_guard(io_)),
       dialler_(io_, config.host.value_or(std::string(protocol.host)),
@@ -50,7 +52,13 @@ ConnectionImpl::ConnectionImpl(const Protocol& protocol, const ClientConfig& con
 
 void ConnectionImpl::start(std::function<void(std::optional<Loss>)> first) {
   first_ = std::move(first);
-  asio::post(io_, [this] { dial(); });
+  asio::post(io_, [this] {
+    if (auto fault = fault_of(config_)) {
+      close(Loss{LossKind::Settings, {}, *std::move(fault)});
+    } else {
+      dial();
+    }
+  });
   // The thread keeps what it works on.
   thread_ = std::thread([self = shared_from_this()] {
     self->own_ = std::this_thread::get_id();
@@ -267,7 +275,18 @@ PendingCall Connection::call_body_async(std::uint16_t code, std::string body, Co
   // Touched on the connection's thread alone.
   const auto token = std::make_shared<std::uint64_t>(0);
   const auto impl = handle_->impl;
-  impl->post([impl = impl.get(), token, code, body = std::move(body), done = std::move(done),
+  Completion guarded;
+  if (done) {
+    guarded = [impl = impl.get(), code, done = std::move(done)](Answer answer) {
+      try {
+        done(std::move(answer));
+      } catch (...) {
+        impl->logger().write_thrown("the callback of " +
+                                    detail::command_name(impl->protocol(), code));
+      }
+    };
+  }
+  impl->post([impl = impl.get(), token, code, body = std::move(body), done = std::move(guarded),
               options]() mutable {
     *token = impl->call(code, std::move(body), options, std::move(done));
   });

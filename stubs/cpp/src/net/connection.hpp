@@ -18,6 +18,7 @@
 #include "fc_runtime/client.hpp"
 #include "fc_runtime/client_core.hpp"
 #include "link.hpp"
+#include "logger.hpp"
 
 namespace fc_runtime::detail {
 
@@ -55,6 +56,7 @@ class ConnectionImpl : public std::enable_shared_from_this<ConnectionImpl> {
   [[nodiscard]] const ClientCounters& counters() const { return core_.counters(); }
   [[nodiscard]] std::size_t in_flight() const { return in_flight_; }
   void note_out_of_order() { core_.note_out_of_order(); }
+  [[nodiscard]] Logger& logger() { return logger_; }
 
   // On its thread.
   std::uint64_t call(std::uint16_t code, std::string body, const CallOptions& options,
@@ -76,6 +78,7 @@ class ConnectionImpl : public std::enable_shared_from_this<ConnectionImpl> {
   const Protocol* protocol_;
   ClientConfig config_;
   ClientSettings settings_;
+  Logger logger_;
   ClientCore core_;
   asio::io_context io_{1};
   asio::executor_work_guard<asio::io_context::executor_type> work_;

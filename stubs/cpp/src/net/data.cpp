@@ -203,7 +203,7 @@ std::shared_ptr<Subscribed> DataImpl::subscribe(std::uint16_t code) {
 Result<StreamFrame, DataError> DataImpl::next_of(Subscribed& subscribed,
                                                  std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
-  changed_.wait_for(held, wait, [&] {
+  changed_.wait_for(held, bounded(wait), [&] {
     return !subscribed.inbox.empty() || state_.status == ConnectionStatus::Closed;
   });
   if (!subscribed.inbox.empty()) {
@@ -284,7 +284,7 @@ void DataImpl::send_next() {
 
 /// Looks now and then whether the connection goes on.
 void DataImpl::watch() {
-  const auto patience = commands_->config().stall_timeout;
+  const auto patience = bounded(commands_->config().stall_timeout);
   watching_.expires_after(patience / 4 + std::chrono::milliseconds(1));
   watching_.async_wait([this, patience](std::error_code error) {
     if (error || !link_) return;
@@ -309,7 +309,7 @@ void DataImpl::watch() {
 
 Result<Done, DataError> DataImpl::wait_for_connection() {
   std::unique_lock held(mutex_);
-  changed_.wait_for(held, commands_->settings().call_timeout,
+  changed_.wait_for(held, bounded(commands_->settings().call_timeout),
                     [this] { return state_.status != ConnectionStatus::Connecting; });
   if (state_.status == ConnectionStatus::Connected) return Done{};
   return failed(state_.status == ConnectionStatus::Closed ? DataErrorKind::Closed
@@ -320,8 +320,9 @@ Result<Done, DataError> DataImpl::wait_for_connection() {
 Result<StreamFrame, DataError> DataImpl::next(std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
   is_asked_ = true;
-  changed_.wait_for(
-      held, wait, [this] { return !inbox_.empty() || state_.status == ConnectionStatus::Closed; });
+  changed_.wait_for(held, bounded(wait), [this] {
+    return !inbox_.empty() || state_.status == ConnectionStatus::Closed;
+  });
   if (inbox_.empty()) {
     if (state_.status == ConnectionStatus::Closed) {
       return failed(DataErrorKind::Closed, state_.why);
@@ -354,7 +355,7 @@ Result<Done, DataError> DataImpl::send(std::uint16_t code, std::uint32_t id,
   sending_.push_back(sending);
   commands_->post([self = shared_from_this()] { self->send_next(); });
   const auto is_ended = [&] { return sending->ended.has_value(); };
-  changed_.wait_for(held, commands_->settings().call_timeout,
+  changed_.wait_for(held, bounded(commands_->settings().call_timeout),
                     [&] { return is_ended() || sending->is_begun; });
   if (!is_ended() && !sending->is_begun) {
     sending->is_given_up = true;

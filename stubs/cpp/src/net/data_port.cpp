@@ -20,17 +20,47 @@ DataPort::DataPort(asio::io_context& io, const Protocol& protocol, const RobotSe
   encoder_.set_frame_bytes(settings.limits.frame_bytes);
 }
 
-std::size_t DataPort::from(const std::string& address) const {
-  return static_cast<std::size_t>(
-      std::count_if(peers_.begin(), peers_.end(),
-                    [&](const auto& entry) { return entry.second.address == address; }));
+std::size_t DataPort::held_by(ConnectionId id, const Peer& peer) const {
+  std::size_t held = peer.decoder.pending() + peer.link->unwritten();
+  // A frame to several apps is held once.
+  const auto share = [](const std::shared_ptr<const std::string>& frame) {
+    return frame->size() / static_cast<std::size_t>(std::max(frame.use_count(), 1L));
+  };
+  for (const auto& frame : peer.queue) held += share(frame);
+  for (const auto& waiting : peer.waiting) held += share(waiting.frame);
+  const std::lock_guard lock(mutex_);
+  for (const AppStream& stream : inbox_) {
+    if (stream.connection == id) held += stream.frame.data.size();
+  }
+  return held;
 }
 
-bool DataPort::connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
+std::size_t DataPort::held() const {
+  std::size_t held = 0;
+  for (const auto& [id, peer] : peers_) held += held_by(id, peer);
+  return held;
+}
+
+std::optional<std::pair<ConnectionId, std::size_t>> DataPort::largest() const {
+  std::optional<std::pair<ConnectionId, std::size_t>> most;
+  for (const auto& [id, peer] : peers_) {
+    const std::size_t held = held_by(id, peer);
+    if (!most || held > most->second) most = {id, held};
+  }
+  return most;
+}
+
+void DataPort::evict(ConnectionId id) {
+  end(id);
+  const std::lock_guard held(mutex_);
+  const auto is_its = [id](const AppStream& stream) { return stream.connection == id; };
+  inbox_.erase(std::remove_if(inbox_.begin(), inbox_.end(), is_its), inbox_.end());
+}
+
+void DataPort::connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
                        const std::vector<ConnectionId>& commands_from_there) {
-  if (peers_.size() >= settings_.limits.connections) return false;
-  Peer peer{address, std::move(link), Decoder(*protocol_), commands_from_there, {},
-            {},      false,           clock_now(),         clock_now()};
+  Peer peer{address, std::move(link), Decoder(*protocol_), commands_from_there, {}, {},
+            false,   false,           clock_now(),         clock_now()};
   peer.decoder.set_limits(settings_.limits);
   peer.decoder.set_verify_digest(settings_.verify_digest);
   peer.decoder.set_resync(settings_.resync);
@@ -41,7 +71,6 @@ bool DataPort::connect(ConnectionId id, const std::string& address, std::shared_
   peers_.emplace(id, std::move(peer));
   link_of->read();
   if (!std::exchange(is_watching_, true)) watch();
-  return true;
 }
 
 void DataPort::saw(ConnectionId command, const std::string& address) {
@@ -53,9 +82,11 @@ void DataPort::saw(ConnectionId command, const std::string& address) {
 void DataPort::received(ConnectionId id, std::string_view bytes) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
+  found->second.is_heard = true;
   found->second.last_read = clock_now();
   found->second.decoder.push(bytes);
   take_frames(id, found->second);
+  on_held();
 }
 
 void DataPort::take_frames(ConnectionId id, Peer& peer) {
@@ -121,6 +152,7 @@ void DataPort::send(std::optional<ConnectionId> to, std::uint16_t code, std::uin
         .waiting.push_back({frame, sending, after(clock_now(), settings_.stall_timeout)});
     go_on(connection);
   }
+  on_held();
 }
 
 void DataPort::settle(const std::shared_ptr<Sending>& sending, bool taken) {
@@ -184,7 +216,7 @@ std::optional<AppStream> DataPort::next(std::chrono::milliseconds wait,
                                         const std::function<void()>& resume) {
   std::unique_lock held(mutex_);
   is_wanted_ = true;
-  came_.wait_for(held, wait, [this] { return is_over_ || !inbox_.empty(); });
+  came_.wait_for(held, bounded(wait), [this] { return is_over_ || !inbox_.empty(); });
   if (inbox_.empty()) return std::nullopt;
   const bool was_full = inbox_.size() >= kFramesForRobot;
   AppStream first = std::move(inbox_.front());
@@ -205,8 +237,8 @@ void DataPort::resume() {
 
 /// Looks now and then whether the connections go on.
 void DataPort::watch() {
-  watching_.expires_after(std::min(settings_.stall_timeout, settings_.header_timeout) / 4 +
-                          std::chrono::milliseconds(1));
+  const auto shorter = bounded(std::min(settings_.stall_timeout, settings_.header_timeout));
+  watching_.expires_after(shorter / 4 + std::chrono::milliseconds(1));
   watching_.async_wait([this](std::error_code error) {
     if (error) return;
     const Instant now = clock_now();

@@ -11,8 +11,10 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "admission.hpp"
 #include "fc_runtime/server.hpp"
 #include "link.hpp"
 
@@ -23,28 +25,6 @@ using StreamSent = std::function<void(Result<std::size_t, PushError>)>;
 
 /// The data connections of a robot.
 class DataPort {
- public:
-  DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings);
-
-  /// An app has connected. Says whether there is room for it.
-  bool connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
-               const std::vector<ConnectionId>& commands_from_there);
-  /// A command connection has come from an address.
-  void saw(ConnectionId command, const std::string& address);
-  void send(std::optional<ConnectionId> to, std::uint16_t code, std::uint32_t id,
-            const std::string& data, StreamSent sent);
-  /// Ends all connections once what waits has been sent.
-  void drain();
-  void close();
-  [[nodiscard]] std::size_t from(const std::string& address) const;
-
-  // From any thread.
-  [[nodiscard]] std::optional<AppStream> next(std::chrono::milliseconds wait,
-                                              const std::function<void()>& resume);
-  // On the thread of the server: there is room again.
-  void resume();
-
- private:
   /// A frame on its way to several connections.
   struct Sending {
     std::size_t open = 0;
@@ -56,6 +36,9 @@ class DataPort {
     std::shared_ptr<Sending> sending;
     Instant until;
   };
+
+ public:
+  /// A data connection.
   struct Peer {
     std::string address;
     std::shared_ptr<Link> link;
@@ -64,15 +47,51 @@ class DataPort {
     std::vector<ConnectionId> owners;
     std::deque<std::shared_ptr<const std::string>> queue;
     std::deque<Waiting> waiting;
+    bool is_heard = false;
     bool is_draining = false;
     Instant last_read;
     Instant last_written;
   };
 
+  DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings);
+
+  /// Called when it may hold more than before.
+  std::function<void()> on_held;
+
+  /// An app has connected, and there is room for it.
+  void connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
+               const std::vector<ConnectionId>& commands_from_there);
+  /// The connections that there are.
+  [[nodiscard]] Crowd<Peer> crowd(std::size_t per_address) const {
+    return {peers_, per_address, settings_.limits.connections};
+  }
+  [[nodiscard]] bool is_empty() const { return peers_.empty(); }
+  /// Bytes that apps make it hold.
+  [[nodiscard]] std::size_t held() const;
+  /// The connection that holds most, and its bytes.
+  [[nodiscard]] std::optional<std::pair<ConnectionId, std::size_t>> largest() const;
+  void end(ConnectionId id);
+  /// Ends a connection, and drops the frames that have come over it.
+  void evict(ConnectionId id);
+  /// A command connection has come from an address.
+  void saw(ConnectionId command, const std::string& address);
+  void send(std::optional<ConnectionId> to, std::uint16_t code, std::uint32_t id,
+            const std::string& data, StreamSent sent);
+  /// Ends all connections once what waits has been sent.
+  void drain();
+  void close();
+
+  // From any thread.
+  [[nodiscard]] std::optional<AppStream> next(std::chrono::milliseconds wait,
+                                              const std::function<void()>& resume);
+  // On the thread of the server: there is room again.
+  void resume();
+
+ private:
   void received(ConnectionId id, std::string_view bytes);
   void take_frames(ConnectionId id, Peer& peer);
   void go_on(ConnectionId id);
-  void end(ConnectionId id);
+  [[nodiscard]] std::size_t held_by(ConnectionId id, const Peer& peer) const;
   void settle(const std::shared_ptr<Sending>& sending, bool taken);
   void watch();
 
@@ -83,7 +102,7 @@ class DataPort {
   bool is_watching_ = false;
   std::map<ConnectionId, Peer> peers_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable came_;
   bool is_wanted_ = false;
   bool is_over_ = false;

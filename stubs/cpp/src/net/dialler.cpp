@@ -4,6 +4,8 @@
 #include <asio/connect.hpp>
 #include <random>
 
+#include "fc_runtime/session.hpp"
+
 namespace fc_runtime::detail {
 
 /// An attempt under way; over as soon as its `done` is gone.
@@ -33,16 +35,18 @@ Dialler::Dialler(asio::io_context& io, std::string host, std::uint16_t port,
     : io_(&io),
       host_(std::move(host)),
       port_(port),
-      limit_(config.connect_timeout),
+      limit_(bounded(config.connect_timeout)),
       keepalive_(config.keepalive),
       backoff_(config.reconnect) {}
 
 std::optional<std::chrono::milliseconds> Dialler::next_wait() {
   if (std::exchange(is_first_, false)) return std::chrono::milliseconds(0);
   if (!backoff_ || (backoff_->attempts && failed_ >= *backoff_->attempts)) return std::nullopt;
-  const auto doubled = backoff_->first * (std::int64_t{1} << std::min<std::uint32_t>(waits_, 20));
+  // A year, doubled so often, still fits.
+  const auto doubled =
+      bounded(backoff_->first) * (std::int64_t{1} << std::min<std::uint32_t>(waits_, 20));
   ++waits_;
-  const auto wait = std::min<std::chrono::milliseconds>(doubled, backoff_->longest);
+  const auto wait = std::min<std::chrono::milliseconds>(doubled, bounded(backoff_->longest));
   // Many apps do not come back at once.
   std::random_device chance;
   return wait - wait * static_cast<std::int64_t>(chance() % 256) / 1024;

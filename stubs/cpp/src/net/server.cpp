@@ -1,5 +1,6 @@
 #include "fc_runtime/server.hpp"
 
+#include <algorithm>
 #include <asio/executor_work_guard.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
@@ -7,14 +8,18 @@
 #include <asio/steady_timer.hpp>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <thread>
 
+#include "admission.hpp"
 #include "allow.hpp"
 #include "clock.hpp"
 #include "data_port.hpp"
 #include "link.hpp"
+#include "logger.hpp"
+#include "settings.hpp"
 #include "waiting.hpp"
 #include "workers.hpp"
 
@@ -54,6 +59,7 @@ RobotSettings filled_in(const Protocol& protocol, const ServerConfig& config) {
   settings.stall_timeout = config.stall_timeout;
   settings.idle_timeout = config.idle_timeout;
   settings.queued_bytes = config.queued_bytes.value_or(settings.limits.inflated_bytes);
+  settings.abandoned_handlers = config.abandoned_handlers;
   settings.first_id = config.first_id.value_or(first_id_now());
   settings.gzip = config.gzip;
   settings.verify_digest = config.verify_digest;
@@ -71,14 +77,26 @@ class ServerImpl {
       : protocol_(&protocol),
         config_(config),
         settings_(filled_in(protocol, config)),
+        logger_(config.log, protocol.name),
         service_(std::move(service)),
-        core_(protocol, settings_, [this](Request request) { begin(std::move(request)); }),
+        core_(protocol, settings_, [this](const Request& request) { begin(request); }),
         work_(asio::make_work_guard(io_)),
         commands_(io_),
         streams_(io_),
         timer_(io_),
         data_(io_, protocol, settings_),
-        workers_(config.handler_threads) {}
+        workers_(config.handler_threads) {
+    core_.set_unsendable([this](ConnectionId id, FrameId frame, const FrameError& error) {
+      Context context;
+      context.connection = id;
+      context.code = frame.code;
+      context.id = frame.id;
+      note_failure(context, std::make_exception_ptr(UnsendableResponse(error)));
+    });
+    data_.on_held = [this] {
+      if (held() > config_.memory) after_work();
+    };
+  }
   ServerImpl(const ServerImpl&) = delete;
   ServerImpl& operator=(const ServerImpl&) = delete;
   ~ServerImpl() {
@@ -99,6 +117,7 @@ class ServerImpl {
   [[nodiscard]] std::uint16_t data_port() const { return data_port_; }
   [[nodiscard]] const RobotCounters& counters() const { return core_.counters(); }
   [[nodiscard]] DataPort& data() { return data_; }
+  [[nodiscard]] Logger& logger() { return logger_; }
   [[nodiscard]] std::vector<ConnectionId> connections() const {
     const std::lock_guard held(mutex_);
     return connected_;
@@ -119,13 +138,22 @@ class ServerImpl {
 
   std::optional<BindError> open(tcp::acceptor& acceptor, std::uint16_t port, std::uint16_t& bound);
   void accept(tcp::acceptor& acceptor, bool is_data);
+  void accept_later(tcp::acceptor& acceptor, bool is_data);
   void accepted(tcp::socket socket, bool is_data);
   void connected(std::shared_ptr<Link> link, const std::string& address,
                  const std::vector<Effect>& effects);
-  void begin(Request request);
+  template <class Peers, class IsSilent, class GiveWay>
+  [[nodiscard]] bool admit(const Crowd<Peers>& crowd, const std::string& address,
+                           const IsSilent& is_silent, const GiveWay& give_way);
+  void begin(const Request& request);
+  [[nodiscard]] Handled handle(const Context& context, std::string_view text);
+  void note_failure(const Context& context, const std::exception_ptr& error);
   void ended(std::uint64_t handler, Handled handled);
   void answer();
-  [[nodiscard]] std::size_t from(const std::string& address) const;
+  [[nodiscard]] bool speaks(const std::string& address) const;
+  [[nodiscard]] std::size_t held() const;
+  void weigh();
+  void evict_largest();
   void forget(ConnectionId id);
   void note();
   void after_work();
@@ -137,6 +165,7 @@ class ServerImpl {
   const Protocol* protocol_;
   ServerConfig config_;
   RobotSettings settings_;
+  Logger logger_;
   Service service_;
   RobotCore core_;
   asio::io_context io_{1};
@@ -179,6 +208,7 @@ std::optional<BindError> ServerImpl::open(tcp::acceptor& acceptor, std::uint16_t
 }
 
 std::optional<BindError> ServerImpl::listen() {
+  if (auto fault = fault_of(config_)) return BindError{*std::move(fault)};
   if (auto error = allowed_.read(config_.allow)) return error;
   const auto command_port = config_.command_port.value_or(protocol_->command_port);
   if (auto error = open(commands_, command_port, command_port_)) return error;
@@ -193,15 +223,47 @@ std::optional<BindError> ServerImpl::listen() {
 void ServerImpl::accept(tcp::acceptor& acceptor, bool is_data) {
   acceptor.async_accept([this, &acceptor, is_data](std::error_code error, tcp::socket socket) {
     if (is_stopped_ || !acceptor.is_open()) return;
-    if (!error) accepted(std::move(socket), is_data);
+    if (error) {
+      accept_later(acceptor, is_data);
+      return;
+    }
+    accepted(std::move(socket), is_data);
     accept(acceptor, is_data);
   });
 }
 
-std::size_t ServerImpl::from(const std::string& address) const {
-  std::size_t count = 0;
-  for (const auto& [id, peer] : peers_) count += peer.address == address ? 1 : 0;
-  return count;
+/// Accepts again after a moment. The system may be out of files, and would report so without end.
+void ServerImpl::accept_later(tcp::acceptor& acceptor, bool is_data) {
+  const auto timer = std::make_shared<asio::steady_timer>(io_, std::chrono::milliseconds(100));
+  timer->async_wait([this, &acceptor, is_data, timer](std::error_code) {
+    if (!is_stopped_ && acceptor.is_open()) accept(acceptor, is_data);
+  });
+}
+
+/// Returns `true` if an app at an address has sent something to the command port.
+bool ServerImpl::speaks(const std::string& address) const {
+  return std::any_of(peers_.begin(), peers_.end(), [&](const auto& entry) {
+    return entry.second.address == address && core_.is_heard(entry.first);
+  });
+}
+
+/// Makes room for a connection. Returns `false` if there is none; counts and logs it.
+template <class Peers, class IsSilent, class GiveWay>
+bool ServerImpl::admit(const Crowd<Peers>& crowd, const std::string& address,
+                       const IsSilent& is_silent, const GiveWay& give_way) {
+  if (crowd.has_room(address)) return true;
+  const auto silent = crowd.gives_way(address, is_silent);
+  if (!silent) {
+    ++core_.counting().connections_refused;
+    logger_.write(LogLevel::Warning, "refused", "refused " + address + ": too many connections");
+    return false;
+  }
+  ++core_.counting().connections_displaced;
+  logger_.write(LogLevel::Warning, "displaced",
+                "closed connection " + std::to_string(*silent) +
+                    ", which was silent, to make room for " + address);
+  give_way(*silent);
+  return true;
 }
 
 void ServerImpl::accepted(tcp::socket socket, bool is_data) {
@@ -209,11 +271,12 @@ void ServerImpl::accepted(tcp::socket socket, bool is_data) {
   const auto place = socket.remote_endpoint(error).address();
   if (error) return;
   const auto* effects = allowed_.effects(place);
+  const std::string address = place.to_string();
   if (effects == nullptr) {
-    core_.note_forbidden();
+    ++core_.counting().connections_forbidden;
+    logger_.write(LogLevel::Warning, "forbidden", "refused " + address + ": it is not allowed");
     return;
   }
-  const std::string address = place.to_string();
   auto link = std::make_shared<Link>(std::move(socket));
   link->prepare(config_.keepalive);
   if (!is_data) {
@@ -224,14 +287,27 @@ void ServerImpl::accepted(tcp::socket socket, bool is_data) {
   for (const auto& [id, peer] : peers_) {
     if (peer.address == address) owners.push_back(id);
   }
-  const bool has_room = data_.from(address) < config_.connections_per_address;
-  if (!has_room || !data_.connect(next_data_++, address, link, owners)) link->finish();
+  // An app that only receives streams is known by its commands.
+  const auto is_silent = [this](ConnectionId, const DataPort::Peer& peer) {
+    return !peer.is_heard && !speaks(peer.address);
+  };
+  const auto crowd = data_.crowd(config_.connections_per_address);
+  const bool has_room =
+      admit(crowd, address, is_silent, [this](ConnectionId id) { data_.end(id); });
+  if (has_room) {
+    data_.connect(next_data_++, address, link, owners);
+  } else {
+    link->finish();
+  }
 }
 
 void ServerImpl::connected(std::shared_ptr<Link> link, const std::string& address,
                            const std::vector<Effect>& effects) {
+  const auto is_silent = [this](ConnectionId id, const Peer&) { return !core_.is_heard(id); };
+  const Crowd<Peer> crowd(peers_, config_.connections_per_address, settings_.limits.connections);
+  const bool has_room = admit(crowd, address, is_silent, [this](ConnectionId id) { forget(id); });
   std::optional<ConnectionId> id;
-  if (from(address) < config_.connections_per_address) id = core_.connect(clock_now(), effects);
+  if (has_room) id = core_.connect(clock_now(), effects);
   if (!id) {
     link->finish();
     return;
@@ -276,8 +352,14 @@ void ServerImpl::forget(ConnectionId id) {
   note();
 }
 
-void ServerImpl::begin(Request request) {
-  workers_.run([this, request = std::move(request)] {
+void ServerImpl::begin(const Request& request) {
+  const auto work = [this, request] {
+    auto text = request.text.lock();
+    if (!text) {
+      // The app has gone at this very moment.
+      ended(request.handler, Refusal(protocol_->results.timeout));
+      return;
+    }
     const Context context{request.connection,
                           request.frame.code,
                           request.frame.id,
@@ -285,8 +367,78 @@ void ServerImpl::begin(Request request) {
                           request.abandoned,
                           settings_.limits.json(),
                           config_.max_age ? config_.max_age : protocol_->defaults.max_age};
-    ended(request.handler, service_(context, request.text));
-  });
+    Handled handled = handle(context, *text);
+    // Its memory has to be free when the server looks for some.
+    text.reset();
+    ended(request.handler, std::move(handled));
+  };
+  workers_.run(work, request.settled);
+}
+
+/// Runs the handler of a request. An exception becomes an answer, so that the robot lives.
+Handled ServerImpl::handle(const Context& context, std::string_view text) {
+  try {
+    return service_(context, text);
+  } catch (...) {
+    note_failure(context, std::current_exception());
+  }
+  return handler_failed(*protocol_);
+}
+
+/// Counts an error of a handler, logs it and passes it on. From any thread.
+void ServerImpl::note_failure(const Context& context, const std::exception_ptr& error) {
+  ++core_.counting().handlers_panicked;
+  const std::string command = command_name(*protocol_, context.code);
+  // Apps choose the codes: those that are no command are one cause.
+  const bool is_known = protocol_->find(OperationKind::Command, context.code) != nullptr;
+  const std::string cause = "handler " + (is_known ? command : std::string());
+  try {
+    std::rethrow_exception(error);
+  } catch (const UnsendableResponse& unsendable) {
+    logger_.write(LogLevel::Error, cause,
+                  "the response to " + command + " cannot be sent: " + unsendable.what());
+  } catch (...) {
+    logger_.write(LogLevel::Error, cause,
+                  "the handler of " + command + " threw `" + thrown_type() + "`");
+  }
+  if (config_.on_handler_error) {
+    logger_.call("`on_handler_error`", config_.on_handler_error, error, context);
+  }
+}
+
+/// Bytes that apps make the server hold.
+std::size_t ServerImpl::held() const {
+  std::size_t held = data_.held();
+  for (const auto& [id, peer] : peers_) held += core_.held(id);
+  return held;
+}
+
+/// Closes the connections that hold most until the others have room.
+void ServerImpl::weigh() {
+  while (held() > config_.memory && (!peers_.empty() || !data_.is_empty())) evict_largest();
+  core_.set_pressed(held() + core_.held_for_nobody() > config_.memory);
+}
+
+void ServerImpl::evict_largest() {
+  std::optional<ConnectionId> command;
+  std::size_t most = 0;
+  for (const auto& [id, peer] : peers_) {
+    if (core_.held(id) < most) continue;
+    most = core_.held(id);
+    command = id;
+  }
+  const auto data = data_.largest();
+  const bool is_data = data && (!command || data->second > most);
+  const ConnectionId id = is_data ? data->first : *command;
+  ++core_.counting().connections_evicted;
+  logger_.write(LogLevel::Warning, "evicted",
+                "closed connection " + std::to_string(id) + ", which held " +
+                    std::to_string(is_data ? data->second : most) + " bytes: memory is short");
+  if (is_data) {
+    data_.evict(id);
+  } else {
+    forget(id);
+  }
 }
 
 /// A handler has given its answer. From any thread.
@@ -322,6 +474,7 @@ void ServerImpl::serve(ConnectionId id, Peer& peer) {
 }
 
 void ServerImpl::after_work() {
+  weigh();
   std::vector<ConnectionId> done;
   for (auto& [id, peer] : peers_) {
     serve(id, peer);
@@ -411,7 +564,13 @@ std::vector<ConnectionId> Server::connections() const { return impl_->connection
 void Server::push_body_async(std::uint16_t code, std::string body, Pushed done,
                              std::optional<ConnectionId> to) const {
   auto* impl = impl_.get();
-  impl->post([impl, code, body = std::move(body), done = std::move(done), to]() mutable {
+  Pushed guarded;
+  if (done) {
+    guarded = [impl, done = std::move(done)](std::vector<AckOutcome> outcomes) {
+      impl->logger().call("a callback of a report", done, std::move(outcomes));
+    };
+  }
+  impl->post([impl, code, body = std::move(body), done = std::move(guarded), to]() mutable {
     impl->push(code, std::move(body), to, std::move(done));
   });
 }

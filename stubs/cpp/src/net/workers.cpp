@@ -1,15 +1,25 @@
 #include "workers.hpp"
 
+#include <algorithm>
+
 namespace fc_runtime::detail {
 
-void Workers::run(std::function<void()> work) {
+void Workers::run(std::function<void()> work, std::shared_ptr<std::atomic<bool>> settled) {
   {
     const std::lock_guard held(mutex_);
     if (is_over_) return;
-    waiting_.push_back(std::move(work));
+    if (waiting_.size() >= longest_) forget_settled();
+    waiting_.push_back({std::move(work), std::move(settled)});
     if (!calls_another()) return;
   }
   changed_.notify_one();
+}
+
+/// Removes settled work, so that the queue has at most twice as much as still has to be done.
+void Workers::forget_settled() {
+  const auto is_settled = [](const Waiting& waiting) { return waiting.settled->load(); };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), is_settled), waiting_.end());
+  longest_ = std::max(kLeast, 2 * waiting_.size());
 }
 
 /// Whether one that is idle is to be notified, once the mutex is free for him. Where none is, one more is started.
@@ -33,12 +43,12 @@ void Workers::work() {
       is_called_ = false;
     }
     if (is_over_) return;
-    const auto work = std::move(waiting_.front());
+    const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
     const bool calls = calls_another();
     held.unlock();
     if (calls) changed_.notify_one();
-    work();
+    if (!next.settled->exchange(true)) next.work();
     held.lock();
   }
 }

@@ -12,11 +12,11 @@ namespace tests {
 
 /// A body of one key.
 struct Echo {
-  std::string text;
+  fc_runtime::Required<std::string> text;
   fc_runtime::Extra extra;
 };
 struct Go {
-  std::int32_t metres = 0;
+  fc_runtime::Required<std::int32_t> metres;
   fc_runtime::Extra extra;
 };
 struct Nothing {

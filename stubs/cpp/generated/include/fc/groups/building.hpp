@@ -93,7 +93,7 @@ struct ListIotDevicesRequestData {
   /// 源文档的示例 "xxx" 只是占位，不在取值范围内。
   ///
   /// The printed sample "xxx" is a placeholder outside the list of values.
-  IotDeviceType iot_device_type;
+  fc_runtime::Required<IotDeviceType> iot_device_type;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -113,17 +113,17 @@ struct IotDevice {
   /// Address of the device; not explained in the source, its format is unknown
   ///
   /// Example: `"xxx"`.
-  std::string address;
+  fc_runtime::Required<std::string> address;
   /// 设备 ID，字符串，前导零要保留
   /// ID of the device, a string; keep its leading zeros
   ///
   /// Example: `"001"`.
-  std::string id;
+  fc_runtime::Required<std::string> id;
   /// 通信地址（由键名推断）
   /// Communication address (inferred from the key)
   ///
   /// Example: `20`. Also read from a string of digits.
-  std::int32_t com_address = 0;
+  fc_runtime::Required<std::int32_t> com_address;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -190,7 +190,7 @@ struct GetFloorsResponse {
   /// The source remarks: the total number of floors is the largest label, not this.
   ///
   /// Example: `26`.
-  std::int32_t num_floors = 0;
+  fc_runtime::Required<std::int32_t> num_floors;
   /// 楼层标签
   /// Labels of the floors
   std::vector<std::string> act_floors;

@@ -134,12 +134,12 @@ struct Cell {
   /// Number of the compartment
   ///
   /// Refers to the entity `cell`. Example: `1`.
-  std::int32_t cell_id = 0;
+  fc_runtime::Required<std::int32_t> cell_id;
   /// 格口大小
   /// Size of the compartment
   ///
   /// Example: `1`.
-  CellType cell_type{};
+  fc_runtime::Required<CellType> cell_type;
   /// 箱体锁编号；分格表中没有这个字段
   /// Number of the cabinet lock; the table of layouts lacks this key
   ///
@@ -171,7 +171,7 @@ struct GetCellConfigResponseData {
   /// Number of compartments
   ///
   /// Example: `4`.
-  std::int32_t cell_count = 0;
+  fc_runtime::Required<std::int32_t> cell_count;
   /// 各个格口
   /// The compartments
   std::vector<Cell> cells;
@@ -236,7 +236,7 @@ struct SetCellConfigRequestDataActiveIndex {
   /// Index of the layout to activate, see the table of layouts
   ///
   /// Range: `1..`. Example: `1`.
-  std::int32_t active_cell_config_type_index = 0;
+  fc_runtime::Required<std::int32_t> active_cell_config_type_index;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -258,12 +258,12 @@ struct OldCell {
   /// Number of the compartment
   ///
   /// Refers to the entity `cell`. Example: `1`.
-  std::int32_t cell_id = 0;
+  fc_runtime::Required<std::int32_t> cell_id;
   /// 格口大小
   /// Size of the compartment
   ///
   /// Example: `3`.
-  CellType cell_type{};
+  fc_runtime::Required<CellType> cell_type;
   /// 格口对应的门的编号
   /// Numbers of the compartment's doors
   ///
@@ -290,7 +290,7 @@ struct SetCellConfigRequestDataOldLayout {
   /// Number of compartments
   ///
   /// Kept in `robot_config`. Example: `1`.
-  std::int32_t cell_count = 0;
+  fc_runtime::Required<std::int32_t> cell_count;
   /// 各个格口
   /// The compartments
   ///
@@ -388,17 +388,17 @@ struct LayoutCell {
   /// Physical location of the compartment
   ///
   /// Example: `"all"`.
-  CellLocation cell_location;
+  fc_runtime::Required<CellLocation> cell_location;
   /// 格口丝印编号
   /// Silk-screened number of the compartment
   ///
   /// Refers to the entity `cell`. Example: `1`.
-  std::int32_t cell_id = 0;
+  fc_runtime::Required<std::int32_t> cell_id;
   /// 格口大小
   /// Size of the compartment
   ///
   /// Example: `3`.
-  CellType cell_type{};
+  fc_runtime::Required<CellType> cell_type;
   /// 格口对应的门电机的编号
   /// Numbers of the compartment's door motors
   ///
@@ -423,12 +423,12 @@ struct CellLayout {
   /// Index by which set_cell_config selects this layout
   ///
   /// Range: `1..`. Example: `4`.
-  std::int32_t index = 0;
+  fc_runtime::Required<std::int32_t> index;
   /// 格口数量
   /// Number of compartments
   ///
   /// Example: `1`.
-  std::int32_t cell_count = 0;
+  fc_runtime::Required<std::int32_t> cell_count;
   /// 各个格口
   /// The compartments
   std::vector<LayoutCell> cells;

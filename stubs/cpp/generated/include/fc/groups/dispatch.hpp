@@ -80,7 +80,7 @@ struct CheckCondition0333ResponseData {
   ///
   /// Sent as a JSON string. Also read from `"true"`, `"false"`, `0` and `1`. Also read from the key
   /// `condition`.
-  bool condition = false;
+  fc_runtime::Required<bool> condition;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -31,7 +31,7 @@ struct GetRobotSnResponseData {
   /// Asset number of 15 characters; the last 7 are a serial number; "distinguished by supplier"
   ///
   /// Length: 15. Example: `"100132001234567"`.
-  std::string robot_sn;
+  fc_runtime::Required<std::string> robot_sn;
   /// 机器人型号（由键名推断）；第 1 节的旧版响应没有
   /// Model of the robot (inferred from the key); the old response of section 1 lacks it
   ///

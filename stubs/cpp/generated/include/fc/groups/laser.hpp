@@ -54,7 +54,7 @@ struct GetLaserScanRequest {
   /// ID of the target map in use
   ///
   /// Refers to the entity `map`. Example: `1671124918288`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -89,17 +89,17 @@ struct GetMapImageResponseOrigin {
   /// x coordinate
   ///
   /// Unit: m. Example: `1.0`.
-  double x = 0;
+  fc_runtime::Required<double> x;
   /// y 轴坐标
   /// y coordinate
   ///
   /// Unit: m. Example: `1.0`.
-  double y = 0;
+  fc_runtime::Required<double> y;
   /// 角度
   /// Angle
   ///
   /// Unit: rad. Example: `1.0`.
-  double yaw = 0;
+  fc_runtime::Required<double> yaw;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -119,7 +119,7 @@ struct GetMapImageResponse {
   /// Name
   ///
   /// Example: `""`.
-  std::string image;
+  fc_runtime::Required<std::string> image;
   /// 分辨率
   /// Resolution
   ///
@@ -128,7 +128,7 @@ struct GetMapImageResponse {
   /// The unit is not given. ROS maps use metres per pixel; whether that holds here is unknown.
   ///
   /// Example: `10.0`.
-  double resolution = 0;
+  fc_runtime::Required<double> resolution;
   /// 原点；源文档没有说明是哪一点
   /// Origin; the source does not say of what
   GetMapImageResponseOrigin origin;
@@ -141,7 +141,7 @@ struct GetMapImageResponse {
   /// an obstacle.
   ///
   /// Example: `10.0`.
-  double occupied_thresh = 0;
+  fc_runtime::Required<double> occupied_thresh;
   /// 空闲阈值
   /// Free threshold
   ///
@@ -151,7 +151,7 @@ struct GetMapImageResponse {
   /// free.
   ///
   /// Example: `10.0`.
-  double free_thresh = 0;
+  fc_runtime::Required<double> free_thresh;
   /// 源数据流，base64；格式由键名推断为 PNG
   /// The image data in base64; a PNG, judging by the key
   ///
@@ -161,7 +161,7 @@ struct GetMapImageResponse {
   /// pixel instead.
   ///
   /// Also read from the key `pngMapBytes`.
-  fc_runtime::Bytes png_map_bytes;
+  fc_runtime::Required<fc_runtime::Bytes> png_map_bytes;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -188,7 +188,7 @@ struct GetMapImageRequest {
   /// ID of the target map in use
   ///
   /// Refers to the entity `map`. Example: `1671124918288`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -208,42 +208,42 @@ struct MapInfo {
   /// ID of the map
   ///
   /// Refers to the entity `map`. Example: `1234567890`.
-  std::int64_t id = 0;
+  fc_runtime::Required<std::int64_t> id;
   /// 地图名称
   /// Name of the map
   ///
   /// Example: `"地图名称"`.
-  std::string name;
+  fc_runtime::Required<std::string> name;
   /// 地图图片路径，由键名看是 PNG
   /// Path of the map picture; a PNG, judging by the key
   ///
   /// Example: `"地图图片路径"`.
-  std::string png_path;
+  fc_runtime::Required<std::string> png_path;
   /// PGM 图片路径，示例为空
   /// Path of the PGM picture; empty in the sample
   ///
   /// Example: `""`.
-  std::string pgm_path;
+  fc_runtime::Required<std::string> pgm_path;
   /// YAML 文件路径，示例为空
   /// Path of the YAML file; empty in the sample
   ///
   /// Example: `""`.
-  std::string yaml_path;
+  fc_runtime::Required<std::string> yaml_path;
   /// pbstream 文件路径，示例为空
   /// Path of the pbstream file; empty in the sample
   ///
   /// Example: `""`.
-  std::string pb_stream_path;
+  fc_runtime::Required<std::string> pb_stream_path;
   /// 配置文件路径，示例为空
   /// Path of the configuration file; empty in the sample
   ///
   /// Example: `""`.
-  std::string config_path;
+  fc_runtime::Required<std::string> config_path;
   /// 是否是默认选择的地图
   /// Whether this map is selected by default
   ///
   /// Example: `1`.
-  std::int32_t active = 0;
+  fc_runtime::Required<std::int32_t> active;
   /// 楼栋 ID
   /// ID of the building
   ///
@@ -408,12 +408,12 @@ struct SaveMapRequest {
   /// Name of the map
   ///
   /// Example: `"地图名称"`.
-  std::string name;
+  fc_runtime::Required<std::string> name;
   /// 分辨率，单位未给出
   /// Resolution; the unit is not given
   ///
   /// Example: `2.1`.
-  double resolution = 0;
+  fc_runtime::Required<double> resolution;
   /// 楼栋 ID
   /// ID of the building
   ///
@@ -459,17 +459,17 @@ struct MapDownload {
   /// ID of the map
   ///
   /// Refers to the entity `map`. Example: `1234567890`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 地图名称
   /// Name of the map
   ///
   /// Example: `"地图名称"`.
-  std::string map_name;
+  fc_runtime::Required<std::string> map_name;
   /// 地图存储地址
   /// Address where the map is stored
   ///
   /// Example: `"https://cloud.tencent.com/xxx.zip"`.
-  std::string map_url;
+  fc_runtime::Required<std::string> map_url;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -554,23 +554,23 @@ struct MapSync {
   /// Name of the map
   ///
   /// Example: `"地图名称"`.
-  std::string map_name;
+  fc_runtime::Required<std::string> map_name;
   /// 地图 ID
   /// ID of the map
   ///
   /// Refers to the entity `map`. Example: `1234567890`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 同步状态：上传或下载
   /// Synchronisation state: upload or download
-  MapSyncDirection direction{};
+  fc_runtime::Required<MapSyncDirection> direction;
   /// 同步进度
   /// Progress
   ///
   /// Unit: %. Range: `0..=100`. Example: `0`.
-  std::uint8_t progress = 0;
+  fc_runtime::Required<std::uint8_t> progress;
   /// 同步结果
   /// Result
-  MapSyncResult result{};
+  fc_runtime::Required<MapSyncResult> result;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -118,10 +118,10 @@ struct RechargeProgressData {
   /// Charging state; the previous one when errorStatus is 1, which can be ignored
   ///
   /// Valid unless `error_status` is `RechargeError::Failed`. Example: `1`.
-  RechargeStatus recharge_status{};
+  fc_runtime::Required<RechargeStatus> recharge_status;
   /// 回充是否异常，先于 rechargeStatus 判断
   /// Whether charging failed; check it before rechargeStatus
-  RechargeError error_status{};
+  fc_runtime::Required<RechargeError> error_status;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -273,10 +273,10 @@ struct GetRechargeStatusResponseData {
   /// here, but the source does not say so.
   ///
   /// Example: `1`.
-  RechargeStatus recharge_status{};
+  fc_runtime::Required<RechargeStatus> recharge_status;
   /// 回充是否异常，先于 rechargeStatus 判断
   /// Whether charging failed; check it before rechargeStatus
-  RechargeError error_status{};
+  fc_runtime::Required<RechargeError> error_status;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -79,7 +79,7 @@ std::ostream& operator<<(std::ostream& out, const SwitchUpdate& value);
 struct Switch0a08RequestData {
   /// 读取还是设置
   /// Whether to read or to set
-  SwitchUpdate update;
+  fc_runtime::Required<SwitchUpdate> update;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -150,7 +150,7 @@ struct Switch0a08ResponseData {
   ///
   /// The source does not say whether setting the switch returns the state before or after the
   /// change.
-  SwitchState state;
+  fc_runtime::Required<SwitchState> state;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -214,7 +214,7 @@ std::ostream& operator<<(std::ostream& out, const Switch0a08Request& message);
 struct SetVoiceReminderRequestData {
   /// 读取还是设置
   /// Whether to read or to set
-  SwitchUpdate update;
+  fc_runtime::Required<SwitchUpdate> update;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -234,7 +234,7 @@ std::ostream& operator<<(std::ostream& out, const SetVoiceReminderRequestData& m
 struct SetVoiceReminderResponseData {
   /// 语音提醒开关的状态
   /// State of the voice reminder switch
-  SwitchState state;
+  fc_runtime::Required<SwitchState> state;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

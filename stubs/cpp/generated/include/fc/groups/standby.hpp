@@ -29,17 +29,17 @@ struct StandbyPosition {
   /// ID of the map the point is on
   ///
   /// Refers to the entity `map`. Example: `1667823500544`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 点位的 ID
   /// ID of the point
   ///
   /// Refers to the entity `station`. Example: `1667823500544`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 点位的类型，取 1（充电点）或 6（待命点）
   /// Type of the point, 1 (charging) or 6 (standby)
   ///
   /// Only `1`, `6`. Example: `6`.
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -142,12 +142,12 @@ struct StationRef {
   /// ID of the map the point is on
   ///
   /// Refers to the entity `map`. Example: `1667823500544`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 点位的 ID
   /// ID of the point
   ///
   /// Refers to the entity `station`. Example: `1667823500544`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

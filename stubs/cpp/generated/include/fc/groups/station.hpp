@@ -33,7 +33,7 @@ struct GetStationRequestData {
   /// ID of the station to look up
   ///
   /// Refers to the entity `station`. Example: `0`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -55,7 +55,7 @@ struct GetStationResponseData {
   /// Name of the station
   ///
   /// Example: `"hhh"`.
-  std::string station_name;
+  fc_runtime::Required<std::string> station_name;
   /// 站点 ID
   /// ID of the station
   ///
@@ -64,25 +64,25 @@ struct GetStationResponseData {
   /// Use it as an identifier only; do not read a time from it.
   ///
   /// Refers to the entity `station`. Example: `0`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 站点类型
   /// Type of the station
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 站点的 x 坐标
   /// x coordinate of the station
   ///
   /// Example: `0.5`.
-  double x = 0;
+  fc_runtime::Required<double> x;
   /// 站点的 y 坐标
   /// y coordinate of the station
   ///
   /// Example: `0.6`.
-  double y = 0;
+  fc_runtime::Required<double> y;
   /// 站点的偏航角；源文档没有注释
   /// Yaw of the station; not explained in the source
   ///
   /// Example: `0.2`.
-  double yaw = 0;
+  fc_runtime::Required<double> yaw;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -267,22 +267,22 @@ struct AddStationRequest {
   /// ID of the station's map
   ///
   /// Refers to the entity `map`. Example: `1671124918288`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 站点所在地图的名称
   /// Name of the station's map
   ///
   /// Example: `"turtlebot3_world"`.
-  std::string map_name;
+  fc_runtime::Required<std::string> map_name;
   /// 站点名称
   /// Name of the station
   ///
   /// Example: `"gate1"`.
-  std::string station_name;
+  fc_runtime::Required<std::string> station_name;
   /// 站点类型
   /// Type of the station
   ///
   /// Example: `2`.
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 站点对应设备的 ID
   /// ID of the station's device
   ///
@@ -337,15 +337,15 @@ struct DeleteStationRequest {
   /// ID of the station's map
   ///
   /// Refers to the entity `map`. Example: `1671124918288`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 要删除的站点的 ID
   /// ID of the station to delete
   ///
   /// Refers to the entity `station`. Example: `1671124918008`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 要删除的站点的类型
   /// Type of the station to delete
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -386,20 +386,20 @@ struct RenameStationRequest {
   /// ID of the station's map
   ///
   /// Refers to the entity `map`. Example: `1671124918288`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 要重命名的站点的 ID
   /// ID of the station to rename
   ///
   /// Refers to the entity `station`. Example: `1671124918008`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 站点类型
   /// Type of the station
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 站点的新名称
   /// New name of the station
   ///
   /// Example: `"gate2"`.
-  std::string new_name;
+  fc_runtime::Required<std::string> new_name;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -421,15 +421,15 @@ struct ListStationsRequest {
   /// ID of the map
   ///
   /// Refers to the entity `map`. Example: `12345678`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 地图名称
   /// Name of the map
   ///
   /// Example: `"abc"`.
-  std::string map_name;
+  fc_runtime::Required<std::string> map_name;
   /// 站点类型
   /// Type of station
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -454,12 +454,12 @@ struct ListedStation {
   /// ID of the station
   ///
   /// Refers to the entity `station`. Example: `1694140255073`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 站点名称
   /// Name of the station
   ///
   /// Example: `"outside"`.
-  std::string station_name;
+  fc_runtime::Required<std::string> station_name;
   /// 相对电梯的位置；第 15 节说电梯站点才有
   /// Position relative to the elevator; according to section 15, only elevator stations have it
   std::optional<StationPos> station_pos;
@@ -472,17 +472,17 @@ struct ListedStation {
   /// x coordinate of the station
   ///
   /// Example: `"-0.42947"`. Sent as a JSON string. Also read from a string of digits.
-  double x = 0;
+  fc_runtime::Required<double> x;
   /// 站点的 y 坐标
   /// y coordinate of the station
   ///
   /// Example: `"-0.25831"`. Sent as a JSON string. Also read from a string of digits.
-  double y = 0;
+  fc_runtime::Required<double> y;
   /// 站点的偏航角；源文档没有注释
   /// Yaw of the station; not explained in the source
   ///
   /// Example: `"-0.05305"`. Sent as a JSON string. Also read from a string of digits.
-  double yaw = 0;
+  fc_runtime::Required<double> yaw;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -548,20 +548,20 @@ struct GetCurrentStationResponseData {
   /// ID of the station's map
   ///
   /// Refers to the entity `map`. Example: `123456666`.
-  std::int64_t map_id = 0;
+  fc_runtime::Required<std::int64_t> map_id;
   /// 站点 ID
   /// ID of the station
   ///
   /// Refers to the entity `station`. Example: `3333333`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 站点名称
   /// Name of the station
   ///
   /// Example: `"21 楼-导航点 3"`.
-  std::string station_name;
+  fc_runtime::Required<std::string> station_name;
   /// 站点类型
   /// Type of the station
-  StationType station_type{};
+  fc_runtime::Required<StationType> station_type;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -80,7 +80,7 @@ struct Fault {
   /// Fault code
   ///
   /// Example: `320001`.
-  std::int64_t code = 0;
+  fc_runtime::Required<std::int64_t> code;
   /// 触发时间点时间戳
   /// Time at which the fault was triggered
   ///
@@ -90,35 +90,35 @@ struct Fault {
   /// using it.
   ///
   /// Example: `1701247598`.
-  std::int64_t trigger_time_stamp_ms = 0;
+  fc_runtime::Required<std::int64_t> trigger_time_stamp_ms;
   /// 异常信息描述
   /// Description
   ///
   /// Example: `"xxx"`.
-  std::string description;
+  fc_runtime::Required<std::string> description;
   /// 解决指引
   /// How to fix it
   ///
   /// Example: `"xxx"`.
-  std::string guidance;
+  fc_runtime::Required<std::string> guidance;
   /// 异常名称
   /// Name of the fault
   ///
   /// Example: `"recharge_failed_after_retry"`.
-  std::string name;
+  fc_runtime::Required<std::string> name;
   /// 异常等级
   /// Level
-  FaultLevel level;
+  fc_runtime::Required<FaultLevel> level;
   /// 异常来源
   /// Where it comes from
   ///
   /// Example: `"controller"`.
-  std::string source;
+  fc_runtime::Required<std::string> source;
   /// 可能原因
   /// Possible cause
   ///
   /// Example: `"xxx"`.
-  std::string cause;
+  fc_runtime::Required<std::string> cause;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -291,7 +291,7 @@ std::ostream& operator<<(std::ostream& out, const SelfCheckStatus& value);
 struct SelfCheckItem {
   /// 自检项目
   /// What is checked
-  SelfCheckName item_name;
+  fc_runtime::Required<SelfCheckName> item_name;
   /// 自检项目状态
   /// State of the item
   ///
@@ -300,7 +300,7 @@ struct SelfCheckItem {
   /// The printed sample is the placeholder xxx, which is not one of the values.
   ///
   /// Example: `"status_abnormal"`.
-  SelfCheckStatus item_status;
+  fc_runtime::Required<SelfCheckStatus> item_status;
   /// 详情，可能为空
   /// Details; may be empty
   ///
@@ -447,12 +447,12 @@ struct RobotStatusData {
   /// State of the robot
   ///
   /// Example: `14`.
-  UpperStatus upper_status{};
+  fc_runtime::Required<UpperStatus> upper_status;
   /// 子状态，目前只用于区分执行任务时的具体情况
   /// Sub-state; currently it only tells what happens while a task is running
   ///
   /// Valid only when `upper_status` is `UpperStatus::Task`. Example: `1401`.
-  LowerStatus lower_status{};
+  fc_runtime::Required<LowerStatus> lower_status;
   /// 机器人出故障时的具体故障代码
   /// Fault code while the robot has a fault
   ///
@@ -462,7 +462,7 @@ struct RobotStatusData {
   /// not by itself tell whether there is a fault.
   ///
   /// Valid only when `upper_status` is `UpperStatus::Broken`. Example: `123456`.
-  std::int64_t broke_code = 0;
+  fc_runtime::Required<std::int64_t> broke_code;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

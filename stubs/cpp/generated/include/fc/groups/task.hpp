@@ -30,12 +30,12 @@ struct CreateTaskResponse {
   /// Name of the task
   ///
   /// Example: `"task_1"`.
-  std::string task_name;
+  fc_runtime::Required<std::string> task_name;
   /// 任务 ID
   /// ID of the task
   ///
   /// Refers to the entity `task`. Example: `1695733900004`.
-  std::int64_t task_id = 0;
+  fc_runtime::Required<std::int64_t> task_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -113,12 +113,12 @@ struct ExecuteTaskResponse {
   /// Name of the task
   ///
   /// Example: `"task_1"`.
-  std::string task_name;
+  fc_runtime::Required<std::string> task_name;
   /// 任务 ID
   /// ID of the task
   ///
   /// Refers to the entity `task`. Example: `1695733900004`.
-  std::int64_t task_id = 0;
+  fc_runtime::Required<std::int64_t> task_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -187,7 +187,7 @@ struct GetTaskHistoryRequest {
   /// ID of the task to look up
   ///
   /// Refers to the entity `task`. Example: `123`.
-  std::int64_t task_id = 0;
+  fc_runtime::Required<std::int64_t> task_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -231,35 +231,35 @@ struct TaskStation {
   /// ID of the station
   ///
   /// Refers to the entity `station`. Example: `122`.
-  std::int64_t station_id = 0;
+  fc_runtime::Required<std::int64_t> station_id;
   /// 站点名称
   /// Name of the station
   ///
   /// Example: `"站点 1"`.
-  std::string station_name;
+  fc_runtime::Required<std::string> station_name;
   /// 抵达站点时间
   /// Time of arrival at the station
   ///
   /// Example: `111`.
-  std::int64_t arrive_time = 0;
+  fc_runtime::Required<std::int64_t> arrive_time;
   /// x 坐标；源文档没有注释
   /// x coordinate; not explained in the source
   ///
   /// Example: `1.0`.
-  double x = 0;
+  fc_runtime::Required<double> x;
   /// y 坐标；源文档没有注释
   /// y coordinate; not explained in the source
   ///
   /// Example: `2.0`.
-  double y = 0;
+  fc_runtime::Required<double> y;
   /// 偏航角；源文档没有注释
   /// Yaw; not explained in the source
   ///
   /// Example: `3.0`.
-  double yaw = 0;
+  fc_runtime::Required<double> yaw;
   /// 站点执行状态
   /// Status of this station
-  TaskStatus status{};
+  fc_runtime::Required<TaskStatus> status;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -279,25 +279,25 @@ struct GetTaskHistoryResponse {
   /// ID of the task
   ///
   /// Refers to the entity `task`. Example: `123`.
-  std::int64_t task_id = 0;
+  fc_runtime::Required<std::int64_t> task_id;
   /// 任务名称
   /// Name of the task
   ///
   /// Example: `"任务名称"`.
-  std::string task_name;
+  fc_runtime::Required<std::string> task_name;
   /// 任务开始时间
   /// Start time of the task
   ///
   /// Example: `123`.
-  std::int64_t start_time = 0;
+  fc_runtime::Required<std::int64_t> start_time;
   /// 任务结束时间；未结束时填什么没有说明
   /// Finish time of the task; its value before the task has finished is not given
   ///
   /// Example: `123`.
-  std::int64_t finish_time = 0;
+  fc_runtime::Required<std::int64_t> finish_time;
   /// 任务执行状态
   /// Status of the task as a whole
-  TaskStatus task_status{};
+  fc_runtime::Required<TaskStatus> task_status;
   /// 各站点的执行记录
   /// Record of each station
   std::vector<TaskStation> station_status;
@@ -344,7 +344,7 @@ struct ObstacleAnnouncement {
   /// ID of the task; not explained in the source
   ///
   /// Refers to the entity `task`. Example: `123`. Also read from the key `taskId`.
-  std::int64_t task_id = 0;
+  fc_runtime::Required<std::int64_t> task_id;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -476,7 +476,7 @@ struct TaskProgress {
   /// Progress of the task
   ///
   /// Example: `1`.
-  TaskProcess process{};
+  fc_runtime::Required<TaskProcess> process;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };

@@ -70,12 +70,12 @@ struct DoorLockInfo {
   /// ID of the door lock
   ///
   /// Example: `1`.
-  std::int32_t lock_id = 0;
+  fc_runtime::Required<std::int32_t> lock_id;
   /// 门锁状态
   /// Status of the door lock
   ///
   /// Example: `7`.
-  DoorLockStatus lock_status{};
+  fc_runtime::Required<DoorLockStatus> lock_status;
   /// 其他键，原样保留。Other keys, kept unchanged.
   fc_runtime::Extra extra;
 };
@@ -93,7 +93,7 @@ std::ostream& operator<<(std::ostream& out, const DoorLockInfo& message);
 struct GetUpperBodyStatusResponse {
   /// 推杆状态
   /// Status of the push rod
-  PushRodStatus box_push_status{};
+  fc_runtime::Required<PushRodStatus> box_push_status;
   /// 被释放的箱体编号
   /// Number of the released compartment
   ///
@@ -102,7 +102,7 @@ struct GetUpperBodyStatusResponse {
   /// 0: reset, none is released. The key says cell, the comment 箱体 (cabinet).
   ///
   /// Example: `0`.
-  std::int32_t select_cell_id = 0;
+  fc_runtime::Required<std::int32_t> select_cell_id;
   /// 各门锁的状态
   /// Status of each door lock
   std::vector<DoorLockInfo> door_lock_info_list;
