@@ -6,34 +6,47 @@ import java.util.concurrent.TimeUnit
 import kotlin.system.exitProcess
 
 /** What the programs are told: the host, both ports, and what makes trials harder. */
-internal class Arguments(arguments: Array<String>, usage: String) {
+internal class Arguments(arguments: Array<String>, private val usage: String) {
     private val given = HashMap<String, String>()
 
     init {
         val words = arguments.iterator()
         while (words.hasNext()) {
             val word = words.next()
-            if (word !in OPTIONS || !words.hasNext()) {
-                val isAsked = word == "--help"
-                (if (isAsked) System.out else System.err).println(usage)
-                exitProcess(if (isAsked) 0 else 2)
+            if (word == "--help") {
+                println(usage)
+                exitProcess(0)
             }
+            if (word !in OPTIONS || !words.hasNext()) refuse("there is no option `$word` with that value")
             given[word] = words.next()
         }
+        if (host.isBlank()) refuse("`--host` is empty")
+    }
+
+    private fun refuse(why: String): Nothing {
+        System.err.println("$why\n\n$usage")
+        exitProcess(2)
+    }
+
+    /** The number of an option. */
+    private fun number(option: String, most: Int, least: Int = 0): Int? {
+        val given = given[option] ?: return null
+        return given.toIntOrNull()?.takeIf { it in least..most }
+            ?: refuse("`$option` is $given, expected an integer from $least to $most")
     }
 
     val host: String get() = given["--host"] ?: "127.0.0.1"
-    val commandPort: Int? get() = given["--command-port"]?.toInt()
-    val dataPort: Int? get() = given["--data-port"]?.toInt()
+    val commandPort: Int? get() = number("--command-port", PORTS)
+    val dataPort: Int? get() = number("--data-port", PORTS)
 
     /** What is compressed: whatever has so many bytes. */
-    val gzip: Gzip get() = given["--gzip-from"]?.let { Gzip(it.toInt()) } ?: Gzip()
+    val gzip: Gzip get() = number("--gzip-from", Int.MAX_VALUE)?.let { Gzip(it) } ?: Gzip()
 
     /** How long the robot takes over each command, in milliseconds. */
-    val delay: Long get() = given["--delay"]?.toLong() ?: 0
+    val delay: Long get() = number("--delay", Int.MAX_VALUE)?.toLong() ?: 0
 
     /** How many times as wide and high the robot's picture is. */
-    val pictureScale: Int get() = given["--picture-scale"]?.toInt() ?: 1
+    val pictureScale: Int get() = number("--picture-scale", 100) ?: 1
 
     /** Whether they speak Chinese, or else English: as they are told, or as POSIX has it of the environment. */
     val isChinese: Boolean get() = (given["--lang"] ?: locale()).startsWith("zh")
@@ -43,12 +56,13 @@ internal class Arguments(arguments: Array<String>, usage: String) {
     /** The robot and the ports as settings of a client. */
     fun client(): ClientConfig {
         var config = ClientConfig().host(host).gzip(gzip)
-        commandPort?.let { config = config.commandPort(it) }
-        dataPort?.let { config = config.dataPort(it) }
+        number("--command-port", PORTS, least = 1)?.let { config = config.commandPort(it) }
+        number("--data-port", PORTS, least = 1)?.let { config = config.dataPort(it) }
         return config
     }
 
     internal companion object {
+        private const val PORTS = 65_535
         private val OPTIONS = listOf("--host", "--command-port", "--data-port", "--delay", "--gzip-from", "--picture-scale", "--lang")
 
         /** How long the programs wait for what is to come by itself. */

@@ -11,13 +11,15 @@ internal class Enveloped<B : Message>(
     val body: B?,
     /** What is. A refusal that carries nothing but an envelope is still understood. */
     val fault: BodyError?,
+    /** About the memory of its lists, in bytes. */
+    val listBytes: Long,
 )
 
 /** Whole bodies: bytes in, a message or an error out; and back. */
 internal object Bodies {
     /** Reads a body as a message. No bytes are read as `{}`. */
     fun <M : Message> decode(type: MessageType<M>, bytes: ByteArray, allowance: Allowance): M =
-        reading(bytes, allowance) { reader ->
+        reading(textOf(bytes), allowance) { reader ->
             expectObject(reader)
             type.read(reader).also { reader.end() }
         }
@@ -32,10 +34,17 @@ internal object Bodies {
         type: MessageType<B>,
         bytes: ByteArray,
         allowance: Allowance,
+    ): Enveloped<B> = enveloped(envelope, type, textOf(bytes), allowance)
+
+    private fun <B : Message> enveloped(
+        envelope: MessageType<*>,
+        type: MessageType<B>,
+        text: String,
+        allowance: Allowance,
     ): Enveloped<B> {
         var isBody = false
         try {
-            return reading(bytes, allowance) { reader ->
+            return reading(text, allowance) { reader ->
                 expectObject(reader)
                 val start = reader.beginObject()
                 val outer = Draft(envelope)
@@ -55,13 +64,13 @@ internal object Bodies {
                 reader.end()
                 val made = outer.finish(reader, start)
                 isBody = true
-                Enveloped(made, inner.finish(reader, start), null)
+                Enveloped(made, inner.finish(reader, start), null, reader.spentListBytes)
             }
         } catch (error: BodyError) {
             if (!isBody) throw error
             // The own keys must not cost the envelope: read it again, alone.
-            val alone = enveloped(envelope, Empty, bytes, allowance)
-            return Enveloped(alone.envelope, null, error)
+            val alone = enveloped(envelope, Empty, text, allowance)
+            return Enveloped(alone.envelope, null, error, 0)
         }
     }
 
@@ -82,8 +91,7 @@ internal object Bodies {
      * A text that is not JSON is `bad_json` (or too deep, or of too many values) whatever else was wrong before that place,
      * so that the error's name does not depend on the order in which things are looked at.
      */
-    private inline fun <T> reading(bytes: ByteArray, allowance: Allowance, read: (JsonReader) -> T): T {
-        val text = if (bytes.isEmpty()) "{}" else utf8(bytes)
+    private inline fun <T> reading(text: String, allowance: Allowance, read: (JsonReader) -> T): T {
         try {
             return read(JsonReader(text, allowance))
         } catch (error: BodyError) {
@@ -95,9 +103,18 @@ internal object Bodies {
         }
     }
 
-    fun utf8(bytes: ByteArray): String = try {
-        StandardCharsets.UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString()
-    } catch (_: CharacterCodingException) {
-        throw BodyError(BodyErrorKind.NOT_UTF8, "a body is UTF-8 text")
+    private fun textOf(bytes: ByteArray): String = if (bytes.isEmpty()) "{}" else utf8(bytes)
+
+    /** A lenient decoder takes much less time and memory. It writes a replacement for wrong bytes, and that may also be sent. */
+    fun utf8(bytes: ByteArray): String {
+        val text = String(bytes, StandardCharsets.UTF_8)
+        if (text.indexOf(REPLACEMENT) < 0) return text
+        try {
+            return StandardCharsets.UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString()
+        } catch (_: CharacterCodingException) {
+            throw BodyError(BodyErrorKind.NOT_UTF8, "a body is UTF-8 text")
+        }
     }
+
+    private const val REPLACEMENT = '\uFFFD'
 }

@@ -28,7 +28,7 @@ internal class CallInFlight(
 
 /** A client without threads and sockets: all of it happens on its loop. */
 internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val loop: Loop, private val dial: Dial) {
-    private val lines = Lines(config.log) { loop.now }
+    private val lines = Lines(config.log, protocol) { loop.now }
     val life: Life = Life { tell(it) }
     val limits: Limits = config.limitsOr(protocol)
     val queues = Queues(limits.queuedReports, config.queuedBytes ?: limits.inflatedBytes)
@@ -62,6 +62,10 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         connect()
     }
 
+    /** Logs an exception of a listener. From any thread. */
+    fun listenerFailed(what: String, failure: Throwable, listener: Any): Unit =
+        loop.execute { lines.failed("$what failed", failure, listener) }
+
     /** Sends a call, or has it wait for a connection. */
     fun start(call: CallInFlight) {
         val now = life.now
@@ -93,7 +97,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         // Once more, and not as often as the connection is lost.
         call.repeats = call.repeats && call.progress == CallInFlight.Progress.UNSENT
         call.progress = CallInFlight.Progress.SENT
-        checkNotNull(line).send(call.body.frame(frame))
+        checkNotNull(line).send(call.body, frame)
     }
 
     private fun end(call: CallInFlight, body: ByteArray?, error: CallError?) {
@@ -233,6 +237,8 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
 
         override fun sent(bytes: Int): Unit = counting.add(ClientCount.BYTES_OUT, bytes.toLong())
 
+        override fun failed(failure: Throwable): Unit = lines.failed("the connection failed", failure)
+
         override fun begins(now: Long) {
             unreadSince = now
         }
@@ -259,7 +265,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
             lose(
                 when (end) {
                     // A socket that is closed while a request lies unread in it is reset.
-                    is End.Broken -> if (isHeard) Loss.broken(end.cause) else Loss.UNHEARD
+                    is End.Broken -> if (isHeard || end.isOwn) Loss.broken(end.cause) else Loss.UNHEARD
                     is End.Deaf -> end.error?.let {
                         counting.add(ClientCount.BAD_FRAMES)
                         Loss.frame(it)
@@ -357,7 +363,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
             } catch (_: FrameError) {
                 return
             }
-            send(body.frame(id.answer()))
+            send(body, id.answer())
         }
     }
 

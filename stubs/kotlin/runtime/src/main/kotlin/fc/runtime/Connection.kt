@@ -19,7 +19,8 @@ public class CallOptions private constructor(internal val timeout: Long?, intern
     public constructor() : this(null, null)
 
     /** How long to wait for the response. */
-    public fun timeout(timeout: Long, unit: TimeUnit): CallOptions = CallOptions(unit.toMillis(timeout), repeat)
+    public fun timeout(timeout: Long, unit: TimeUnit): CallOptions =
+        CallOptions(Settings.duration("CallOptions.timeout", timeout, unit), repeat)
 
     /**
      * Whether to send the call once more when the connection was lost before its answer came. Unless set, only what
@@ -89,6 +90,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
      */
     @JvmSynthetic
     public suspend fun callRaw(code: Int, json: String, options: CallOptions = CallOptions()): RawResponse {
+        protocol.header.checkCode(code)
         val body = encoded {
             val keys = Bodies.decode(Keys, json.toByteArray(), core.limits.json())
             Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), keys)
@@ -140,11 +142,20 @@ public class Connection internal constructor(internal val core: ClientCore, priv
      */
     public fun reports(): Reports = Reports(core.queues.enter(null))
 
-    /** Calls [listener] with each report from here on, one at a time, until the result is closed. For Java. */
+    /**
+     * Calls [listener] with each report from here on, one at a time, until the result is closed. For Java. An exception of the
+     * listener is logged, and the next report reaches it all the same.
+     */
     public fun onReport(listener: Consumer<ReceivedReport>): AutoCloseable {
         val reports = reports()
-        SCOPE.launch { while (true) listener.accept(reports.receive() ?: break) }
+        SCOPE.launch { while (true) told("the listener of reports", listener, reports.receive() ?: break) }
         return reports
+    }
+
+    private fun <T> told(what: String, listener: Consumer<T>, news: T) = try {
+        listener.accept(news)
+    } catch (failure: Throwable) {
+        core.listenerFailed(what, failure, listener)
     }
 
     /**
@@ -162,9 +173,12 @@ public class Connection internal constructor(internal val core: ClientCore, priv
      */
     public fun states(): Flow<ConnectionState> = core.life.states
 
-    /** Calls [listener] with the state and each that it comes to, until the result is closed. For Java. */
+    /**
+     * Calls [listener] with the state and each that it comes to, until the result is closed. For Java. An exception of the listener
+     * is logged, and the next state reaches it all the same.
+     */
     public fun onState(listener: Consumer<ConnectionState>): AutoCloseable {
-        val watch = SCOPE.launch { states().collect { listener.accept(it) } }
+        val watch = SCOPE.launch { states().collect { told("the listener of states", listener, it) } }
         return AutoCloseable { watch.cancel() }
     }
 
@@ -182,7 +196,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     override fun close(): Unit = core.loop.execute { core.close() }
 
     private fun <Q : Message> prepared(command: Command<Q, *>, request: Q): Prepared = encoded {
-        request.check()
+        command.request.demand(request)
         Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), request)
     }
 
@@ -201,7 +215,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
                 if (answer != null) waiting.resume(answer) else waiting.resumeWithException(checkNotNull(error))
             }
             waiting.invokeOnCancellation { core.loop.execute { core.cancel(call) } }
-            core.loop.execute { if (waiting.isActive) core.start(call) }
+            core.loop.execute(waiting) { if (waiting.isActive) core.start(call) }
         }
 
     private fun <A : Message> response(command: Command<*, A>, body: ByteArray): A {
@@ -257,7 +271,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
             "${config.host ?: protocol.host}:${config.commandPort ?: protocol.commandPort}"
 
         private fun tcp(protocol: Protocol, config: ClientConfig, isFirstOnly: Boolean): Connection {
-            val loop = NioLoop("fc-client")
+            val loop = NioLoop("fc-client", config.log)
             val host = config.host ?: protocol.host
             fun dial(port: Int) = Dial { done -> loop.connect(host, port, config.keepalive, done) }
             val core = ClientCore(protocol, config, loop, dial(config.commandPort ?: protocol.commandPort))

@@ -78,7 +78,7 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
     /** Calls of commands that this robot does not implement. */
     public val callsNotImplemented: Long get() = counts[8]
 
-    /** Handlers that failed with something else than a refusal. */
+    /** Handlers that failed with an exception other than a refusal, also after their timeout. */
     public val handlersPanicked: Long get() = counts[9]
 
     /** Handlers that ran on though nobody waited for their answer any more. */
@@ -128,6 +128,9 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
 
     /** How often a connection was not read for a while because its frames made useless work. */
     public val connectionsPaced: Long get() = counts[25]
+
+    /** Connections closed because memory was short and they held most of it. */
+    public val connectionsEvicted: Long get() = counts[26]
 }
 
 internal enum class ServerCount {
@@ -135,7 +138,7 @@ internal enum class ServerCount {
     CALLS_REFUSED, CALLS_TIMED_OUT, CALLS_NOT_IMPLEMENTED, HANDLERS_PANICKED, HANDLERS_ABANDONED, ABANDONED_REACHED,
     REPORTS_ACKNOWLEDGED, REPORTS_REFUSED, REPORTS_REPEATED, REPORTS_TIMED_OUT, REPORTS_DROPPED, BAD_FRAMES,
     STREAM_FRAMES_IN, STREAM_FRAMES_DROPPED, STREAM_FRAMES_OUT, BYTES_IN, BYTES_OUT, CONNECTIONS_FORBIDDEN, CALLS_FORBIDDEN,
-    CONNECTIONS_PACED,
+    CONNECTIONS_PACED, CONNECTIONS_EVICTED,
 }
 
 /** Counts by name, from any thread. */

@@ -116,11 +116,11 @@ public class DataConnection internal constructor(private val core: DataCore) : A
      * The frames of one stream from now on, in a queue of four of which the oldest makes way; they no longer come to
      * [receive].
      */
-    public fun subscribe(code: Int): Subscription<ByteArray> = Subscription(core.box.enter(code)) { it }
+    public fun subscribe(code: Int): Subscription<ByteArray> = Subscription(core.enter(code)) { it }
 
     /** The same of a stream that carries JSON: each frame is read as a message. */
     public fun <M : Message> subscribe(code: Int, type: MessageType<M>): Subscription<M> =
-        Subscription(core.box.enter(code)) { data ->
+        Subscription(core.enter(code)) { data ->
             try {
                 Bodies.decode(type, data, core.limits.json())
             } catch (error: BodyError) {
@@ -147,7 +147,7 @@ public class DataConnection internal constructor(private val core: DataCore) : A
         suspendCancellableCoroutine { waiting ->
             val out = DataOut(frame) { error -> if (error == null) waiting.resume(Unit) else waiting.resumeWithException(error) }
             waiting.invokeOnCancellation { core.execute { core.giveUp(out) } }
-            core.execute { if (waiting.isActive) core.send(out) }
+            core.execute(waiting) { if (waiting.isActive) core.send(out) }
         }
     }
 

@@ -1,6 +1,7 @@
 package fc.runtime
 
 import java.io.IOException
+import kotlinx.coroutines.CancellableContinuation
 import kotlinx.coroutines.channels.Channel
 
 /** What arrives for the app: frames, and what is wrong in between. Filled on the loop, emptied from anywhere. */
@@ -136,6 +137,7 @@ internal class DataOut(val frame: ByteArray, val done: (DataError?) -> Unit) {
 
 /** A data connection of an app, without threads and sockets: all of it happens on the loop of the command connection. */
 internal class DataCore(private val commands: ClientCore, private val dial: Dial) {
+    private val lines = Lines(commands.config.log, commands.protocol) { commands.loop.now }
     private val protocol = commands.protocol
     private val loop = commands.loop
     private val config = commands.config
@@ -166,8 +168,18 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
 
     fun execute(task: () -> Unit) = loop.execute(task)
 
-    fun frame(code: Int, id: Long, data: ByteArray): ByteArray =
-        encoder.prepare(data).frame(FrameId(false, protocol.streamKind, code, id))
+    fun execute(waiting: CancellableContinuation<*>, task: () -> Unit) = loop.execute(waiting, task)
+
+    fun enter(code: Int): DataBox.Taker {
+        protocol.header.checkCode(code)
+        return box.enter(code)
+    }
+
+    fun frame(code: Int, id: Long, data: ByteArray): ByteArray {
+        protocol.header.checkCode(code)
+        protocol.header.checkId(id)
+        return encoder.prepare(data).frame(FrameId(false, protocol.streamKind, code, id))
+    }
 
     fun begin() = loop.execute {
         commands.dependents.add(this)
@@ -334,6 +346,8 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
 
         override fun begins(now: Long): Unit = leaving.begin(now)
 
+        override fun failed(failure: Throwable): Unit = lines.failed("the data connection failed", failure)
+
         override fun wrote(bytes: Int, now: Long) {
             leaving.add(bytes, now)
             if (unsent == 0L) out?.takeIf { it.isBegun }?.let { finish(it, null) }
@@ -354,7 +368,7 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
 
         override fun ended(end: End) = lose(
             when (end) {
-                is End.Broken -> if (isHeard) Loss.broken(end.cause) else Loss.UNHEARD
+                is End.Broken -> if (isHeard || end.isOwn) Loss.broken(end.cause) else Loss.UNHEARD
                 is End.Deaf -> end.error?.let { Loss.frame(it) } ?: if (isHeard) Loss.CLOSED else Loss.UNHEARD
             },
         )

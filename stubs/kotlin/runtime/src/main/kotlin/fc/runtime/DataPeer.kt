@@ -13,7 +13,9 @@ public class AppStream internal constructor(
     public val peer: SocketAddress?,
     /** The frame. */
     public val frame: StreamFrame,
-)
+) {
+    internal val bytes: Long get() = frame.data.size.toLong()
+}
 
 /** The frames of raw bytes that apps send, in the order they came on each connection. */
 public class AppStreams internal constructor(private val inbox: StreamInbox, private val generation: Int) : AutoCloseable {
@@ -29,8 +31,13 @@ public class AppStreams internal constructor(private val inbox: StreamInbox, pri
 }
 
 /** Where frames of apps go: to one receiver, with room for a few. Filled on the loop, emptied from anywhere. */
-internal class StreamInbox(private val onRoom: () -> Unit) {
+internal class StreamInbox(private val mostBytes: Long, private val onRoom: () -> Unit) {
     private val waiting = ArrayDeque<AppStream>()
+
+    /** Bytes of the frames that wait. */
+    @Volatile
+    var bytes = 0L
+        private set
     private var generation = 0
     private var isTaken = false
     private var isOver = false
@@ -48,6 +55,7 @@ internal class StreamInbox(private val onRoom: () -> Unit) {
             if (receiver != generation) return
             isTaken = false
             waiting.clear()
+            bytes = 0
         }
         signal.trySend(Unit)
         onRoom()
@@ -55,13 +63,25 @@ internal class StreamInbox(private val onRoom: () -> Unit) {
 
     /** Whether a frame that comes has a place, if only to be dropped. */
     @Synchronized
-    fun hasRoom(): Boolean = !isTaken || waiting.size < QUEUE
+    fun hasRoom(): Boolean = !isTaken || waiting.size < QUEUE && (waiting.isEmpty() || bytes < mostBytes)
+
+    /** Bytes of the frames that wait, of one connection. */
+    @Synchronized
+    fun bytesOf(connection: Long): Long = waiting.sumOf { if (it.connection == connection) it.bytes else 0L }
+
+    /** Drops the frames of one connection. */
+    @Synchronized
+    fun drop(connection: Long) {
+        bytes -= bytesOf(connection)
+        waiting.removeAll { it.connection == connection }
+    }
 
     /** Whether anybody takes it. */
     @Synchronized
     fun put(frame: AppStream): Boolean {
         if (!isTaken) return false
         waiting.addLast(frame)
+        bytes += frame.bytes
         signal.trySend(Unit)
         return true
     }
@@ -77,6 +97,7 @@ internal class StreamInbox(private val onRoom: () -> Unit) {
             val found = synchronized(this) {
                 val isEnded = receiver != generation || !isTaken
                 val frame = if (isEnded) null else waiting.removeFirstOrNull()
+                bytes -= frame?.bytes ?: 0L
                 if (frame == null && (isEnded || isOver)) {
                     signal.trySend(Unit)
                     return null
@@ -99,7 +120,7 @@ internal class StreamInbox(private val onRoom: () -> Unit) {
 
 /** One app's data connection at a robot. */
 internal class DataPeer(private val server: ServerCore, link: Link, val id: Long, val address: SocketAddress?) :
-    Conversation(server.loop, link, server.config.decoder(server.protocol)) {
+    Conversation(server.loop, link, server.config.decoder(server.protocol)), MemoryHolder {
     /** A frame to be sent, and who waits for it to be queued. */
     private class Out(val frame: ByteArray, val queued: (Boolean) -> Unit, val timer: Timer?)
 
@@ -107,6 +128,9 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     private val protocol = server.protocol
     private val queue = ArrayDeque<ByteArray>()
     private val waiting = ArrayDeque<Out>()
+
+    /** Bytes of the frames in the queue. */
+    private var queuedBytes = 0L
     private var isDraining = false
     private var isDeaf = false
     private var headerSince = -1L
@@ -131,9 +155,8 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     /** Queues a frame as soon as there is room for it; says whether it was. Nobody waits longer than the stall timeout. */
     fun offer(frame: ByteArray, queued: (Boolean) -> Unit) {
         if (isOver || isDraining) return queued(false)
-        if (queue.size < QUEUE) {
-            queue.addLast(frame)
-            wake()
+        if (waiting.isEmpty() && hasPlace(frame)) {
+            enqueue(frame)
             return queued(true)
         }
         var out: Out? = null
@@ -141,6 +164,33 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         out = Out(frame, queued, timer)
         waiting.addLast(out)
     }
+
+    /** Returns `true` if a frame can be queued. Frames that wait for memory close no connection. */
+    private fun hasPlace(frame: ByteArray): Boolean {
+        if (queue.size >= QUEUE) return false
+        val hasRoom = server.memory.hasRoom(frame.size.toLong())
+        if (!hasRoom) server.memory.await(this)
+        return hasRoom
+    }
+
+    private fun enqueue(frame: ByteArray) {
+        queue.addLast(frame)
+        queuedBytes += frame.size
+        settle()
+        wake()
+    }
+
+    override val held: Long get() = decoder.capacity + unsent + queuedBytes
+    override val weight: Long get() = held + server.inbox.bytesOf(id)
+    override var counted = 0L
+
+    override fun room(bytes: Long): Boolean = server.memory.room(this, bytes)
+
+    override fun settle() {
+        if (!isOver) server.memory.settle(this)
+    }
+
+    override fun failed(failure: Throwable): Unit = server.lines.failed("a data connection failed", failure)
 
     override fun reads(): Boolean = !isDraining && !isDeaf && server.inbox.hasRoom() && pace.until <= loop.now
 
@@ -191,7 +241,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         val result = protocol.results.protocol
         val envelope = Envelopes.response(protocol, System.currentTimeMillis(), result.code, result.text)
         try {
-            queue.addLast(server.encoder.prepare(Bodies.write(envelope, Empty.INSTANCE)).frame(id.answer()))
+            enqueue(server.encoder.prepare(Bodies.write(envelope, Empty.INSTANCE)).frame(id.answer()))
         } catch (_: FrameError) {
             // An envelope alone fits into any frame limit worth its name.
         }
@@ -204,15 +254,16 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     }
 
     override fun tend(now: Long): Long {
-        while (unsent == 0L) {
-            send(queue.removeFirstOrNull() ?: break)
+        while (unsent == 0L && !isOver) {
+            val frame = queue.removeFirstOrNull() ?: break
+            queuedBytes -= frame.size
+            send(frame)
             server.counting.add(ServerCount.STREAM_FRAMES_OUT)
-            val next = waiting.removeFirstOrNull() ?: continue
-            next.timer?.cancel()
-            queue.addLast(next.frame)
-            next.queued(true)
+            letIn()
         }
-        val isReading = reads()
+        letIn()
+        if (isOver) return Long.MAX_VALUE
+        val isReading = reads() && !isStarved
         if (isReading && !wasReading) arriving.begin(now)
         wasReading = isReading
         headerSince = if (!decoder.isInsideHeader) -1 else if (headerSince < 0) now else headerSince
@@ -230,6 +281,17 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         return due
     }
 
+    /** Queues frames that wait for a place. */
+    private fun letIn() {
+        while (!isOver) {
+            val next = waiting.firstOrNull()?.takeIf { hasPlace(it.frame) } ?: return
+            waiting.removeFirst()
+            next.timer?.cancel()
+            enqueue(next.frame)
+            next.queued(true)
+        }
+    }
+
     /** Ends once what waits has been sent. */
     fun drain() {
         isDraining = true
@@ -242,6 +304,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     }
 
     private fun goPolitely() {
+        if (isOver) return
         server.parts()
         isParting = true
         part()
@@ -251,7 +314,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     private var isParting = false
 
     override fun gone() {
-        if (isParting) server.gone()
+        if (isParting) server.gone() else server.leave(this)
     }
 
     fun left() {

@@ -45,6 +45,35 @@ internal class Decoder(
     /** Whether the frame that has begun to arrive lacks a part of its header. */
     val isInsideHeader: Boolean get() = pending in 1 until layout.length
 
+    /** Bytes that its buffer takes. */
+    val capacity: Long get() = buffer.size.toLong()
+
+    /** Bytes of the larger buffer that pushing so many bytes takes; 0 if they fit into this one. */
+    fun growth(length: Int): Long = if (pending + length <= buffer.size) 0 else grown(pending + length).toLong()
+
+    private fun grown(needed: Int): Int = maxOf(needed.toLong(), minOf(2L * buffer.size, limits.frameBytes), 512L).toInt()
+
+    /** About the bytes that handing on the frame at the front takes, together with its JSON text and message; 0 if it is not whole. */
+    fun cost(): Long {
+        val total = layout.peekTotal(buffer, start, pending)
+        if (total < layout.length || total > pending) return 0
+        val isPacked = layout.peekEncoding(buffer, start) == protocol.gzipEncoding
+        val length = if (isPacked) minOf(layout.peekPlain(buffer, start), limits.inflatedBytes) else total
+        return if (layout.peekKind(buffer, start) == protocol.streamKind) length else READING * length
+    }
+
+    /** Gives back the buffer if it is empty. */
+    fun tidy() {
+        if (pending == 0) close()
+    }
+
+    /** Forgets everything that has come. */
+    fun close() {
+        start = 0
+        end = 0
+        buffer = ByteArray(0)
+    }
+
     fun push(bytes: ByteArray, from: Int, length: Int) {
         if (start > 0 && (start == end || end + length > buffer.size)) {
             buffer.copyInto(buffer, 0, start, end)
@@ -52,7 +81,7 @@ internal class Decoder(
             start = 0
         }
         if (end + length > buffer.size) {
-            buffer = buffer.copyOf(maxOf(end + length, minOf(2L * buffer.size, limits.frameBytes).toInt(), 512))
+            buffer = buffer.copyOf(grown(end + length))
         }
         bytes.copyInto(buffer, end, from, from + length)
         end += length
@@ -188,6 +217,9 @@ internal class Decoder(
     private companion object {
         /** How many times the longest frame a search may look through without success. */
         const val SEARCH = 4L
+
+        /** A body, its text and its message. */
+        const val READING = 3L
 
         /** Memory that an empty buffer keeps, in bytes. */
         const val KEEP = 64 * 1024

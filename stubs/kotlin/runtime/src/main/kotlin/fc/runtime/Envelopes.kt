@@ -26,6 +26,12 @@ internal object Envelopes {
     /** Whether responses carry a result code. If not, what did not go well is not answered. */
     fun hasResult(protocol: Protocol): Boolean = protocol.responseEnvelope.roleField(EnvelopeRole.RESULT_CODE) != null
 
+    /** Returns `true` if a result code is a value of its field. Without such a field, none is sent. */
+    fun carries(protocol: Protocol, code: Long): Boolean {
+        val field = protocol.responseEnvelope.roleField(EnvelopeRole.RESULT_CODE) ?: return true
+        return (field.codec.nearest(code) as? Number)?.toLong() == code
+    }
+
     /** The result code of a response; `null` if it has none. */
     fun resultCode(protocol: Protocol, envelope: Message): Long? =
         (value(protocol.responseEnvelope, envelope, EnvelopeRole.RESULT_CODE) as Number?)?.toLong()

@@ -11,7 +11,12 @@ public class Gzip @JvmOverloads constructor(
     public val fromBytes: Int = 1024,
     /** 1 (fast) to 9 (small). */
     public val level: Int = 1,
-)
+) {
+    init {
+        Settings.integer("Gzip.fromBytes", fromBytes, 0)
+        Settings.integer("Gzip.level", level, 1, 9)
+    }
+}
 
 /** Makes a gzip member of [data]; `null` if that is not shorter. */
 internal fun deflated(data: ByteArray, level: Int): ByteArray? {
@@ -19,7 +24,7 @@ internal fun deflated(data: ByteArray, level: Int): ByteArray? {
     if (room <= 0) return null
     val out = ByteArray(data.size)
     GZIP_HEADER.copyInto(out)
-    val deflater = Deflater(level.coerceIn(1, 9), true)
+    val deflater = Deflater(level, true)
     try {
         deflater.setInput(data)
         deflater.finish()
@@ -64,7 +69,7 @@ internal fun inflated(bytes: ByteArray, from: Int, to: Int, plain: Int): Inflate
                 if (!inflater.finished()) return Inflated.Damaged
                 break
             }
-            if (filled == out.size) out = out.copyOf(minOf(plain.toLong(), 2L * out.size).toInt())
+            if (filled == out.size) out = out.copyOf(minOf(plain.toLong(), GROWTH * out.size).toInt())
             val more = inflater.inflate(out, filled, out.size - filled)
             if (more == 0 && !inflater.finished()) return Inflated.Damaged
             filled += more
@@ -84,6 +89,9 @@ internal fun inflated(bytes: ByteArray, from: Int, to: Int, plain: Int): Inflate
 
 private val GZIP_HEADER = byteArrayOf(0x1F, 0x8B.toByte(), 8, 0, 0, 0, 0, 0, 0, 0xFF.toByte())
 private const val GZIP_TRAILER = 8
+
+/** Growth of the buffer for inflated data. Each larger buffer leaves garbage. */
+private const val GROWTH = 8L
 
 private fun putLittle(bytes: ByteArray, at: Int, value: Long) {
     for (index in 0 until 4) bytes[at + index] = (value shr (8 * index)).toByte()

@@ -95,8 +95,17 @@ public class HeaderLayout(
     public val length: Int = fields.sumOf { it.size }
 
     /** Largest message id. */
-    internal val idMax: Long = (1L shl (8 * fields[id].size)) - 1
+    internal val idMax: Long = largest(id)
     internal val algorithm: DigestAlgorithm? = if (digest < 0) null else fields[digest].algorithm
+
+    private fun largest(field: Int): Long =
+        if (fields[field].size >= Long.SIZE_BYTES) Long.MAX_VALUE else (1L shl (8 * fields[field].size)) - 1
+
+    /** Checks a command code by the size of its field. */
+    internal fun checkCode(code: Int): Long = Settings.long("code", code.toLong(), 0, largest(this.code))
+
+    /** Checks a message id by the size of its field. */
+    internal fun checkId(id: Long): Long = Settings.long("id", id, 0, idMax)
 
     private fun place(role: HeaderRole): Int = fields.indexOfFirst { it.role == role }
 
@@ -121,6 +130,15 @@ public class HeaderLayout(
     /** The total length of the frame that begins at [start], once that field is among the [available] bytes; or -1. */
     internal fun peekTotal(bytes: ByteArray, start: Int, available: Int): Long =
         if (available < offsets[total] + fields[total].size) -1 else get(bytes, start, total)
+
+    /** The kind of the frame whose header begins at [start]. */
+    internal fun peekKind(bytes: ByteArray, start: Int): Int = get(bytes, start, kind).toInt()
+
+    /** The encoding of the frame whose header begins at [start]. */
+    internal fun peekEncoding(bytes: ByteArray, start: Int): Int = if (encoding < 0) 0 else get(bytes, start, encoding).toInt()
+
+    /** The plain length of the frame whose header begins at [start]; 0 without such a field. */
+    internal fun peekPlain(bytes: ByteArray, start: Int): Long = if (plain < 0) 0 else get(bytes, start, plain)
 
     internal fun read(bytes: ByteArray, start: Int, isResponse: Boolean): Header {
         val data = (get(bytes, start, total) - length).coerceAtLeast(0)

@@ -11,7 +11,11 @@ internal class JsonReader(val text: String, allowance: Allowance) {
     var at: Int = 0
     private var depth = allowance.depth
     private var values = allowance.values
-    private var listBytes = allowance.listBytes
+    private val mostListBytes = allowance.listBytes
+    private var listBytes = mostListBytes
+
+    /** Memory of the lists that were read, about, in bytes. */
+    val spentListBytes: Long get() = mostListBytes - listBytes
 
     /** Skips white space and tells the next character; [END] behind the last. */
     fun peek(): Char {

@@ -1,6 +1,8 @@
 package fc.runtime
 
 import java.io.IOException
+import kotlin.coroutines.resumeWithException
+import kotlinx.coroutines.CancellableContinuation
 
 /** One thread's turns, and its clock. Whatever belongs to a connection happens on its loop. */
 internal interface Loop {
@@ -12,6 +14,15 @@ internal interface Loop {
 
     /** Runs a task at a time. On the loop alone. */
     fun schedule(at: Long, task: () -> Unit): Timer
+}
+
+/** Runs a task on the loop for a coroutine that waits. It gets the exception that the task throws. */
+internal fun Loop.execute(waiting: CancellableContinuation<*>, task: () -> Unit) = execute {
+    try {
+        task()
+    } catch (failure: Throwable) {
+        if (waiting.isActive) waiting.resumeWithException(failure)
+    }
 }
 
 /** A task that runs at a time, unless it is cancelled before. */
@@ -52,7 +63,11 @@ internal fun interface Dial {
 /** What has come to its end on a connection. */
 internal sealed interface End {
     /** Nothing can be sent either. */
-    class Broken(val cause: IOException) : End
+    class Broken(
+        val cause: IOException,
+        /** The runtime has failed, and not the network. */
+        val isOwn: Boolean = false,
+    ) : End
 
     /** The peer sends nothing more, or what it sends cannot be told into frames. */
     class Deaf(val error: FrameError?) : End
@@ -89,16 +104,38 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         isWoken = true
         loop.execute {
             isWoken = false
-            if (isOver) partWrites() else turn()
+            try {
+                if (isOver) partWrites() else turn()
+            } catch (failure: Throwable) {
+                end(failure)
+            }
         }
     }
 
-    /** Sends a frame with the next turn. */
-    fun send(frame: ByteArray) {
-        out.addLast(frame)
+    /** A turn has failed: the connection ends, and harms no other. */
+    private fun end(failure: Throwable) {
+        failed(failure)
+        try {
+            if (!isOver) ended(End.Broken(IOException(failure), isOwn = true))
+        } finally {
+            cut()
+        }
+    }
+
+    /** Sends a frame with the next turn. A long body is not copied. */
+    fun send(body: Prepared, id: FrameId): Unit =
+        if (body.length <= GATHERED) send(body.frame(id)) else send(body.header(id), body.data)
+
+    /** Sends a frame with the next turn, in one piece or two. */
+    fun send(first: ByteArray, second: ByteArray? = null) {
+        if (isClosed) return
+        val length = first.size + (second?.size ?: 0)
         if (unsent == 0L) begins(loop.now)
-        unsent += frame.size
-        sent(frame.size)
+        out.addLast(first)
+        second?.let { out.addLast(it) }
+        unsent += length
+        sent(length)
+        settle()
         wake()
     }
 
@@ -129,6 +166,19 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
     /** So many bytes have been handed over to be sent. */
     protected open fun sent(bytes: Int) {}
 
+    /** A turn has failed with an exception. */
+    protected abstract fun failed(failure: Throwable)
+
+    /** Makes room for so many more bytes. `false` if there is none: the conversation is woken when there may be. */
+    protected open fun room(bytes: Long): Boolean = true
+
+    /** The bytes that it holds have changed. */
+    protected open fun settle() {}
+
+    /** Reading waits for memory. */
+    protected var isStarved = false
+        private set
+
     private fun turn() {
         val now = loop.now
         val budget = try {
@@ -142,7 +192,9 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         if (isOver) return
         if (write(now) && !isOver) due = minOf(due, tend(now))
         if (isOver) return
-        link.want(budget > 0 && reads(), unsent > 0)
+        settle()
+        if (isOver) return
+        link.want(budget > 0 && !isStarved && reads(), unsent > 0)
         if (budget <= 0) wake()
         arm(due)
     }
@@ -150,9 +202,12 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
     /** Reads and deals with all there is, or as much as one turn may. What is left of that. */
     private fun receive(now: Long): Int {
         var budget = TURN
+        isStarved = false
         while (!isOver && reads()) {
             budget = decode(budget, now)
-            if (isOver || budget <= 0 || !reads()) break
+            if (isOver || isStarved || budget <= 0 || !reads()) break
+            val growth = decoder.growth(READ)
+            if (growth > 0 && !roomFor(growth)) break
             val read = link.read(scratch)
             if (read == 0) break
             if (read < 0) {
@@ -161,14 +216,22 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
             }
             val isFirst = decoder.pending == 0
             decoder.push(scratch, 0, read)
+            if (growth > 0) settle()
             came(read, isFirst, now)
         }
         return budget
     }
 
+    private fun roomFor(bytes: Long): Boolean {
+        isStarved = !room(bytes)
+        return !isStarved && !isOver
+    }
+
     private fun decode(most: Int, now: Long): Int {
         var budget = most
         while (budget > 0 && !isOver && reads()) {
+            val cost = decoder.cost()
+            if (cost > 0 && !roomFor(cost)) break
             try {
                 val frame = decoder.next() ?: return budget
                 budget -= FRAME + frame.body.size
@@ -235,6 +298,9 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         timer = if (due == Long.MAX_VALUE) null else loop.schedule(due) { armed = Long.MAX_VALUE; wake() }
     }
 
+    /** Gives back memory that nothing is in. */
+    fun tidy(): Unit = decoder.tidy()
+
     /** Ends at once. */
     fun cut() {
         isOver = true
@@ -282,6 +348,8 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         if (isClosed) return
         isClosed = true
         out.clear()
+        unsent = 0
+        decoder.close()
         gone()
     }
 

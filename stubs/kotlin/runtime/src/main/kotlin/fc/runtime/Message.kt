@@ -227,6 +227,17 @@ public abstract class MessageType<M : Message> protected constructor(
         if (isDeep) checkAll(value)
     }
 
+    /** Checks something that is to be sent. Java can pass `null` and messages of other types. */
+    internal fun demand(message: Any?): M {
+        if (message !is Message || message.messageType !== this) {
+            val found = (message as? Message)?.messageType?.name ?: message?.javaClass?.name
+            throw BodyError(BodyErrorKind.WRONG_TYPE, "found ${if (found == null) "null" else "a `$found`"}; send a `$name`")
+        }
+        message.check()
+        @Suppress("UNCHECKED_CAST")
+        return message as M
+    }
+
     internal fun checkAll(message: Message): Unit = checkFields(message.values, true)
 
     @Suppress("UNCHECKED_CAST")
@@ -246,7 +257,7 @@ public abstract class MessageType<M : Message> protected constructor(
 internal class Draft<M : Message>(private val type: MessageType<M>) {
     private val values = arrayOfNulls<Any?>(type.fields.size)
     private val come = BooleanArray(type.fields.size)
-    private var kept: ArrayList<Pair<String, Json>>? = null
+    private var kept: JsonWriter? = null
 
     /** Reads the value of a key if the message has it. */
     fun take(reader: JsonReader, key: String): Boolean {
@@ -269,8 +280,8 @@ internal class Draft<M : Message>(private val type: MessageType<M>) {
     /** Keeps the value of a key that the message does not have. */
     fun keep(reader: JsonReader, key: String) {
         reader.count(1)
-        val value = Json.trusted(reader.valueText())
-        (kept ?: ArrayList<Pair<String, Json>>().also { kept = it }).add(key to value)
+        if (type === Empty) return reader.skipValue()
+        (kept ?: JsonWriter().also { kept = it }).key(key).raw(reader.valueText())
     }
 
     /** The message, if all that it demands is there. */
@@ -285,7 +296,7 @@ internal class Draft<M : Message>(private val type: MessageType<M>) {
         } catch (error: BodyError) {
             throw error.at(start)
         }
-        return type.make(values, kept?.let { Extra(it) } ?: Extra.NONE)
+        return type.make(values, kept?.let { Extra(it.text) } ?: Extra.NONE)
     }
 }
 

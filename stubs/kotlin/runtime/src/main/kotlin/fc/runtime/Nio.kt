@@ -3,6 +3,7 @@ package fc.runtime
 import java.io.IOException
 import java.net.InetAddress
 import java.net.InetSocketAddress
+import java.net.UnknownHostException
 import java.nio.ByteBuffer
 import java.nio.channels.CancelledKeyException
 import java.nio.channels.ClosedChannelException
@@ -16,7 +17,9 @@ import java.util.concurrent.atomic.AtomicBoolean
 import kotlin.concurrent.thread
 
 /** A loop over sockets, with a thread of its own, which keeps no program alive. */
-internal class NioLoop(name: String) : Loop {
+internal class NioLoop(name: String, log: Log? = null) : Loop {
+    private val lines = Lines(log, null) { now }
+
     private val selector = Selector.open()
     private val tasks = ConcurrentLinkedQueue<() -> Unit>()
     private val timers = PriorityQueue<Alarm>()
@@ -64,10 +67,12 @@ internal class NioLoop(name: String) : Loop {
             repeat(count) { tasks.poll()?.let { guarded(it) } }
             generateSequence { if (isDue()) timers.poll() else null }.forEach { alarm -> alarm.task?.let { guarded(it) } }
             if (isEnding && tasks.isEmpty()) break
-            select()
+            // An interrupted thread would close every channel that it uses.
+            Thread.interrupted()
+            guarded { select() }
         }
         isOver = true
-        selector.close()
+        guarded { selector.close() }
         drain()
     }
 
@@ -77,9 +82,16 @@ internal class NioLoop(name: String) : Loop {
 
     private fun select() {
         isAwake.set(false)
-        val wait = timers.peek()?.let { maxOf(it.at - now, 0) } ?: IDLE
-        if (tasks.isNotEmpty() || wait == 0L) selector.selectNow() else selector.select(wait)
-        isAwake.set(true)
+        val wait = timers.peek()?.let { (it.at - now).coerceIn(0, IDLE) } ?: IDLE
+        try {
+            if (tasks.isNotEmpty() || wait == 0L) selector.selectNow() else selector.select(wait)
+        } catch (failure: IOException) {
+            // It would fail again at once.
+            Thread.sleep(PAUSE)
+            throw failure
+        } finally {
+            isAwake.set(true)
+        }
         val keys = selector.selectedKeys()
         for (key in keys) {
             @Suppress("UNCHECKED_CAST")
@@ -88,29 +100,35 @@ internal class NioLoop(name: String) : Loop {
         keys.clear()
     }
 
-    /** What fails costs nobody else the thread. */
+    /** Runs a task. All connections share the thread, and it does not end with an exception. */
     private fun guarded(task: () -> Unit) {
         try {
             task()
         } catch (_: CancelledKeyException) {
             // The connection ended in the same turn.
-        } catch (failure: Exception) {
-            Thread.getDefaultUncaughtExceptionHandler()?.uncaughtException(worker, failure) ?: failure.printStackTrace()
+        } catch (failure: Throwable) {
+            lines.failed("a task of the runtime failed", failure)
         }
     }
 
-    /** Connects to a port, whose name is looked up on a thread of its own. */
+    /** Connects to a port. Another thread looks up the name. */
     fun connect(host: String, port: Int, keepalive: Boolean, done: (Link?, Exception?) -> Unit): Timer {
         val attempt = Attempt(keepalive, done)
-        thread(isDaemon = true, name = "fc-lookup") {
-            try {
-                val address = InetSocketAddress(InetAddress.getByName(host), port)
-                execute { attempt.connect(address) }
-            } catch (failure: IOException) {
-                execute { attempt.fail(failure) }
-            }
+        try {
+            thread(isDaemon = true, name = "fc-lookup") { look(host, port, attempt) }
+        } catch (failure: Throwable) {
+            // No more threads: the attempt fails like any other, after its timer is there.
+            execute { attempt.fail(failure) }
         }
         return attempt
+    }
+
+    /** On Android, an app without the permission for networks gets a `SecurityException`. */
+    private fun look(host: String, port: Int, attempt: Attempt) = try {
+        val address = InetSocketAddress(InetAddress.getByName(host), port)
+        execute { attempt.connect(address) }
+    } catch (failure: Throwable) {
+        execute { attempt.fail(failure) }
     }
 
     private inner class Attempt(private val keepalive: Boolean, done: (Link?, Exception?) -> Unit) : Timer {
@@ -124,7 +142,7 @@ internal class NioLoop(name: String) : Loop {
                 channel.configureBlocking(false)
                 if (channel.connect(address)) return connected(channel)
                 channel.register(selector, SelectionKey.OP_CONNECT, { finish(channel) })
-            } catch (failure: Exception) {
+            } catch (failure: Throwable) {
                 fail(failure)
             }
         }
@@ -132,21 +150,27 @@ internal class NioLoop(name: String) : Loop {
         private fun finish(channel: SocketChannel) {
             try {
                 if (channel.finishConnect()) connected(channel)
-            } catch (failure: Exception) {
+            } catch (failure: Throwable) {
                 fail(failure)
             }
         }
 
         private fun connected(channel: SocketChannel) {
+            val link = link(channel, keepalive)
             this.channel = null
-            done?.invoke(link(channel, keepalive), null)
-            done = null
+            end(link, null)
         }
 
-        fun fail(failure: Exception) {
+        fun fail(failure: Throwable) {
+            if (failure !is IOException) lines.failed("an attempt to connect failed", failure)
             channel?.close()
-            done?.invoke(null, failure)
+            end(null, failure as? Exception ?: IOException(failure))
+        }
+
+        private fun end(link: Link?, failure: Exception?) {
+            val told = done
             done = null
+            told?.invoke(link, failure)
         }
 
         override fun cancel() {
@@ -157,12 +181,13 @@ internal class NioLoop(name: String) : Loop {
 
     /** Listens at a port: [accepted] is called for each connection. */
     fun listen(address: InetSocketAddress, accepted: (SocketChannel) -> Unit): ServerSocketChannel {
+        if (address.isUnresolved) throw UnknownHostException("no such address: ${address.hostString}")
         val listener = ServerSocketChannel.open()
         try {
             listener.socket().reuseAddress = true
             listener.socket().bind(address, BACKLOG)
             listener.configureBlocking(false)
-        } catch (failure: IOException) {
+        } catch (failure: Throwable) {
             listener.close()
             throw failure
         }
@@ -194,6 +219,9 @@ internal class NioLoop(name: String) : Loop {
             } catch (_: IOException) {
                 // It has gone already.
                 channel.close()
+            } catch (failure: Throwable) {
+                channel.close()
+                throw failure
             }
         }
     }

@@ -4,6 +4,8 @@ import java.net.SocketAddress
 import java.util.concurrent.CancellationException
 import kotlinx.coroutines.CoroutineStart
 import kotlinx.coroutines.Job
+import kotlinx.coroutines.currentCoroutineContext
+import kotlinx.coroutines.isActive
 import kotlinx.coroutines.launch
 
 /** One app's command connection at a robot. */
@@ -14,10 +16,31 @@ internal class Peer(
     val address: SocketAddress?,
     /** What may be called from its address. */
     private val effects: Set<Effect>,
-) : Conversation(server.loop, link, server.config.decoder(server.protocol)) {
-    private class Work(val job: Job, val context: Context, val effect: Effect) {
+) : Conversation(server.loop, link, server.config.decoder(server.protocol)), MemoryHolder {
+    /** A request in the hands of its handler. */
+    private class Work(
+        val id: FrameId,
+        val context: Context,
+        val effect: Effect,
+        /** The handler as the user knows it. */
+        val called: Any,
+        /** Bytes that are lent to the handler. */
+        val bytes: Long,
+    ) {
+        var job: Job? = null
         var deadline: Timer? = null
+        var isOver = false
     }
+
+    /** Runs a request, and makes the response of its result. */
+    private class Task(
+        val called: Any,
+        val context: Context,
+        val effect: Effect,
+        val bytes: Long,
+        val handle: suspend () -> Any?,
+        val respond: (Any?) -> Prepared,
+    )
 
     private val protocol = server.protocol
     private val config = server.config
@@ -28,8 +51,16 @@ internal class Peer(
 
     /** Bytes of the reports in the queue and in flight. */
     private var queuedBytes = 0L
+
+    /** Bytes of the reports in flight. */
+    private var flyingBytes = 0L
     private val mostQueuedBytes = config.queuedBytes ?: limits.inflatedBytes
-    private val working = HashMap<FrameId, Work>()
+
+    /** In the order of their beginning. Several may have one id. */
+    private val working = LinkedHashSet<Work>()
+
+    /** A request that waits for memory. The others wait behind it. */
+    private var waiting: Frame? = null
     private var isDraining = false
 
     /** Nothing more is read at all. What has been carried out is answered all the same. */
@@ -45,8 +76,21 @@ internal class Peer(
     var isHeard = false
         private set
 
-    override fun reads(): Boolean =
-        !isDraining && !isDeaf && working.size < limits.inFlight && unsent < HIGH_WATER && pace.until <= loop.now
+    override fun reads(): Boolean = !isDraining && !isDeaf && waiting == null && working.size < limits.inFlight &&
+        unsent < HIGH_WATER && pace.until <= loop.now
+
+    /** Reports in flight and unsent bytes are mostly the same arrays. */
+    override val held: Long
+        get() = decoder.capacity + (waiting?.body?.size ?: 0) + queuedBytes - flyingBytes + maxOf(flyingBytes, unsent)
+    override var counted = 0L
+
+    override fun room(bytes: Long): Boolean = server.memory.room(this, bytes)
+
+    override fun settle() {
+        if (!isOver) server.memory.settle(this)
+    }
+
+    override fun failed(failure: Throwable): Unit = server.lines.failed("a connection failed", failure)
 
     override fun came(bytes: Int, isFirst: Boolean, now: Long) {
         isHeard = true
@@ -85,11 +129,11 @@ internal class Peer(
         val id = frame.id
         when (val meaning = session.receive(id, null, now)) {
             is Incoming.Answer -> {
-                queuedBytes -= meaning.token.body.length
+                landed(meaning.token)
                 acknowledged(meaning.token, frame.body)
             }
             Incoming.Late -> unusable()
-            Incoming.Command -> handle(id, frame.body, now)
+            Incoming.Command -> handle(frame, now)
             // Robots take no reports, and streams have a port of their own.
             Incoming.Report, Incoming.Repeated, Incoming.Stream -> {
                 unusable()
@@ -119,7 +163,8 @@ internal class Peer(
 
     // Requests.
 
-    private fun handle(id: FrameId, body: ByteArray, now: Long) {
+    private fun handle(frame: Frame, now: Long) {
+        val (id, body) = frame.id to frame.body
         val entry = server.service.entries[id.code]
         val raw = server.service.rawHandler(id.code, isKnown = id.code in server.commands)
         val effect = server.commands[id.code]?.effect ?: Effect.UNKNOWN
@@ -129,8 +174,22 @@ internal class Peer(
                 server.lines.say(LogLevel.WARN, "call forbidden") { "code ${id.code} is not allowed from $address" }
                 refuse(id, said(protocol.results.protocol, "not allowed from this address"))
             }
-            entry != null -> begin(entry, id, body, now)
-            raw != null -> beginRaw(raw, id, body, now)
+            entry != null || raw != null -> {
+                val bytes = TEXTS * body.size
+                if (!server.memory.lend(this, bytes)) {
+                    waiting = frame
+                    return
+                }
+                var task: Task? = null
+                try {
+                    task = if (entry != null) task(entry, id, body, bytes) else task(checkNotNull(raw), id, effect, body, bytes)
+                } finally {
+                    if (task == null) server.memory.giveBack(bytes)
+                }
+                task ?: return
+                server.memory.lendMore(task.bytes - bytes)
+                launch(id, task, now)
+            }
             id.code in server.commands -> refuse(id, notImplemented())
             else -> {
                 unusable()
@@ -149,7 +208,12 @@ internal class Peer(
     private fun said(result: ResultText, why: String) = Refusal(result.code, "${result.text}: $why")
 
     /** Reads envelope and body in one pass, and looks at the time; `null` if the request has been refused. */
-    private fun <Q : Message> read(type: MessageType<Q>, id: FrameId, body: ByteArray): Pair<Q, Context>? {
+    private fun <Q : Message> read(
+        type: MessageType<Q>,
+        id: FrameId,
+        body: ByteArray,
+        task: (Q, Context, listBytes: Long) -> Task,
+    ): Task? {
         val read = try {
             Bodies.enveloped(protocol.requestEnvelope, type, body, limits.json())
         } catch (error: BodyError) {
@@ -169,30 +233,34 @@ internal class Peer(
                 unusable()
                 refuse(id, said(protocol.results.invalid, "${read.fault?.message}"))
             }
-            else -> return request to Context(address, this.id, id.id, id.code, time, ::notImplemented, unknown())
+            else -> {
+                val context = Context(address, this.id, id.id, id.code, time, ::notImplemented, unknown()) { failure, action ->
+                    loop.execute { server.lines.failed("an action of `onAbandoned` failed", failure, action) }
+                }
+                return task(request, context, read.listBytes)
+            }
         }
         return null
     }
 
-    private fun <Q : Message, A : Message> begin(entry: Service.Entry<Q, A>, id: FrameId, body: ByteArray, now: Long) {
-        val (request, context) = read(entry.command.request, id, body) ?: return
-        launch(id, context, entry.command.effect, now) {
-            val response = entry.handler.handle(context, request)
-            response.check()
-            val success = protocol.results.success
-            encoded(response, success.code, success.text)
+    private fun <Q : Message, A : Message> task(entry: Service.Entry<Q, A>, id: FrameId, body: ByteArray, bytes: Long): Task? =
+        read(entry.command.request, id, body) { request, context, listBytes ->
+            val handle: suspend () -> Any? = { entry.handler.handle(context, request) }
+            Task(entry.called, context, entry.command.effect, bytes + listBytes, handle) { response ->
+                val success = protocol.results.success
+                encoded(entry.command.response.demand(response), success.code, success.text)
+            }
         }
-    }
 
-    private fun beginRaw(handler: RawHandler, id: FrameId, body: ByteArray, now: Long) {
-        val (_, context) = read(Keys, id, body) ?: return
-        val text = Json.trusted(if (body.isEmpty()) "{}" else Bodies.utf8(body))
-        val effect = server.commands[id.code]?.effect ?: Effect.UNKNOWN
-        launch(id, context, effect, now) {
-            val answer = handler.handle(context, RawRequest(id.code, text))
-            server.encoder.prepare(completed(answer))
+    private fun task(entry: Service.RawEntry, id: FrameId, effect: Effect, body: ByteArray, bytes: Long): Task? =
+        read(Keys, id, body) { _, context, _ ->
+            val text = Json.trusted(if (body.isEmpty()) "{}" else Bodies.utf8(body))
+            val handle: suspend () -> Any? = { entry.handler.handle(context, RawRequest(id.code, text)) }
+            Task(entry.called, context, effect, bytes, handle) { answer ->
+                if (answer !is Json) throw BodyError(BodyErrorKind.WRONG_TYPE, "found something else; send a `Json`")
+                server.encoder.prepare(completed(answer))
+            }
         }
-    }
 
     /** An answer made elsewhere: the envelope of success supplies the keys of the envelope that it lacks. */
     private fun completed(answer: Json): ByteArray {
@@ -200,79 +268,111 @@ internal class Peer(
         val success = protocol.results.success
         val envelope = Envelopes.response(protocol, System.currentTimeMillis(), success.code, success.text)
         val type = envelope.messageType
-        val values = Array(type.fields.size) { index ->
-            envelope.values[index].takeIf { keys.extra[type.fields[index].key] == null }
-        }
+        val there = keys.extra.keys
+        val values = Array(type.fields.size) { index -> envelope.values[index].takeIf { type.fields[index].key !in there } }
         val whole = Bodies.write(type.make(values, Extra.NONE), keys)
         Bodies.enveloped(protocol.responseEnvelope, Empty, whole, limits.json())
         return whole
     }
 
     /** Has a handler at work until its deadline. */
-    private fun launch(id: FrameId, context: Context, effect: Effect, now: Long, answer: suspend () -> Prepared) {
-        if (outlives(effect) && server.isAbandonedFull) {
+    private fun launch(id: FrameId, task: Task, now: Long) {
+        if (outlives(task.effect) && server.isAbandonedFull) {
             server.counting.add(ServerCount.ABANDONED_REACHED)
+            server.memory.giveBack(task.bytes)
             return refuse(id, said(protocol.results.protocol, "too many handlers are still at work"))
         }
-        val job = server.scope.launch(start = CoroutineStart.LAZY) { run(id, context, answer) }
-        val work = Work(job, context, effect)
-        // A peer that uses an id twice at once gets two answers, and is not told apart.
-        working.put(id, work)?.let { abandon(it) }
-        work.deadline = loop.schedule(after(now, config.handlerTimeout ?: protocol.defaults.handlerTimeout)) { late(id, work) }
-        job.start()
+        val work = Work(id, task.context, task.effect, task.called, task.bytes)
+        val job = server.scope.launch(server.handlerFaults, CoroutineStart.LAZY) { run(work, task) }
+        work.job = job
+        working.add(work)
+        // A dispatcher that takes no more work cancels the job before it begins.
+        job.invokeOnCompletion { cause -> if (cause != null) loop.execute { finish(work) { cancelled(work) } } }
+        work.deadline = loop.schedule(after(now, config.handlerTimeout ?: protocol.defaults.handlerTimeout)) { late(work) }
+        try {
+            job.start()
+        } catch (failure: Throwable) {
+            finish(work, onFailure(work, failure))
+        }
     }
 
     private fun outlives(effect: Effect) = effect == Effect.MOTION || effect == Effect.UNKNOWN
 
-    private suspend fun run(id: FrameId, context: Context, answer: suspend () -> Prepared) {
-        val made = try {
-            answer()
+    /** On a thread of the handlers. */
+    private suspend fun run(work: Work, task: Task) {
+        val end = try {
+            onResponse(work, task.respond, task.handle())
         } catch (refusal: Refusal) {
-            return loop.execute { done(id, context) { refuse(id, refusal) } }
-        } catch (cancelled: CancellationException) {
-            loop.execute { done(id, context) { failed(id) } }
-            throw cancelled
-        } catch (_: Throwable) {
-            // Whatever it is, it harms this call alone.
-            return loop.execute { done(id, context) { failed(id) } }
+            onRefusal(work, refusal)
+        } catch (failure: Throwable) {
+            val isOurs = failure is CancellationException && !currentCoroutineContext().isActive
+            if (isOurs) ({ cancelled(work) }) else onFailure(work, failure)
         }
-        loop.execute {
-            done(id, context) {
-                server.counting.add(ServerCount.CALLS_ANSWERED)
-                send(made.frame(id.answer()))
-            }
+        loop.execute { finish(work, end) }
+    }
+
+    private fun onRefusal(work: Work, refusal: Refusal): () -> Unit = when {
+        refusal.code == protocol.results.success.code -> onFailure(work, refusal)
+        !Envelopes.carries(protocol, refusal.code) -> {
+            onInvalid(work, BodyError(BodyErrorKind.OUT_OF_RANGE, "the result code ${refusal.code} is no value of its field"))
+        }
+        else -> ({ refuse(work.id, refusal) })
+    }
+
+    private fun onResponse(work: Work, respond: (Any?) -> Prepared, response: Any?): () -> Unit {
+        val body = try {
+            respond(response)
+        } catch (error: BodyError) {
+            return onInvalid(work, error)
+        } catch (error: FrameError) {
+            return onInvalid(work, error)
+        }
+        return {
+            server.counting.add(ServerCount.CALLS_ANSWERED)
+            send(body, work.id.answer())
         }
     }
 
-    private fun failed(id: FrameId) {
-        server.counting.add(ServerCount.HANDLERS_PANICKED)
-        refuse(id, said(protocol.results.protocol, "the handler failed"))
+    /** The response breaks the spec. */
+    private fun onInvalid(work: Work, error: Exception): () -> Unit {
+        server.handlerFailed(error, work.context, work.called) { "the response to $it breaks the spec" }
+        return { refuse(work.id, protocol.results.protocol) }
     }
+
+    /** The handler has failed: that harms this call alone. */
+    private fun onFailure(work: Work, failure: Throwable): () -> Unit {
+        server.counting.add(ServerCount.HANDLERS_PANICKED)
+        server.handlerFailed(failure, work.context, work.called) { "the handler of $it failed" }
+        return { refuse(work.id, said(protocol.results.protocol, "the handler failed")) }
+    }
+
+    private fun cancelled(work: Work) = refuse(work.id, said(protocol.results.protocol, "the handler was cancelled"))
 
     private fun encoded(response: Message, code: Long, text: String): Prepared =
         server.encoder.prepare(Bodies.write(Envelopes.response(protocol, System.currentTimeMillis(), code, text), response))
 
     /** A handler has ended; [answer] unless nobody waits for it any more. */
-    private inline fun done(id: FrameId, context: Context, answer: () -> Unit) {
-        val work = working[id] ?: return
-        if (work.context !== context) return
-        working.remove(id)
+    private inline fun finish(work: Work, answer: () -> Unit) {
+        if (work.isOver) return
+        work.isOver = true
+        server.memory.giveBack(work.bytes)
+        if (!working.remove(work)) return
         work.deadline?.cancel()
         answer()
         wake()
     }
 
-    private fun late(id: FrameId, work: Work) {
-        working.remove(id)
+    private fun late(work: Work) {
+        working.remove(work)
         server.counting.add(ServerCount.CALLS_TIMED_OUT)
-        refuse(id, protocol.results.timeout)
+        refuse(work.id, protocol.results.timeout)
         abandon(work)
         wake()
     }
 
     private fun abandon(work: Work) {
         work.deadline?.cancel()
-        server.abandon(work.job, work.effect)
+        server.abandon(checkNotNull(work.job), work.effect)
         work.context.gone.complete(Unit)
     }
 
@@ -281,26 +381,49 @@ internal class Peer(
     private fun refuse(id: FrameId, refusal: Refusal) {
         server.counting.add(ServerCount.CALLS_REFUSED)
         if (!Envelopes.hasResult(protocol)) return
-        val body = try {
-            encoded(Empty.INSTANCE, refusal.code, refusal.text)
-        } catch (_: FrameError) {
-            return
-        }
-        send(body.frame(id.answer()))
+        val body = refused(refusal.code, refusal.text) ?: protocol.results.protocol.run { refused(code, text) }
+        if (body != null) send(body, id.answer())
+    }
+
+    /** Encodes a refusal. `null` if no frame is long enough for its text. */
+    private fun refused(code: Long, text: String): Prepared? = try {
+        encoded(Empty.INSTANCE, code, text)
+    } catch (error: FrameError) {
+        server.lines.failed("no frame is long enough for a refusal", error)
+        null
     }
 
     // Reports.
 
     /** Queues a report. If the queue is full, the oldest in it give way. */
     fun push(report: Queued) {
-        while (queue.size >= limits.queuedReports || queuedBytes + report.body.length > mostQueuedBytes) {
+        // Reports that wait close no connection.
+        while (queue.size >= limits.queuedReports || !hasPlace(report.body.length)) {
             val oldest = queue.removeFirstOrNull() ?: return drop(report)
             queuedBytes -= oldest.body.length
+            settle()
             drop(oldest)
         }
         queue.addLast(report)
         queuedBytes += report.body.length
+        settle()
         wake()
+    }
+
+    /** A report is no longer in flight. */
+    private fun landed(report: Queued) {
+        queuedBytes -= report.body.length
+        flyingBytes -= report.body.length
+    }
+
+    private fun hasPlace(bytes: Int): Boolean = queuedBytes + bytes <= mostQueuedBytes && server.memory.hasRoom(bytes.toLong())
+
+    /** Handles a request that waited for memory, if there is enough now. */
+    private fun resume(now: Long) {
+        val frame = waiting ?: return
+        waiting = null
+        handle(frame, now)
+        if (waiting == null) wake()
     }
 
     private fun drop(report: Queued) {
@@ -310,36 +433,40 @@ internal class Peer(
 
     /** Repetitions to different apps are spread over an eighth of the wait. */
     private fun spread(policy: AckPolicy) =
-        AckPolicy(policy.timeout + policy.timeout / 8 / PLACES * (id % PLACES), policy.retries)
+        AckPolicy(minOf(policy.timeout + policy.timeout / 8 / PLACES * (id % PLACES), Settings.LONGEST), policy.retries)
 
     override fun tend(now: Long): Long {
+        resume(now)
+        if (isOver) return Long.MAX_VALUE
         while (true) {
             val due = session.due(now) ?: break
             if (due is Due.Again) {
                 if (unsent >= HIGH_WATER) continue
                 server.counting.add(ServerCount.REPORTS_REPEATED)
-                send(due.token.body.frame(due.frame))
+                send(due.token.body, due.frame)
             } else {
                 server.counting.add(ServerCount.REPORTS_TIMED_OUT)
-                queuedBytes -= due.token.body.length
+                landed(due.token)
                 due.token.ended(AckOutcome.TIMED_OUT, null)
             }
         }
         while (!isDeaf && unsent < HIGH_WATER && session.inFlight < limits.inFlight) {
             val report = queue.removeFirstOrNull() ?: break
             val frame = session.open(protocol.reportKind, report.code, spread(report.policy), now, report) ?: break
-            send(report.body.frame(frame))
+            flyingBytes += report.body.length
+            send(report.body, frame)
         }
+        if (isOver) return Long.MAX_VALUE
         val due = watch(now)
         if (due <= now && isOver) return due
-        if ((isDraining || isDeaf) && working.isEmpty() && unsent == 0L) goPolitely()
+        if ((isDraining || isDeaf) && working.isEmpty() && waiting == null && unsent == 0L) goPolitely()
         val rested = if (pace.until > now) pace.until else Long.MAX_VALUE
         return minOf(minOf(due, rested), session.nextDue() ?: Long.MAX_VALUE)
     }
 
     /** What does not come, or go, in time. */
     private fun watch(now: Long): Long {
-        val isReading = reads()
+        val isReading = reads() && !isStarved
         if (isReading && !wasReading) arriving.begin(now)
         wasReading = isReading
         headerSince = if (!decoder.isInsideHeader) -1 else if (headerSince < 0) now else headerSince
@@ -347,7 +474,7 @@ internal class Peer(
         val stalls = if (isReading && decoder.pending > 0) arriving.deadline else Long.MAX_VALUE
         val unread = if (unsent > 0) leaving.deadline else Long.MAX_VALUE
         val idleLimit = config.idleTimeout
-        val isIdle = working.isEmpty() && decoder.pending == 0
+        val isIdle = working.isEmpty() && waiting == null && decoder.pending == 0
         val idle = if (idleLimit != null && isIdle) after(lastFrame, idleLimit) else Long.MAX_VALUE
         if (header <= now || stalls <= now) {
             server.counting.add(ServerCount.CONNECTIONS_TIMED_OUT)
@@ -377,6 +504,7 @@ internal class Peer(
     }
 
     private fun goPolitely() {
+        if (isOver) return
         server.parts()
         isParting = true
         part()
@@ -386,15 +514,16 @@ internal class Peer(
     private var isParting = false
 
     override fun gone() {
-        if (isParting) server.gone()
+        if (isParting) server.gone() else server.leave(this)
     }
 
     /** Nothing more will be answered. */
     fun left() {
         val reports = session.endIf { true } + queue
         queue.clear()
+        waiting = null
         reports.forEach { it.ended(AckOutcome.CLOSED, null) }
-        val left = working.values.toList()
+        val left = working.toList()
         working.clear()
         left.forEach { abandon(it) }
     }
@@ -403,5 +532,8 @@ internal class Peer(
         /** Beyond this much unsent, in bytes, nothing is read or taken up. */
         const val HIGH_WATER = 256 * 1024
         const val PLACES = 32
+
+        /** A request takes about so many bytes for each byte of its text, which may be Chinese. */
+        const val TEXTS = 2L
     }
 }

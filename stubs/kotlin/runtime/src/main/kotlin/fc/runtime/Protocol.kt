@@ -102,7 +102,13 @@ public class Defaults @JvmOverloads constructor(
     public val limits: Limits,
     /** Oldest request that is still served, in milliseconds; `null` for any age. */
     public val maxAge: Long? = null,
-)
+) {
+    init {
+        Settings.long("Defaults.callTimeout", callTimeout, 0, Settings.LONGEST)
+        Settings.long("Defaults.handlerTimeout", handlerTimeout, 0, Settings.LONGEST)
+        if (maxAge != null) Settings.long("Defaults.maxAge", maxAge, 0, Settings.LONGEST)
+    }
+}
 
 /** How the acknowledgement of a report is awaited. */
 public class AckPolicy(
@@ -110,7 +116,12 @@ public class AckPolicy(
     public val timeout: Long,
     /** How often to send it again before giving up. */
     public val retries: Int,
-)
+) {
+    init {
+        Settings.long("AckPolicy.timeout", timeout, 0, Settings.LONGEST)
+        Settings.integer("AckPolicy.retries", retries, 0)
+    }
+}
 
 /** Bounds of everything that grows with what a peer sends. Each method gives the same bounds with one changed. */
 public class Limits private constructor(private val values: LongArray) {
@@ -124,10 +135,14 @@ public class Limits private constructor(private val values: LongArray) {
         connections: Int,
     ) : this(
         longArrayOf(
-            frameBytes, inflatedBytes, jsonDepth.toLong(), inFlight.toLong(), queuedReports.toLong(), connections.toLong(),
+            minOf(frameBytes, MOST_BYTES), minOf(inflatedBytes, MOST_BYTES), jsonDepth.toLong(), inFlight.toLong(), queuedReports.toLong(), connections.toLong(),
             INFLATE_RATIO, 1L shl 20, 32L shl 20,
         ),
     )
+
+    init {
+        for (index in values.indices) Settings.long("Limits.${NAMES[index]}", values[index], if (index == QUEUED_REPORTS) 0 else 1)
+    }
 
     /** Longest frame, header included, in bytes. */
     public val frameBytes: Long get() = values[0]
@@ -189,6 +204,11 @@ public class Limits private constructor(private val values: LongArray) {
 
     internal companion object {
         const val INFLATE_RATIO = 256L
+        private const val QUEUED_REPORTS = 4
+        private val NAMES = listOf(
+            "frameBytes", "inflatedBytes", "jsonDepth", "inFlight", "queuedReports", "connections", "inflateRatio", "jsonValues",
+            "jsonListBytes",
+        )
 
         /** Data of so many bytes or fewer may have been compressed by any ratio. */
         const val INFLATE_FREE = 1L shl 20

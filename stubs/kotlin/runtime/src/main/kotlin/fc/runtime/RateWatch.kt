@@ -2,7 +2,7 @@ package fc.runtime
 
 /** Whether bytes come, or go, as fast as they have to: so many in so much time are progress, fewer are none. */
 internal class RateWatch(rate: Int, private val within: Long) {
-    private val least = maxOf(1, within * rate / 1000)
+    private val least = maxOf(1, (within.toDouble() * rate / 1000).toLong())
     private var since = 0L
     private var bytes = 0L
 

@@ -41,12 +41,12 @@ public class Server internal constructor(
     @JvmSynthetic
     public suspend fun <R : Message> push(audience: Audience, report: Report<R>, message: R): List<Acknowledgement> {
         val body = prepared {
-            message.check()
+            report.message.demand(message)
             Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), message)
         }
         val policy = report.ack ?: protocol.defaults.ack
         return suspendCancellableCoroutine { waiting ->
-            core.loop.execute {
+            core.loop.execute(waiting) {
                 val ended = ArrayList<Acknowledgement>()
                 var expected = -1
                 fun look() {
@@ -87,13 +87,17 @@ public class Server internal constructor(
      */
     @JvmSynthetic
     public suspend fun sendStream(audience: Audience, code: Int, id: Long, data: ByteArray): Int {
+        protocol.header.checkCode(code)
+        protocol.header.checkId(id)
         val frame = prepared { data }.frame(FrameId(false, protocol.streamKind, code, id))
         val peers = onLoop { core.dataAudience(audience) }
         return coroutineScope {
             peers.map { peer ->
                 async {
                     suspendCancellableCoroutine { waiting ->
-                        core.loop.execute { peer.offer(frame) { isQueued -> if (waiting.isActive) waiting.resume(isQueued) } }
+                        core.loop.execute(waiting) {
+                            peer.offer(frame) { isQueued -> if (waiting.isActive) waiting.resume(isQueued) }
+                        }
                     }
                 }
             }.awaitAll().count { it }
@@ -125,6 +129,9 @@ public class Server internal constructor(
     @JvmSynthetic
     public suspend fun connections(): Map<Long, SocketAddress?> = onLoop { core.connections() }
 
+    /** Bytes that apps make the robot hold at this moment; see [ServerConfig.memory]. */
+    public val memory: Long get() = core.memory.total
+
     /** What the robot has seen so far. */
     public val counters: ServerCounters get() = ServerCounters(core.counting.read())
 
@@ -135,9 +142,10 @@ public class Server internal constructor(
      */
     @JvmSynthetic
     public suspend fun shutdown(grace: Long, unit: TimeUnit) {
+        val most = Settings.duration("grace", grace, unit)
         stopListening()
         suspendCancellableCoroutine { waiting ->
-            core.loop.execute { core.stop(unit.toMillis(grace)) { if (waiting.isActive) waiting.resume(Unit) } }
+            core.loop.execute(waiting) { core.stop(most) { if (waiting.isActive) waiting.resume(Unit) } }
         }
         core.scope.cancel()
         (core.loop as? NioLoop)?.end()
@@ -195,7 +203,7 @@ public class Server internal constructor(
             config: ServerConfig = ServerConfig(),
             dispatcher: CoroutineDispatcher = Dispatchers.Default,
         ): Server {
-            val loop = NioLoop("fc-robot")
+            val loop = NioLoop("fc-robot", config.log)
             val core = ServerCore(protocol, config, loop, service, CoroutineScope(SupervisorJob() + dispatcher))
             var commands: ServerSocketChannel? = null
             try {
@@ -208,7 +216,7 @@ public class Server internal constructor(
                     if (!core.serveData(link, channel.socket().remoteSocketAddress)) link.close()
                 }
                 return Server(core, commands, data)
-            } catch (failure: IOException) {
+            } catch (failure: Throwable) {
                 commands?.close()
                 loop.end()
                 throw failure

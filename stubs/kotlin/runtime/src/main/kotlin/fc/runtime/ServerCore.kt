@@ -3,6 +3,8 @@ package fc.runtime
 import java.net.InetAddress
 import java.net.InetSocketAddress
 import java.net.SocketAddress
+import java.util.Locale
+import kotlinx.coroutines.CoroutineExceptionHandler
 import kotlinx.coroutines.CoroutineScope
 import kotlinx.coroutines.Job
 
@@ -18,10 +20,21 @@ internal class ServerCore(
     val counting = Counting<ServerCount>(ServerCount.entries.size)
     val encoder: Encoder = config.encoder(protocol)
     val commands = protocol.commands.associateBy { it.code }
-    val inbox = StreamInbox { loop.execute { dataPeers.forEach { it.wake() } } }
-    val lines = Lines(config.log) { loop.now }
+    val inbox: StreamInbox = StreamInbox(config.queuedBytes ?: limits.inflatedBytes) {
+        loop.execute {
+            dataPeers.forEach { it.wake() }
+            memory.gaveBack()
+        }
+    }
+    val lines = Lines(config.log, protocol) { loop.now }
+
+    /** Takes what fails around handlers, as in their dispatcher. */
+    val handlerFaults = CoroutineExceptionHandler { _, failure ->
+        loop.execute { lines.failed("the dispatcher of handlers failed", failure) }
+    }
     private val peers = ArrayList<Peer>()
     private val dataPeers = ArrayList<DataPeer>()
+    val memory: MemoryBudget = MemoryBudget(config.memory, { peers + dataPeers }, { inbox.bytes }, ::evict)
     private var lastConnection = 0L
 
     /** Handlers that run on though nobody waits for their answer. */
@@ -65,6 +78,31 @@ internal class ServerCore(
     private inline fun left(id: Long, leave: () -> Unit) {
         lines.say(LogLevel.INFO, "ended") { "ended: $id" }
         leave()
+    }
+
+    private fun evict(holder: MemoryHolder) {
+        val weight = holder.weight
+        val peer = holder as Conversation
+        val (id, address) = if (peer is Peer) peer.id to peer.address else (peer as DataPeer).run { id to address }
+        counting.add(ServerCount.CONNECTIONS_EVICTED)
+        lines.say(LogLevel.WARN, "evicted") { "closed: memory is short, and $id from $address held most, $weight bytes" }
+        peer.cut()
+        inbox.drop(id)
+        leave(peer)
+    }
+
+    /** Logs an error of a handler or its response, and tells the hook. On the thread of the handler. */
+    fun handlerFailed(error: Throwable, context: Context, called: Any, what: (String) -> String) {
+        val name = commands[context.code]?.name
+        val line = what(name ?: String.format(Locale.ROOT, "0x%04X", context.code))
+        // An app chooses the codes without a command: they are one cause.
+        loop.execute { lines.failed(line, error, called, what(name ?: "")) }
+        val hook = config.onHandlerError ?: return
+        try {
+            hook.accept(error, context)
+        } catch (failure: Throwable) {
+            loop.execute { lines.failed("`onHandlerError` failed", failure, hook) }
+        }
     }
 
     /** What may be called from an address; `null` if nobody may connect from there. */
@@ -115,6 +153,7 @@ internal class ServerCore(
             is Peer -> if (peers.remove(conversation)) left(conversation.id) { conversation.left() }
             is DataPeer -> if (dataPeers.remove(conversation)) left(conversation.id) { conversation.left() }
         }
+        memory.leave(conversation as MemoryHolder)
         lookForEnd()
     }
 

@@ -20,6 +20,7 @@ public class Context internal constructor(
     public val timeMs: Long?,
     private val notImplemented: () -> Refusal,
     private val unknown: Refusal,
+    private val failed: (Throwable, Any) -> Unit,
 ) {
     internal val gone = CompletableDeferred<Unit>()
 
@@ -33,9 +34,15 @@ public class Context internal constructor(
     @JvmSynthetic
     public suspend fun abandoned(): Unit = gone.await()
 
-    /** Runs [action] once [isAbandoned]. For Java. */
+    /** Runs [action] once [isAbandoned]. For Java. An exception of it is logged. */
     public fun onAbandoned(action: Runnable) {
-        gone.invokeOnCompletion { action.run() }
+        gone.invokeOnCompletion {
+            try {
+                action.run()
+            } catch (failure: Throwable) {
+                failed(failure, action)
+            }
+        }
     }
 
     /** The refusal of a command that the spec has and this robot does not carry out: nothing has been done. */
@@ -75,39 +82,51 @@ public fun interface RawHandler {
  * if not.
  */
 public class Service {
-    internal class Entry<Q : Message, A : Message>(val command: Command<Q, A>, val handler: Handler<Q, A>)
+    /** A command and its handler. The log names the class of [called], the object of the user, if no line is known. */
+    internal class Entry<Q : Message, A : Message>(val command: Command<Q, A>, val handler: Handler<Q, A>, val called: Any)
+
+    /** A handler of commands without a type. */
+    internal class RawEntry(val handler: RawHandler, val called: Any)
 
     internal val entries = HashMap<Int, Entry<*, *>>()
-    private val ranges = ArrayList<Pair<IntRange, RawHandler>>()
-    private var unknown: RawHandler? = null
+    private val ranges = ArrayList<Pair<IntRange, RawEntry>>()
+    private var unknown: RawEntry? = null
 
-    internal fun rawHandler(code: Int, isKnown: Boolean): RawHandler? =
+    internal fun rawHandler(code: Int, isKnown: Boolean): RawEntry? =
         ranges.firstOrNull { code in it.first }?.second ?: unknown.takeIf { !isKnown }
 
     /** Has [handler] carry out what comes with a code from [first] to [last] that has no handler of its own. */
     @JvmSynthetic
-    public fun onRange(first: Int, last: Int, handler: RawHandler): Service = apply { ranges.add(first..last to handler) }
+    public fun onRange(first: Int, last: Int, handler: RawHandler): Service = range(first, last, RawEntry(handler, handler))
+
+    private fun range(first: Int, last: Int, entry: RawEntry): Service = apply {
+        Settings.integer("first", first, 0)
+        Settings.integer("last", last, first)
+        ranges.add(first..last to entry)
+    }
 
     /** [onRange] for Java. */
     public fun onRangeAsync(
         first: Int,
         last: Int,
         handler: BiFunction<Context, RawRequest, CompletionStage<Json>>,
-    ): Service = onRange(first, last) { context, request -> handler.apply(context, request).await() }
+    ): Service = range(first, last, RawEntry({ context, request -> handler.apply(context, request).await() }, handler))
 
     /** Has [handler] carry out what comes with a code that the spec does not have. */
     @JvmSynthetic
-    public fun onUnknown(handler: RawHandler): Service = apply { unknown = handler }
+    public fun onUnknown(handler: RawHandler): Service = apply { unknown = RawEntry(handler, handler) }
 
     /** Has [handler] carry out a command. */
     @JvmSynthetic
     public fun <Q : Message, A : Message> on(command: Command<Q, A>, handler: Handler<Q, A>): Service = apply {
-        entries[command.code] = Entry(command, handler)
+        entries[command.code] = Entry(command, handler, handler)
     }
 
     /** [on] for Java: the stage fails with a [Refusal] where the command is refused. */
     public fun <Q : Message, A : Message> onAsync(
         command: Command<Q, A>,
         handler: BiFunction<Context, Q, CompletionStage<A>>,
-    ): Service = on(command) { context, request -> handler.apply(context, request).await() }
+    ): Service = apply {
+        entries[command.code] = Entry(command, { context, request -> handler.apply(context, request).await() }, handler)
+    }
 }

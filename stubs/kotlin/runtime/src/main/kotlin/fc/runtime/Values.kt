@@ -35,36 +35,61 @@ public class Json private constructor(
     }
 }
 
-/** The keys of a message that the spec does not have, in their order; kept unchanged and sent again. */
-public class Extra internal constructor(private val pairs: List<Pair<String, Json>>) {
+/**
+ * The keys of a message that the spec does not have, in their order; kept unchanged and sent again. They are one text, in which
+ * each question searches: many keys take no more memory than they had on the wire.
+ */
+public class Extra internal constructor(
+    /** The keys and values as in an object, without its braces. */
+    private val text: String,
+) {
     /** Whether there is none. */
-    public val isEmpty: Boolean get() = pairs.isEmpty()
+    public val isEmpty: Boolean get() = text.isEmpty()
 
     /** How many there are. */
-    public val size: Int get() = pairs.size
+    public val size: Int get() = keys.size
 
     /** The keys, in their order; one that came twice is there twice. */
-    public val keys: List<String> get() = pairs.map { it.first }
+    public val keys: List<String> get() = ArrayList<String>().also { keys -> each { key, _ -> keys.add(key) } }
 
     /** The last value of a key, or `null`. */
-    public operator fun get(key: String): Json? = pairs.lastOrNull { it.first == key }?.second
-
-    internal fun plus(key: String, value: Json): Extra = Extra(pairs + (key to value))
-
-    internal fun write(writer: JsonWriter) {
-        for ((key, value) in pairs) writer.key(key).raw(value.text)
+    public operator fun get(key: String): Json? {
+        var last: String? = null
+        each { other, value -> if (other == key) last = value }
+        return last?.let { Json.trusted(it) }
     }
 
-    override fun equals(other: Any?): Boolean = other is Extra && other.pairs == pairs
+    private inline fun each(visit: (String, String) -> Unit) {
+        val reader = JsonReader(text, Allowance.ANY)
+        while (reader.peek() != JsonReader.END) {
+            visit(reader.key(), reader.valueText())
+            reader.take(",")
+        }
+    }
 
-    override fun hashCode(): Int = pairs.hashCode()
+    internal fun plus(key: String, value: Json): Extra {
+        val pair = JsonWriter().key(key).raw(value.text).text
+        return Extra(if (isEmpty) pair else "$text,$pair")
+    }
 
-    override fun toString(): String = pairs.joinToString(", ", "{", "}") { "${it.first}=${it.second}" }
+    internal fun write(writer: JsonWriter) {
+        if (!isEmpty) writer.raw(text)
+    }
+
+    override fun equals(other: Any?): Boolean = other is Extra && other.text == text
+
+    override fun hashCode(): Int = text.hashCode()
+
+    override fun toString(): String {
+        val pairs = ArrayList<String>()
+        each { key, value -> pairs.add("$key=$value") }
+        return pairs.joinToString(", ", "{", "}")
+    }
 
     public companion object {
         /** No keys. */
         @JvmField
-        public val NONE: Extra = Extra(emptyList())
+        public val NONE: Extra = Extra("")
     }
 }
 

@@ -1,5 +1,6 @@
 package fc.runtime
 
+import handlers.handlerTests
 import java.io.File
 
 /** Runs all tests; the first argument is the project's root, the others single suites. */
@@ -16,7 +17,10 @@ internal fun main(arguments: Array<String>) {
         Triple("session scripts", 60, ::sessionTests),
         Triple("ids", 2, ::idTests),
         Triple("peer scripts", 40, ::peerTests),
+        Triple("settings", 35, ::settingsTests),
         Triple("limits", 10, ::limitTests),
+        Triple("handlers", 30, ::handlerTests),
+        Triple("memory", 12, ::memoryTests),
         Triple("faults.json", 20, ::faultTests),
         Triple("vectors as messages", 1800, ::vectorTests),
         Triple("package", 40, ::packageTests),

@@ -274,7 +274,7 @@ private fun paceTests(tests: Tests) {
         expect(listOf("INFO connected to robot", "INFO the connection to robot has ended: the connection was closed by this side"), said)
         val lines = ArrayList<String>()
         var now = 0L
-        val thin = Lines({ _, line -> lines.add(line) }) { now }
+        val thin = Lines({ _, line -> lines.add(line) }, Toy) { now }
         repeat(7) { thin.say(LogLevel.INFO, "one") { "one" } }
         thin.say(LogLevel.INFO, "two") { "two" }
         now = 60_000

@@ -7,6 +7,7 @@ import java.net.Socket
 import java.util.concurrent.TimeUnit.MILLISECONDS
 import java.util.concurrent.TimeUnit.SECONDS
 import kotlinx.coroutines.CompletableDeferred
+import kotlinx.coroutines.CoroutineScope
 import kotlinx.coroutines.Dispatchers
 import kotlinx.coroutines.async
 import kotlinx.coroutines.awaitAll
@@ -43,7 +44,7 @@ private class TestRobot(config: ServerConfig = ServerConfig(), val gate: Complet
                 ended.complete(Unit)
                 Done.of()
             },
-        config.address(LOCAL).commandPort(0).dataPort(0),
+        config.address(LOCAL).commandPort(0).dataPort(0).log { _, _ -> },
     )
 
     fun config(): ClientConfig =
@@ -267,7 +268,7 @@ internal fun netTests(tests: Tests) {
                 Json.of("{\"echo\":${request.json.text}}")
             }
             .onUnknown { _, request -> Json.of(if (request.code == 1) "[]" else "{\"result\":7}") }
-        val server = Server.bind(Toy, service, ServerConfig().address(LOCAL).commandPort(0).dataPort(0))
+        val server = Server.bind(Toy, service, ServerConfig().address(LOCAL).commandPort(0).dataPort(0).log { _, _ -> })
         val app = Connection.connect(Toy, ClientConfig().host(LOCAL).commandPort(server.commandAddress.port))
         val answer = Tree.of(app.callRaw(0x200, "{\"x\":1}").json)
         expect(listOf("0", "1"), listOf(answer["result"].text, answer["echo"]["x"].text))
@@ -296,7 +297,128 @@ internal fun netTests(tests: Tests) {
     }
     dataTests(tests)
     hostileTests(tests)
+    exceptionTests(tests)
 }
+
+/** Unexpected exceptions: no thread of the runtime ends with one. */
+private fun exceptionTests(tests: Tests) {
+    fun Tests.surviving(name: String, body: suspend (MutableList<String>) -> Unit) = net(name) {
+        val before = Thread.getDefaultUncaughtExceptionHandler()
+        val uncaught = java.util.concurrent.CopyOnWriteArrayList<Throwable>()
+        Thread.setDefaultUncaughtExceptionHandler { _, failure -> uncaught.add(failure) }
+        try {
+            body(java.util.concurrent.CopyOnWriteArrayList())
+        } finally {
+            Thread.setDefaultUncaughtExceptionHandler(before)
+        }
+        expect(listOf<Throwable>(), uncaught)
+    }
+    tests.surviving("tasks, timers and attempts to connect that fail") { lines ->
+        val loop = NioLoop("fc-test") { level, line -> lines.add("$level $line") }
+        loop.execute { throw AssertionError("secret") }
+        val turned = CompletableDeferred<Thread>()
+        loop.execute {
+            loop.schedule(loop.now) { throw NotImplementedError("secret") }
+            loop.schedule(loop.now) {
+                Thread.currentThread().interrupt()
+                turned.complete(Thread.currentThread())
+            }
+        }
+        val thread = turned.await()
+        for ((host, port) in listOf(LOCAL to 99_999, "no such host" to 1, "x".repeat(300) to 1, LOCAL to -1)) {
+            val ended = CompletableDeferred<Exception?>()
+            loop.execute { loop.connect(host, port, true) { _, failure -> ended.complete(failure) } }
+            expect(true, ended.await() != null) { "$host:$port:" }
+        }
+        val alive = CompletableDeferred<Thread>()
+        loop.execute { alive.complete(Thread.currentThread()) }
+        expect(thread, alive.await())
+        loop.end()
+        for (name in listOf("AssertionError", "NotImplementedError")) {
+            expect(1, lines.count { it.startsWith("ERROR a task of the runtime failed: ") && name in it }) { "$name in $lines:" }
+        }
+        expect(false, "secret" in "$lines") { "$lines" }
+    }
+    tests.surviving("a connection whose turn fails ends alone") { lines ->
+        val loop = TestLoop()
+        val config = ServerConfig().log { level, line -> if (level == LogLevel.ERROR) lines.add(line) }
+        val core = ServerCore(Toy, config, loop, Service(), CoroutineScope(Dispatchers.Unconfined))
+        val good = TestWire(loop)
+        expect(true, core.serve(good.link, null))
+        for (serve in listOf<(Link) -> Boolean>({ core.serve(it, null) }, { core.serveData(it, null) })) {
+            val bad = TestLink(loop)
+            expect(true, serve(Failing(bad)))
+            loop.settle()
+            bad.give(ByteArray(1))
+            loop.settle()
+            expect(true, bad.isClosed)
+        }
+        good.send(FrameId(false, 1, 999, 1), "{}")
+        loop.settle()
+        expect(1, good.frames().size)
+        expect(listOf("a connection failed", "a data connection failed"), lines.map { it.substringBefore(": java.lang.IllegalStateException at ") })
+        lines.clear()
+        val links = ArrayDeque(listOf(Failing(TestLink(loop)), good.link))
+        val never = object : Timer {
+            override fun cancel() = Unit
+        }
+        val client = ClientConfig().log { level, line -> if (level == LogLevel.ERROR) lines.add(line) }
+        val app = ClientCore(Toy, client, loop, Dial { done -> never.also { done(links.removeFirst(), null) } })
+        app.begin(isFirstOnly = true)
+        loop.settle()
+        expect("broken", app.life.now.why?.name)
+        loop.advance(1000)
+        expect(listOf<Any>(2L, true, 1), listOf(app.life.now.connects, app.life.now.isConnected, lines.size))
+    }
+    tests.surviving("a listener of states that fails hears the next state") { lines ->
+        val robot = TestRobot()
+        val app = Connection.connect(Toy, robot.config().log { level, line -> lines.add("$level $line") })
+        val closed = CompletableDeferred<Unit>()
+        app.onState {
+            if (it.isClosed) closed.complete(Unit)
+            throw IllegalStateException("secret")
+        }
+        app.close()
+        closed.await()
+        expect(false, "secret" in "$lines") { "$lines" }
+        robot.server.close()
+    }
+    tests.surviving("a listener that fails hears the next report") { lines ->
+        val robot = TestRobot()
+        val failed = CompletableDeferred<Unit>()
+        val app = Connection.connect(Toy, robot.config().log { level, line ->
+            lines.add("$level $line")
+            if ("listener" in line) failed.complete(Unit)
+            throw IllegalStateException("secret")
+        })
+        val heard = CompletableDeferred<Int>()
+        app.onReport {
+            val metres = (it.message as Moved).metres
+            check(metres != 1) { "secret" }
+            heard.complete(metres)
+        }
+        for (metres in 1..2) robot.server.push(Audience.ALL, Toy.MOVED, Moved.of(metres))
+        expect(2, heard.await())
+        failed.await()
+        expect(1, lines.count { it.startsWith("ERROR the listener of reports failed: java.lang.IllegalStateException") }) { "$lines:" }
+        expect(false, "secret" in "$lines") { "$lines" }
+        app.close()
+        robot.server.close()
+    }
+    tests.surviving("an address that is none") { _ ->
+        for (address in listOf("no such host", "300.1.1.1", "::zz")) {
+            val failure = runCatching { bindAt(address) }.exceptionOrNull()
+            expect(true, failure is java.io.IOException) { "$address: $failure:" }
+        }
+    }
+}
+
+/** A link that cannot be read. */
+private class Failing(private val link: Link) : Link by link {
+    override fun read(into: ByteArray): Int = throw IllegalStateException("secret")
+}
+
+private fun bindAt(address: String) = Server.bind(Toy, Service(), ServerConfig().address(address).commandPort(0).dataPort(0))
 
 private fun dataTests(tests: Tests) {
     tests.net("streams in both directions") {
