@@ -2,10 +2,10 @@
 //! the lines of their `Cargo.toml` and no others, and do what they say.
 
 use crate::support::nested;
+use crate::support::programs::Running;
 use std::fs;
-use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
 /// What the robot of the guide says it is.
 const NUMBER: &str = "100132007654321";
@@ -17,16 +17,6 @@ const PROJECTS: [(&str, &str, bool); 4] = [
     ("codec", "my-codec", false),
     ("blocking", "my-tool", true),
 ];
-
-/// A robot that ends with the test.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 /// Builds a project in a folder of its own; answers its program.
 fn build(folder: &Path, name: &str, program: &str, has_tokio: bool) -> PathBuf {
@@ -83,16 +73,9 @@ fn the_projects_of_the_guide_build_and_work() {
     let shown = output(&codec, &[]);
     assert!(shown.contains("GetRobotSnRequest"), "{shown}");
 
-    let child = Command::new(robot)
-        .arg("0")
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut robot = Running(child);
-    let mut address = String::new();
-    let mut lines = BufReader::new(robot.0.stdout.take().unwrap());
-    lines.read_line(&mut address).unwrap();
-    let (_, port) = address.trim().rsplit_once(':').expect("an address");
+    let mut robot = Running::start(&robot, &["0"]);
+    let address = robot.line();
+    let (_, port) = address.rsplit_once(':').expect("an address");
     for program in [app, blocking] {
         assert_eq!(output(&program, &[port]).trim(), NUMBER);
     }

@@ -1,10 +1,12 @@
 //! The READMEs: their figures, links and the picture of a frame are right, and the programs of this package's README
-//! compile in a package outside the workspace.
+//! talk to each other.
 
+use crate::support::programs::Running;
 use crate::support::{self, nested};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Each README, and where the guides in its language lie.
 const READMES: [(&str, &str); 2] = [
@@ -25,23 +27,50 @@ fn fences<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
         .collect()
 }
 
-/// The app and the robot, with the manifest that is printed above them.
+/// Builds the robot and the app of this package's README outside the workspace, and lets them talk.
 #[test]
 #[ignore = "compiles projects of its own"]
-fn what_this_package_prints_compiles_for_a_user_outside() {
+fn the_app_of_the_readme_calls_its_robot() {
     let name = "fc-generated/README.md";
     let text = fs::read_to_string(root().join(name)).unwrap();
-    let manifests = fences(&text, "toml");
-    let [manifest] = manifests.as_slice() else {
+    assert!(!text.contains("```rust,"), "{name}: untested Rust");
+    let [manifest] = fences(&text, "toml")[..] else {
         unreachable!("{name} has one manifest");
     };
-    let programs = fences(&text, "rust");
-    assert!(programs.len() >= 2, "{name}: an app and a robot");
-    assert!(
-        !text.contains("```rust,"),
-        "{name}: Rust that is not compiled"
+    let [robot, app] = fences(&text, "rust")[..] else {
+        unreachable!("{name} has a robot and an app");
+    };
+    let [talk] = fences(&text, "console")[..] else {
+        unreachable!("{name} shows one run");
+    };
+    let address = ".address([127, 0, 0, 1])";
+    let robot = replace(
+        robot,
+        address,
+        &[address, ".command_port(0).data_port(0)"].concat(),
     );
-    compile(name, manifest, &programs);
+    let run = "server.run().await;";
+    let said = r#"println!("{}", server.command_addr().port());"#;
+    let robot = replace(&robot, run, &[said, run].concat());
+    let host = ".host(\"127.0.0.1\")";
+    let port = ".command_port(std::env::args().nth(1).unwrap().parse()?)";
+    let app = replace(app, host, &[host, port].concat());
+    let [robot, app] = build(name, manifest, [("robot", robot), ("app", app)]);
+
+    let mut robot = Running::start(&robot, &[]);
+    let output = Command::new(app).arg(robot.line()).output().unwrap();
+    let found = String::from_utf8(output.stdout).unwrap();
+    let wanted = talk.lines().filter(|line| !line.starts_with('$'));
+    assert!(
+        output.status.success() && found.lines().eq(wanted),
+        "{found}"
+    );
+}
+
+/// Replaces a piece of a program, which has to be there.
+fn replace(program: &str, from: &str, to: &str) -> String {
+    assert!(program.contains(from), "no {from} in\n{program}");
+    program.replace(from, to)
 }
 
 /// The Rust that they show is generated: an `rs` fence, which `adding_a_command` compares.
@@ -53,13 +82,16 @@ fn the_readmes_print_generated_rust_alone() {
     }
 }
 
-/// Compiles programs as a package outside the workspace, with that manifest.
-fn compile(name: &str, manifest: &str, programs: &[&str]) {
+/// Builds programs as a package outside the workspace, with that manifest. Returns their paths.
+fn build<const N: usize>(
+    name: &str,
+    manifest: &str,
+    programs: [(&str, String); N],
+) -> [PathBuf; N] {
     let project = tempfile::tempdir().unwrap();
     let here = root().join("fc-generated").canonicalize().unwrap();
-    let path = "path = \"fc-generated\"";
-    assert!(manifest.contains(path), "{name}: {manifest}");
-    let manifest = manifest.replace(path, &format!("path = {:?}", here.to_string_lossy()));
+    let path = format!("path = {:?}", here.to_string_lossy());
+    let manifest = replace(manifest, "path = \"fc-generated\"", &path);
     let package = "[package]\nname = \"user\"\nedition = \"2024\"\n\n[workspace]\n\n[lints.rust]\nwarnings = \"deny\"\n";
     fs::write(
         project.path().join("Cargo.toml"),
@@ -70,12 +102,12 @@ fn compile(name: &str, manifest: &str, programs: &[&str]) {
     fs::copy(root().join("Cargo.lock"), project.path().join("Cargo.lock")).unwrap();
     let sources = project.path().join("src/bin");
     fs::create_dir_all(&sources).unwrap();
-    for (number, program) in programs.iter().enumerate() {
-        fs::write(sources.join(format!("program_{number}.rs")), program).unwrap();
+    for (program, source) in &programs {
+        fs::write(sources.join(format!("{program}.rs")), source).unwrap();
     }
 
     let output = nested::command()
-        .args(["check", "--offline"])
+        .args(["build", "--offline"])
         .current_dir(project.path())
         .env("CARGO_TARGET_DIR", nested::target())
         .output()
@@ -85,6 +117,11 @@ fn compile(name: &str, manifest: &str, programs: &[&str]) {
         "{name}: {}",
         String::from_utf8_lossy(&output.stderr)
     );
+    programs.map(|(program, _)| {
+        nested::target()
+            .join("debug")
+            .join(format!("{program}{}", std::env::consts::EXE_SUFFIX))
+    })
 }
 
 /// A guide may be linked from the README, or from another guide that is reached from there.

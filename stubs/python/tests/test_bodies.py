@@ -81,6 +81,14 @@ class Bodies(unittest.TestCase):
                 OfI32.from_json(b'{"x":' + b"[" * 63 + start + b"[" * 100)
             self.assertEqual(caught.exception.name, "bad_json", start)
 
+    def test_an_unknown_value_keeps_keys_and_numbers(self) -> None:
+        kept = '{"x":[1.0,1E+05,-0,12345678901234567890,{"a":1,"a":1.0}],"x":"\\"\\\\\\n/\\ud800"}'
+        spaced = kept.replace(",", " ,\n").replace(":", " : ").replace("/", "\\/").replace('"a"', '"\\u0061"')
+        for text in (kept, spaced):
+            with self.subTest(text):
+                self.assertEqual(OfI32.from_json(text).to_json(), kept)
+                self.assertEqual(of_one_key(rt.Json).from_json(f'{{"value":{text}}}').to_json(), f'{{"value":{kept}}}')
+
     def test_what_is_sent_is_checked(self) -> None:
         for value in (1 << 31, True, "1"):
             message = OfI32(value=value)  # type: ignore[arg-type]

@@ -262,7 +262,7 @@ def _plain(tree: Tree) -> Plain:
 
 
 class Json:
-    """A JSON value, kept as it was written: with repeated keys, and numbers that no float can hold."""
+    """A JSON value. Repeated keys and the spelling of numbers are kept; spaces and needless escapes are not."""
 
     __slots__ = ("_tree",)
 
@@ -316,7 +316,7 @@ class Json:
 
 
 class Extra:
-    """The keys of an object that its type does not know, kept in their order and sent again unchanged."""
+    """The unknown keys of an object, sent again in their order. `Json` describes what is kept of their values."""
 
     __slots__ = ("_entries",)
 
@@ -353,7 +353,7 @@ class Extra:
             return default
 
     def json(self, key: str) -> Json | None:
-        """The last value of a key as it was written."""
+        """The last value of a key, with its repeated keys and the spelling of its numbers."""
         found = [tree for name, tree in self._entries if name == key]
         return Json.of_tree(found[-1]) if found else None
 
