@@ -238,7 +238,8 @@ fn hostile_texts_stay_in_their_place() {
         for artifact in markdown::emit(&model, &Targets::default()) {
             let contents = &artifact.contents;
             let hidden = contents.chars().find(|it| {
-                it.is_control() && !matches!(it, '\n' | '\t') || "\u{202e}\u{2028}\u{fdd0}\u{e0001}".contains(*it)
+                it.is_control() && !matches!(it, '\n' | '\t')
+                    || "\u{202e}\u{2028}\u{fdd0}\u{e0001}".contains(*it)
             });
             assert_eq!(hidden, None, "{} of {text}", artifact.path);
             if !is_page(&artifact) {
