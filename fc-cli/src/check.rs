@@ -257,7 +257,7 @@ impl Shown {
 }
 
 impl Options {
-    /// Of a run in which warnings count as errors.
+    /// Returns the options of a run that counts warnings as errors.
     pub fn strict() -> Self {
         Self {
             format: Shown::Text,

@@ -83,7 +83,7 @@ pub fn help() -> Help {
 }
 
 impl Options {
-    /// Of a run that checks all files and writes nothing.
+    /// Returns the options of a run that checks all files and writes nothing.
     pub fn checking() -> Self {
         Self {
             check: true,

@@ -202,7 +202,7 @@ pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<
 }
 
 impl Options {
-    /// Of a run that checks all files and writes nothing.
+    /// Returns the options of a run that checks all files and writes nothing.
     pub fn checking() -> Self {
         Self {
             check: true,

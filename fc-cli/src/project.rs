@@ -100,7 +100,7 @@ pub fn settings(root: &Path) -> Result<Option<String>, Failure> {
 pub fn is_there(path: &Path) -> bool {
     match path.symlink_metadata() {
         Ok(_) => true,
-        // Whatever the system does not show may be there.
+        // The system does not show it, so it may be there.
         Err(error) => !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory),
     }
 }

@@ -4,7 +4,7 @@ use std::io;
 use std::process::{Child, Command};
 use std::sync::{Mutex, PoisonError};
 
-/// The group that runs, for whoever ends the program.
+/// The group that runs.
 static RUNNING: Mutex<Option<u32>> = Mutex::new(None);
 
 /// Ends the group that runs.
@@ -24,7 +24,7 @@ pub struct Group {
 impl Group {
     /// Starts a process as the first of a group.
     pub fn spawn(command: &mut Command) -> io::Result<(Child, Self)> {
-        // A group of its own does not get the Ctrl-C of the terminal. The watch has a handler that ends the group.
+        // The terminal sends Ctrl-C to its own group only. The watch has set a handler that ends this one.
         let _ = ctrlc::try_set_handler(|| {
             end_running();
             std::process::exit(INTERRUPTED);

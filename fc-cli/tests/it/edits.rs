@@ -180,7 +180,7 @@ fn fix_leaves_a_formatted_file() {
     }
 }
 
-/// Of an editor on Windows: every line ends in CR and LF, and a mark is in front.
+/// An editor on Windows ends every line in CR and LF, and writes a mark in front.
 #[test]
 fn editing_commands_keep_line_ends_and_mark() {
     let answered = ["settle", "set_light.code", "--code", "0x0102", "--by", "me"];

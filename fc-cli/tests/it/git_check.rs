@@ -53,7 +53,7 @@ impl Repository {
         self.project.write(&self.path(path), text);
     }
 
-    /// Commits what is staged; whether that succeeds, and what is printed.
+    /// Commits the staged files. Returns `true` on success, and the output.
     fn commit(&self, options: &[&str]) -> (bool, String) {
         let commit = ["commit", "--quiet", "--message", "A change"];
         run_git(&self.project, &[&commit, options].concat())
@@ -63,7 +63,7 @@ impl Repository {
 const PLACES: [&str; 2] = ["", "below/it's a lamp"];
 
 #[test]
-fn a_broken_staged_file_stops_a_commit_though_it_was_fixed_since() {
+fn broken_staged_file_stops_a_commit() {
     for place in PLACES {
         for (old, new, message) in [
             ("effect: config", "effect: konfig", "FC0109"),
@@ -80,9 +80,9 @@ fn a_broken_staged_file_stops_a_commit_though_it_was_fixed_since() {
             let (is_committed, said) = repository.commit(&[]);
             assert!(!is_committed, "{place}: {new}");
             assert!(said.contains(message), "{place}: {said}");
-            // Nobody can go to a copy that is gone.
+            // The copy is gone.
             assert!(!said.contains("fcproto-"), "{said}");
-            // What is committed by its path is another index.
+            // A commit of named paths has its own index.
             let path = repository.path(LIGHT);
             let (is_committed, said) = repository.commit(&["--", &path]);
             assert!(is_committed || said.contains("nothing"), "{said}");
@@ -91,7 +91,7 @@ fn a_broken_staged_file_stops_a_commit_though_it_was_fixed_since() {
 }
 
 #[test]
-fn changes_that_are_not_staged_stop_no_commit() {
+fn unstaged_changes_stop_no_commit() {
     for place in PLACES {
         let repository = Repository::new(place);
         let good = repository.read(LIGHT);
@@ -111,7 +111,7 @@ fn changes_that_are_not_staged_stop_no_commit() {
 }
 
 #[test]
-fn an_untracked_file_that_the_spec_needs_is_missed() {
+fn untracked_file_of_the_spec_is_missed() {
     let repository = Repository::new("");
     let good = repository.read(LIGHT);
     let (before, types) = good.split_once("\ntypes:\n").expect("types");
@@ -129,7 +129,7 @@ fn an_untracked_file_that_the_spec_needs_is_missed() {
 
 /// No commit has them, so those of the working tree count.
 #[test]
-fn generated_files_that_git_ignores_are_taken_from_the_working_tree() {
+fn ignored_generated_files_are_copied() {
     let repository = Repository::new("");
     let ignored = repository.read(".gitignore") + "/vectors/\n/fc-manifest.json\n";
     repository.write(".gitignore", &ignored);
@@ -147,7 +147,7 @@ fn generated_files_that_git_ignores_are_taken_from_the_working_tree() {
 }
 
 #[test]
-fn a_commit_without_a_project_passes() {
+fn commit_without_a_project_passes() {
     let repository = Repository::new("below/it's a lamp");
     repository.git(&["rm", "-r", "--quiet", "--cached", "below"]);
     let (is_committed, said) = repository.commit(&[]);
@@ -156,7 +156,7 @@ fn a_commit_without_a_project_passes() {
 
 /// A hook runs with the paths of the main repository in its environment.
 #[test]
-fn a_linked_working_tree_is_checked() {
+fn linked_working_tree_is_checked() {
     let repository = Repository::new("below/it's a lamp");
     let tree = Project::empty();
     let path = tree.path("tree");

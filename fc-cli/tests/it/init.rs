@@ -46,7 +46,7 @@ fn is_chinese(text: &str) -> bool {
     text.chars().any(|c| ('\u{4e00}'..'\u{a000}').contains(&c))
 }
 
-/// A text without comments and without what is quoted.
+/// Removes comments and quoted words.
 fn code(text: &str, comment: &str) -> String {
     let lines = text
         .lines()
@@ -61,7 +61,7 @@ fn code(text: &str, comment: &str) -> String {
 }
 
 #[test]
-fn a_chinese_project_has_chinese_texts_and_the_same_code() {
+fn chinese_project_differs_in_texts_only() {
     let place = Project::empty();
     place.fc(&["init", "zh", "--lang", "zh"]).expect(0);
     place.fc(&["init", "en", "--lang", "en"]).expect(0);

@@ -47,7 +47,7 @@ fn files(place: &Project) -> Vec<std::path::PathBuf> {
 }
 
 #[test]
-fn settings_that_cannot_be_read_are_an_error() {
+fn unreadable_settings_are_an_error() {
     for (kind, message) in KINDS {
         let place = lamp();
         spoil(&place.path("lamp/fc.yaml"), kind);
@@ -69,7 +69,7 @@ fn settings_that_cannot_be_read_are_an_error() {
 }
 
 #[test]
-fn parts_of_the_spec_that_cannot_be_read_are_an_error() {
+fn unreadable_spec_parts_are_an_error() {
     for path in ["spec", "spec/commands"] {
         for kind in ["link", "device", "pipe", "bytes"] {
             let place = lamp();
@@ -95,7 +95,7 @@ fn parts_of_the_spec_that_cannot_be_read_are_an_error() {
 }
 
 #[test]
-fn a_manifest_that_cannot_be_read_is_an_error() {
+fn unreadable_manifest_is_an_error() {
     for (kind, _) in KINDS.iter().filter(|(kind, _)| *kind != "large") {
         let place = lamp();
         spoil(&place.path("lamp/fc-manifest.json"), kind);
@@ -111,7 +111,7 @@ fn a_manifest_that_cannot_be_read_is_an_error() {
 }
 
 #[test]
-fn releases_that_cannot_be_read_are_an_error() {
+fn unreadable_releases_are_an_error() {
     let release = |place: &Project, number| place.fc_in("lamp", &["release", number]);
     for (kind, _) in KINDS {
         let place = lamp();
@@ -135,7 +135,7 @@ fn releases_that_cannot_be_read_are_an_error() {
 
 /// Sheets, bodies and dumps. A pipe may be a file of the shell's `<(…)`.
 #[test]
-fn inputs_that_cannot_be_read_are_an_error() {
+fn unreadable_inputs_are_an_error() {
     for (kind, _) in KINDS.iter().filter(|(kind, _)| *kind != "pipe") {
         let place = lamp();
         spoil(&place.path("lamp/input"), kind);

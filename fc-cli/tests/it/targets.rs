@@ -222,7 +222,7 @@ fn names_are_free_in_the_languages_of_the_targets() {
 
 /// The path counts from the project, wherever the command runs.
 #[test]
-fn the_path_of_a_plugin_is_relative_to_the_project() {
+fn plugin_path_is_relative_to_the_project() {
     let script = "#!/bin/sh\ncat > /dev/null\necho '[]'\n";
     let project = project("  mine: { plugin: ./mine, out: made }\n");
     program(&project, "mine", script);
@@ -243,7 +243,7 @@ fn the_path_of_a_plugin_is_relative_to_the_project() {
 
 /// Its children hold what it prints to, and none of them is left.
 #[test]
-fn a_plugin_that_hangs_is_ended_with_its_children() {
+fn hanging_plugin_ends_with_its_children() {
     let scripts = [
         // One that waits, one whose child waits, and ones that have ended before their child.
         ("en", "exec sleep 1000"),
@@ -270,7 +270,7 @@ fn a_plugin_that_hangs_is_ended_with_its_children() {
     }
 }
 
-/// Whether a process of this group runs; one that has ended may not be collected yet.
+/// Returns `true` if a process of this group runs. An ended process may wait for its parent.
 fn is_running(group: &str) -> bool {
     let output = Command::new("ps")
         .args(["-e", "-o", "pgid=,stat="])
@@ -303,7 +303,7 @@ fn the_output_of_a_plugin_is_limited() {
 }
 
 #[test]
-fn limits_of_a_plugin_have_bounds_themselves() {
+fn plugin_limits_have_bounds() {
     for (key, most) in [("timeout_ms", 3_600_000_u64), ("output_bytes", 1 << 30)] {
         for (value, status) in [(0, 2), (1, 0), (most, 0), (most + 1, 2)] {
             let target = format!("  mine: {{ plugin: cat, out: made, {key}: {value} }}\n");

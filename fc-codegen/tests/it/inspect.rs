@@ -124,7 +124,7 @@ fn a_dump_has_its_documented_keys() {
     );
     assert_eq!(
         keys(first("ranges")),
-        sorted("from to from_spelling to_spelling use zh en next")
+        sorted("from to from_spelling to_spelling use groups zh en next")
     );
     assert_eq!(
         keys(first("result_codes")),

@@ -121,7 +121,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets:\n  rust: { ouut: a }\n",
-            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `audience`, `options` at line 2 column 11",
+            "unknown field `ouut`, expected one of `out`, `languages`, `crate`, `newtypes`, `plugin`, `names`, `audience`, `timeout_ms`, `output_bytes`, `options` at line 2 column 11",
         ),
         (
             "target: {}\n",
