@@ -183,7 +183,10 @@ fn block(fence: &str) -> String {
     if !is_obeyed(fence) {
         return fence.to_owned();
     }
-    let code = fence.trim_end().split_once('\n').map_or("", |(_, code)| code);
+    let code = fence
+        .trim_end()
+        .split_once('\n')
+        .map_or("", |(_, code)| code);
     let code = code.rsplit_once('\n').map_or("", |(code, _)| code);
     preformatted(code) + "\n"
 }
@@ -191,12 +194,14 @@ fn block(fence: &str) -> String {
 /// Paragraphs and lists. No line of them begins another block, such as a heading or a container of `VitePress`.
 fn paragraphs(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
-    for line in inline(source).lines() {
+    // A code span ends with its paragraph, at the latest; one that goes on in the next line is text.
+    for line in source.lines().map(inline) {
         let start = line.len() - line.trim_start().len();
         let (indent, text) = line.split_at(start);
         out.push_str(indent);
         let begins = [":::", "[[", "#"].iter().any(|mark| text.starts_with(mark));
-        let underlines = !text.is_empty() && (text.chars().all(|it| it == '=') || text.chars().all(|it| it == '-'));
+        let underlines = !text.is_empty()
+            && (text.chars().all(|it| it == '=') || text.chars().all(|it| it == '-'));
         let defines = text.starts_with('[') && text.contains("]:");
         if begins || underlines || defines {
             out.push('\\');
@@ -212,8 +217,11 @@ fn unmarked_start(mut markdown: String) -> String {
     let first_word = markdown.split(' ').next().unwrap_or_default();
     let digits = first_word.trim_start_matches(|it: char| it.is_ascii_digit());
     let is_number = digits.len() < first_word.len() && matches!(digits, "." | ")");
-    let is_mark = matches!(first_word, "-" | "+" | "*" | "=") || first_word.chars().all(|it| it == '#');
-    let begins = [">", ":::", "```", "~~~", "---", "===", "[["].iter().any(|mark| markdown.starts_with(mark));
+    let is_mark =
+        matches!(first_word, "-" | "+" | "*" | "=") || first_word.chars().all(|it| it == '#');
+    let begins = [">", ":::", "```", "~~~", "---", "===", "[["]
+        .iter()
+        .any(|mark| markdown.starts_with(mark));
     if is_number {
         markdown.insert(first_word.len() - 1, '\\');
     } else if !first_word.is_empty() && (is_mark || begins) {
@@ -243,7 +251,11 @@ fn code(source: &str) -> String {
     let source = one_line(source);
     let mut out = String::with_capacity(source.len() + 2);
     let mut rest = source.as_str();
-    while let Some(at) = [rest.find("{{"), rest.find("<!--")].into_iter().flatten().min() {
+    while let Some(at) = [rest.find("{{"), rest.find("<!--")]
+        .into_iter()
+        .flatten()
+        .min()
+    {
         let (span, behind) = rest.split_at(at + 1);
         push_span(&mut out, span);
         out.push_str("<!-- -->");
@@ -277,7 +289,7 @@ fn fence(source: &str, language: &str) -> String {
     format!("{ticks}{language}\n{source}\n{ticks}")
 }
 
-/// Whether `VitePress` would put a file in place of a part of the text, also in a fence.
+/// Returns `true` if `VitePress` would put a file in place of a part of the text, also in a fence.
 fn is_obeyed(source: &str) -> bool {
     let mut comments = source.split("<!--").skip(1);
     comments.any(|comment| comment.trim_start().starts_with("@include"))
@@ -300,8 +312,13 @@ fn front_matter(source: &str) -> String {
     let mut characters = source.chars().peekable();
     while let Some(character) = characters.next() {
         let next = characters.peek();
-        let opens = next.is_some_and(|it| it.is_ascii_alphabetic() || matches!(it, '/' | '!' | '?'));
-        out.push(if character == '<' && opens { '＜' } else { character });
+        let opens =
+            next.is_some_and(|it| it.is_ascii_alphabetic() || matches!(it, '/' | '!' | '?'));
+        out.push(if character == '<' && opens {
+            '＜'
+        } else {
+            character
+        });
     }
     fc_spec::model::Value::String(out).to_string()
 }
@@ -421,7 +438,7 @@ fn push_text(out: &mut String, source: &str) {
                 characters.next();
                 out.push_str("&lt;");
             }
-            // At an end it would escape what comes next in the page.
+            // At an end it would escape the next character of the page.
             ('\\', None | Some('\n')) => out.push_str("\\\\"),
             ('\\', Some(escaped)) if escaped.is_ascii_punctuation() => {
                 characters.next();
@@ -430,6 +447,8 @@ fn push_text(out: &mut String, source: &str) {
             // An entity could spell braces, and a picture could take in any file.
             ('&', Some(next)) if next == '#' || next.is_ascii_alphabetic() => out.push_str("&amp;"),
             ('!', Some('[')) => out.push_str("\\!"),
+            // It would end a code span of the page, or begin one.
+            ('`', _) => out.push_str("\\`"),
             (plain, _) => out.push(plain),
         }
     }
@@ -465,10 +484,13 @@ mod tests {
                 ("{x} {{ y }}", "\\{x} \\{<!-- -->\\{ y }}"),
                 ("\\{x}", "\\{x}"),
                 ("{\\{ y }}", "\\{<!-- -->\\{ y }}"),
-                ("&#123;&#123; y }} R&D &", "&amp;#123;&amp;#123; y }} R&amp;D &"),
+                (
+                    "&#123;&#123; y }} R&D &",
+                    "&amp;#123;&amp;#123; y }} R&amp;D &",
+                ),
                 ("`{{ y }}`", "`{`<!-- -->`{ y }}`"),
                 ("`{{{`", "`{`<!-- -->`{`<!-- -->`{`"),
-                ("a ` b <c>", "a ` b &lt;c>"),
+                ("a ` b <c>", "a \\` b &lt;c>"),
                 ("\\`<c>`", "\\`&lt;c>`"),
                 ("``a ` b``", "``a ` b``"),
                 ("one\n  two\n", "one two"),
@@ -482,9 +504,20 @@ mod tests {
 
     #[test]
     fn a_backslash_at_the_end_is_text() {
-        check(Place::Line, &[("a\\", "a\\\\"), ("a\\\\", "a\\\\"), ("`a\\`", "`a\\`"), ("\\d", "\\d")]);
+        check(
+            Place::Line,
+            &[
+                ("a\\", "a\\\\"),
+                ("a\\\\", "a\\\\"),
+                ("`a\\`", "`a\\`"),
+                ("\\d", "\\d"),
+            ],
+        );
         check(Place::Cell, &[("a\\\nb\\", "a\\\\<br>b\\\\")]);
-        check(Place::Label, &[("a\\", "a\\\\"), ("a [b] `[c]` \\]", "a \\[b\\] `[c]` \\]")]);
+        check(
+            Place::Label,
+            &[("a\\", "a\\\\"), ("a [b] `[c]` \\]", "a \\[b\\] `[c]` \\]")],
+        );
     }
 
     #[test]
@@ -508,6 +541,7 @@ mod tests {
             Place::Prose,
             &[
                 ("a\n---\n# b\n- c", "a\n\\---\n\\# b\n- c"),
+                ("a ` b\n\n` <c>", "a \\` b\n\n\\` &lt;c>"),
                 ("::: tip\n[a]: x", "\\::: tip\n\\[a]: x"),
             ],
         );
@@ -521,7 +555,15 @@ mod tests {
 
     #[test]
     fn code_spans_outlast_their_backticks() {
-        check(Place::Code, &[("a", "`a`"), ("a`b", "``a`b``"), ("`", "`` ` ``"), (" ", "")]);
+        check(
+            Place::Code,
+            &[
+                ("a", "`a`"),
+                ("a`b", "``a`b``"),
+                ("`", "`` ` ``"),
+                (" ", ""),
+            ],
+        );
         check(Place::Fence("text"), &[("```", "````text\n```\n````")]);
     }
 
@@ -549,9 +591,15 @@ mod tests {
         let text = "Say <!--@include: ../secret.txt-->";
         check(
             Place::Fence("json"),
-            &[(text, "<pre v-pre><code>Say &lt;!--@include: ../secret.txt--&gt;</code></pre>")],
+            &[(
+                text,
+                "<pre v-pre><code>Say &lt;!--@include: ../secret.txt--&gt;</code></pre>",
+            )],
         );
-        check(Place::FrontMatter, &[(text, "\"Say ＜!--@include: ../secret.txt-->\"")]);
+        check(
+            Place::FrontMatter,
+            &[(text, "\"Say ＜!--@include: ../secret.txt-->\"")],
+        );
         check(Place::Attribute, &[("a\"<b\nc", "a&quot;&lt;b c")]);
     }
 
@@ -559,7 +607,10 @@ mod tests {
     fn a_title_ends_no_script() {
         check(
             Place::FrontMatter,
-            &[("a </script> < 3", "\"a ＜/script> < 3\""), ("a\"b\\", "\"a\\\"b\\\\\"")],
+            &[
+                ("a </script> < 3", "\"a ＜/script> < 3\""),
+                ("a\"b\\", "\"a\\\"b\\\\\""),
+            ],
         );
     }
 
@@ -567,7 +618,14 @@ mod tests {
     fn invisible_characters_are_spelled() {
         let hostile = "a\u{202e}b\0c\u{1b}d\u{2028}e\u{fdd0}f\u{e0001}";
         let shown = "a\\u202eb\\u0000c\\u001bd\\u2028e\\ufdd0f\\udb40\\udc01";
-        for place in [Place::Line, Place::Cell, Place::Label, Place::Prose, Place::Diagram, Place::Data] {
+        for place in [
+            Place::Line,
+            Place::Cell,
+            Place::Label,
+            Place::Prose,
+            Place::Diagram,
+            Place::Data,
+        ] {
             assert_eq!(write(hostile, place), shown, "{place:?}");
         }
         assert_eq!(write(hostile, Place::Code), format!("`{shown}`"));
@@ -580,7 +638,10 @@ mod tests {
     fn targets_have_nothing_that_ends_a_link() {
         check(
             Place::Target,
-            &[("../a b(1).yaml#x-序.2E.", "../a%20b%281%29.yaml#x-序.2E."), ("a\\<b>", "a%5C%3Cb%3E")],
+            &[
+                ("../a b(1).yaml#x-序.2E.", "../a%20b%281%29.yaml#x-序.2E."),
+                ("a\\<b>", "a%5C%3Cb%3E"),
+            ],
         );
     }
 }

@@ -51,8 +51,12 @@ pub(super) fn navigation(model: &Model) -> String {
 }
 
 fn titled(title: &Text, more: Vec<(&str, Value)>) -> Value {
-    let texts = [("zh", &title.zh), ("en", &title.en)]
-        .map(|(key, text)| (key.to_owned(), Value::String(escape::write(text, Place::Data))));
+    let texts = [("zh", &title.zh), ("en", &title.en)].map(|(key, text)| {
+        (
+            key.to_owned(),
+            Value::String(escape::write(text, Place::Data)),
+        )
+    });
     let more = more.into_iter().map(|(key, value)| (key.to_owned(), value));
     Value::Object(texts.into_iter().chain(more).collect())
 }
