@@ -111,7 +111,7 @@ export default defineConfig({
   head: [
     ['meta', { name: 'theme-color', content: '#0f766e' }],
     ['script', {}, PRESS_AT_ONCE],
-    // What needs scripts does not show without them.
+    // Parts that need scripts do not show without them.
     ['noscript', {}, '<style>.fc-scripted { display: none !important; } .fc-rest, .fc-unscripted { display: block; }</style>'],
   ],
   markdown: {

@@ -7,9 +7,9 @@
 export const HIDDEN = '\u2063'
 
 /**
- * Terms of a page: words and numbers as they are, names also in their parts and without strokes (`robot_sn` → `robot`,
- * `sn`, `robotsn`), hexadecimal numbers also bare and without their zeros (`0x0A01` → `0A01`, `A01`), and every pair of
- * neighbouring Chinese characters, since Chinese has no spaces to split at.
+ * Terms of a page: its words and numbers. A name gives its parts as well, and itself without strokes: `robot_sn` →
+ * `robot`, `sn`, `robotsn`. A hexadecimal number is also found bare and without its zeros: `0x0A01` → `0A01`, `A01`.
+ * Chinese has no spaces to split at: every pair of neighbouring characters is a term.
  */
 export function indexTerms(text: string): string[] {
   const terms: string[] = []
@@ -33,10 +33,9 @@ export function indexTerms(text: string): string[] {
 }
 
 /**
- * Terms of a query: whole words, names also in each of their parts and joined as any language joins them, codes also
- * as the block of codes that they are in, and Chinese as pairs; a single character only where the
- * query has no more, or every page would answer to 电 when asked for 充电. Words that only ask (how, 怎么)
- * are left out, unless the query has no others.
+ * Terms of a query: its words. A name gives its parts, joined in every way that a language may join them; a code gives
+ * the block of codes around it. Chinese gives pairs, and a single character only where the query has no more: else every
+ * page would match 电 when asked for 充电. Words that only ask (how, 怎么) are left out, unless the query has no others.
  */
 export function queryTerms(query: string): string[] {
   const terms = (text: string) => {
@@ -69,8 +68,8 @@ export function queryTerms(query: string): string[] {
 }
 
 /**
- * How much a hit counts by where it is: the head of an operation's page before all, then what all share, then lists, and
- * the pages for people who write the spec last.
+ * How much a hit counts by its page: the head of an operation's page most, then pages about all operations, then lists.
+ * Pages for the authors of the spec come last.
  */
 export function weight(id: string, _term: string, stored?: Record<string, unknown>): number {
   const page = id.split('#')[0]
@@ -79,7 +78,7 @@ export function weight(id: string, _term: string, stored?: Record<string, unknow
   else if (/\/reference\/(wire|results)\.html$/.test(page)) weight = 2
   else if (/\/reference\/codes\.html$|\/reference\/$/.test(page)) weight = 0.4
   else if (/\/reference\/(changelog|open-questions)\.html$/.test(page)) weight = 0.1
-  // What the owner of the protocol needs to write it.
+  // The owner of the protocol needs these.
   else if (/\/reference\/(language|errors|cli)\.html$/.test(page)) weight = 0.1
   else if (/\/guides\/(adding-a-command|changing-safely|editors|answers|releases|targets|lint|what-changed)\.html$/.test(page)) weight = 0.3
   // A section under no other is the head of its page.

@@ -7,7 +7,7 @@ import { html } from './markdown/html'
 import { navigation } from './navigation'
 import { HIDDEN, miniSearch } from './search-terms'
 
-/** The operation of a page, and the group that it stands in. */
+/** The operation of a page, and its group. */
 function operationOf(page: string) {
   const found = /reference\/((?:commands|reports|streams)\/(\w+))\.md$/.exec(page)
   const operation = found && protocol.operations.find(({ name }) => name === found[2])
@@ -50,12 +50,12 @@ function unusedCodes(page: string, language: 'zh' | 'en'): string {
   return unused.join('') + outside
 }
 
-/** Sections that every operation's page has, and that say nothing of it alone. */
-const COMMON = /^(?:代码|code|结果码|result-codes|出处|provenance)$/
+/** Sections that are nearly the same on the page of every operation. */
+const COMMON = /^(?:code|result-codes|provenance)$/
 
 /**
- * What of a page is searched. Of an operation: its name and code in the title, what its group is for,
- * and its tables; not its bytes, its samples and what stands on every such page.
+ * The searched part of a page. An operation is found by name and code in its title, by the purpose of its group and by
+ * its tables. Its bytes, its samples and the sections that all operations share are left out.
  */
 export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer): string {
   const page = md.render(source, env)
@@ -63,7 +63,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
   const aliases: string[] = env.frontmatter?.aliases ?? []
   const prose = page
     .replace(/<br>/g, ' ')
-    // What a guide is also looked for by; a generated page says so itself.
+    // Other words for the subject of a guide; a generated page has them in its text.
     .replace('</h1>', aliases.length ? `</h1><p>${html(aliases.join(' · '))}</p>` : '</h1>')
     .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|AudienceFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')
@@ -80,7 +80,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
   const [head, ...sections] = prose.split(/(?=<h2\b)/)
   const own = sections.filter((section) => !COMMON.test(/<h2 id="([^"]*)"/.exec(section)?.[1] ?? ''))
   return (
-    head.replace(/( ?<a class="header-anchor"[\s\S]*?<\/h1>)/, `${title}$1${context}`) +
+    head.replace(/( ?<a class="header-anchor"[\s\S]*?<\/h1>)/, (_, end) => title + end + context) +
     // Frames and enums belong to the section above them.
     own.join('').replace(/<(\/?)h3\b[^>]*>/g, '<$1p>')
   )

@@ -32,7 +32,7 @@ export function anchoredHeadings(md: MarkdownRenderer): void {
     const headings = tokens.filter(({ type }) => type === 'heading_open')
     const page: string = state.env.relativePath ?? 'en/'
     if (page.startsWith('en/') || headings.every((heading) => heading.attrGet('id')) || !existsSync(english(page))) return
-    const there = state.md.parse(readFileSync(english(page), 'utf8').replace(FRONT, ''), {}).filter(({ type }) => type === 'heading_open')
+    const there = state.md.parse(readFileSync(english(page), 'utf8').replace(FRONT, ''), { path: english(page), realPath: english(page) }).filter(({ type }) => type === 'heading_open')
     if (there.length !== headings.length) return
     headings.forEach((heading, index) => heading.attrSet('id', heading.attrGet('id') ?? there[index].attrGet('id') ?? ''))
   })

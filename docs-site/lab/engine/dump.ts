@@ -75,7 +75,7 @@ interface Order {
 }
 const PLAIN: Order = { is: 'plain' }
 
-/** Bytes of a line, of which at most `cap` belong to it: the column of text follows. */
+/** The first `cap` bytes of a line; the column of text follows. */
 function bytesOf({ groups }: Line, cap: number, order: Order): number[] {
   const bytes: number[] = []
   for (const { gap, end, digits, swapped } of groups) {
@@ -105,7 +105,7 @@ export function readDump(text: string, heads: number[][] = []): Dump | null {
     const read = walk(lines, radix, order)
     if ('segments' in read) return isDump(lines, radix) ? read : null
   }
-  // With the marks of a dump it is one all the same: better to say what is missing than to read offsets as bytes.
+  // With the marks of a dump it is one all the same: name the missing line instead of reading offsets as bytes.
   const marked = first.marked || (Number.parseInt(first.offset, 16) === 0 && lines.length > 1)
   return marked ? walk(lines, 16, order) : null
 }
@@ -175,7 +175,7 @@ function walk(lines: Line[], radix: number, order: Order): Dump {
   return { segments: segments.map(({ stream, bytes }) => ({ stream, bytes: Uint8Array.from(bytes) })) }
 }
 
-/** More than this is no dump of a capture: a star may stand for gigabytes. */
+/** The most bytes that a star repeats: it may mean gigabytes. */
 const REPEATED_LIMIT = 4 * 1024 * 1024
 
 /** Adds the last row again and again, as `*` in a dump asks for. */
@@ -246,7 +246,7 @@ function readNumbered(lines: Line[]): Dump | null {
     const read = numbered(lines, radix)
     if (read) return read
   }
-  // It counts from zero, so it is a dump: better to say what is missing than to read offsets as bytes.
+  // It counts from zero, so it is a dump: name the missing line instead of reading offsets as bytes.
   if (/[^0]/.test(lines[0].offset) || lines.length < 2) return null
   const radix = { '20': 8, '10': 16, '16': 10 }[lines[1].offset.replace(/^0+/, '')] ?? 16
   let before = 0
@@ -279,7 +279,7 @@ function numbered(lines: Line[], radix: number): Dump | null {
   return joined(lines, offsets, (line, index) => characters(line, count(index)) ?? [], count, row)
 }
 
-/** Whether a number has no more bytes than its notation gives it. */
+/** A number has no more bytes than its notation gives it. */
 function fitsIn(token: string, { size, read }: Notation): boolean {
   const value = read(token)
   return value >= -(1n << BigInt(8 * size - 1)) && value < 1n << BigInt(8 * size)

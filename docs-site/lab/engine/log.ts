@@ -26,7 +26,7 @@ const DATE = String.raw`(?:\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}(?:[
 const TIME = String.raw`\d{1,2}:\d{2}:\d{2}(?:[.,]\d{1,9}|:\d{3})?(?: ?[AP]M\b)?(?:Z|[+-]\d{2}:?\d{2})?`
 const STAMP = new RegExp(String.raw`(?<![\w:])(?:${DATE}[ T,]{1,2})?${TIME}(?![\w:])|(?<![\w:])${DATE}(?=[\])] )|\b\d{10}\.\d{3,9}\b|\[ *\d{1,7}\.\d{3,6}\]`, 'g')
 const LEVEL = /(?:^|[\s[(|])(?:TRACE|DEBUG|INFO|NOTICE|WARN(?:ING)?|ERROR|FATAL|[Tt]race|[Dd]ebug|[Ii]nfo|[Ww]arn)(?=[\s\])|:]|$)|^\s*[VDIWEF]\/[^\s:]+.*?: /
-/** Words and signs before what was sent, and before what was received. */
+/** Words and signs before bytes that were sent, and before received ones. */
 const SENT = /\b(?:tx|sen[dt]\w*|writ\w*|wrote|out(?:going|bound)?|request)\b|>>|->|=>|→|◇|发|^\s*> /gi
 const RECEIVED = /\b(?:rx|recv|receiv\w*|read|in(?:coming|bound)?|response)\b|<<|<-|<=|←|◆|收|^\s*< /gi
 
@@ -54,7 +54,7 @@ interface Found {
   line: number
   /** The words before the bytes, with all digits alike. */
   label: string
-  /** What is behind them. */
+  /** The text behind them. */
   rest: string
   bytes: Uint8Array
   stream: Way

@@ -63,7 +63,7 @@ interface Flow {
   early: Packet[]
 }
 
-/** What is new in a packet is added to `found`; a packet of the future waits. */
+/** Adds the new bytes of a packet to `found`; a packet that is too early waits. */
 function take(flow: Flow, packet: Packet, found: Segment[]): void {
   const ahead = (packet.sequence - flow.next) | 0
   if (ahead > 0) {
@@ -87,7 +87,7 @@ function takeEarly(flow: Flow, found: Segment[], all: boolean): void {
         flow.early = waiting.slice(index)
         return
       }
-      // The capture lacks what was between.
+      // The capture lacks the bytes between.
       flow.next = packet.sequence
     }
     take(flow, packet, found)
@@ -117,7 +117,7 @@ function streamsOf(packets: Packet[]): { found: Segment[]; flows: Flow[] } {
   return { found, flows }
 }
 
-/** Printed packets give their payload, each flow a stream of its own. */
+/** The payload of printed packets; each flow is another stream. */
 export function parsePackets(segments: Segment[]): Segment[] {
   const packets = segments.map(({ bytes }) => packetOf(bytes))
   const all = packets.filter((packet) => packet !== null)

@@ -168,8 +168,8 @@ function spelledIn(line: string, heads: number[][]): Run | null {
 export const FILE_LIMIT = 64 * 1024 * 1024
 
 /**
- * The text of an opened file, for the box of the laboratory: a text file as it is, captured packets as a dump of their
- * streams, other bytes as hex. Throws `Refusal`.
+ * The text of an opened file, for the box of the laboratory. Captured packets become a dump of their streams, and other
+ * bytes a dump; a text file stays. Throws `Refusal`.
  */
 export function readFile(bytes: Uint8Array, heads: number[][]): string {
   if (bytes.length > FILE_LIMIT) refuse('文件太大，请截取一部分。', 'This file is too large. Take a part of it.')

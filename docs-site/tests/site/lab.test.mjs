@@ -377,7 +377,7 @@ test('without scripts there is no verdict, and the page says what it needs', dri
       await live.locator('[data-out=overall]').waitFor()
       assert.equal(await live.locator('.fc-unscripted').isVisible(), false)
     }
-    // Nor does a frame of another page offer what only scripts can do.
+    // A frame of another page offers nothing that needs scripts.
     const page = await open('/en/reference/commands/get_cell_config.html', { javaScriptEnabled: false })
     assert.equal(await page.locator('.fc-frame button:visible, [data-do=open-in-lab]:visible').count(), 0)
     const bytes = await page.locator('.fc-frame').last().evaluate((frame) => [

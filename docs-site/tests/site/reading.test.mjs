@@ -140,7 +140,7 @@ test('every frame is whole, and opens in the lab of its language', driven, async
   assert.ok(framed.length > 50)
   assert.deepEqual(wrong, [])
   // Nor is one cut in the Markdown, where the site does not draw it.
-  assert.deepEqual(pages().filter((url) => /bytes left out|略去/.test(html(url))), [])
+  assert.deepEqual(pages().filter((url) => /\d+ bytes left out|略去 \d+ 字节/.test(html(url))), [])
   await withSite(async ({ open, faults }) => {
     for (const url of ['/reference/commands/get_cell_config.html', '/en/index.html']) {
       const page = await open(url)

@@ -203,8 +203,16 @@ fn every_fence_is_closed() {
 }
 
 fn assert_closed(page: &Artifact) {
-    let fences = page.contents.lines().filter(|line| line.starts_with("```"));
-    assert_eq!(fences.count() % 2, 0, "{}", page.path);
+    let mut open: Option<&str> = None;
+    for line in page.contents.lines() {
+        let ticks = line.len() - line.trim_start_matches('`').len();
+        match open {
+            Some(fence) if line == fence => open = None,
+            None if ticks >= 3 => open = line.get(..ticks),
+            _ => {}
+        }
+    }
+    assert_eq!(open, None, "{}", page.path);
     assert!(
         page.contents.ends_with('\n') && !page.contents.ends_with("\n\n"),
         "{}",
@@ -289,13 +297,18 @@ fn pages() -> Vec<Artifact> {
 
 /// The lines of a page that are no code, neither in a fence nor as HTML.
 fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {
-    let mut inside = false;
+    let mut open: Option<&str> = None;
     let mut in_html = false;
     contents.lines().filter(move |line| {
-        let mark = !in_html && line.starts_with("```");
-        inside ^= mark;
-        in_html |= !inside && line.starts_with("<pre v-pre>");
-        let is_code = inside || mark || in_html;
+        let ticks = line.len() - line.trim_start_matches('`').len();
+        let was_open = open.is_some();
+        match open {
+            Some(fence) if *line == fence => open = None,
+            None if ticks >= 3 && !in_html => open = line.get(..ticks),
+            _ => {}
+        }
+        in_html |= !was_open && line.starts_with("<pre v-pre>");
+        let is_code = was_open || open.is_some() || in_html;
         in_html &= !line.ends_with("</pre>");
         !is_code
     })

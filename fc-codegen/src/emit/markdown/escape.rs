@@ -194,7 +194,8 @@ fn block(fence: &str) -> String {
 /// Paragraphs and lists. No line of them begins another block, such as a heading or a container of `VitePress`.
 fn paragraphs(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
-    for line in inline(source).lines() {
+    // A code span ends with its paragraph, at the latest; one that goes on in the next line is text.
+    for line in source.lines().map(inline) {
         let start = line.len() - line.trim_start().len();
         let (indent, text) = line.split_at(start);
         out.push_str(indent);
@@ -288,7 +289,7 @@ fn fence(source: &str, language: &str) -> String {
     format!("{ticks}{language}\n{source}\n{ticks}")
 }
 
-/// Whether `VitePress` would put a file in place of a part of the text, also in a fence.
+/// Returns `true` if `VitePress` would put a file in place of a part of the text, also in a fence.
 fn is_obeyed(source: &str) -> bool {
     let mut comments = source.split("<!--").skip(1);
     comments.any(|comment| comment.trim_start().starts_with("@include"))
@@ -437,7 +438,7 @@ fn push_text(out: &mut String, source: &str) {
                 characters.next();
                 out.push_str("&lt;");
             }
-            // At an end it would escape what comes next in the page.
+            // At an end it would escape the next character of the page.
             ('\\', None | Some('\n')) => out.push_str("\\\\"),
             ('\\', Some(escaped)) if escaped.is_ascii_punctuation() => {
                 characters.next();
@@ -446,6 +447,8 @@ fn push_text(out: &mut String, source: &str) {
             // An entity could spell braces, and a picture could take in any file.
             ('&', Some(next)) if next == '#' || next.is_ascii_alphabetic() => out.push_str("&amp;"),
             ('!', Some('[')) => out.push_str("\\!"),
+            // It would end a code span of the page, or begin one.
+            ('`', _) => out.push_str("\\`"),
             (plain, _) => out.push(plain),
         }
     }
@@ -487,7 +490,7 @@ mod tests {
                 ),
                 ("`{{ y }}`", "`{`<!-- -->`{ y }}`"),
                 ("`{{{`", "`{`<!-- -->`{`<!-- -->`{`"),
-                ("a ` b <c>", "a ` b &lt;c>"),
+                ("a ` b <c>", "a \\` b &lt;c>"),
                 ("\\`<c>`", "\\`&lt;c>`"),
                 ("``a ` b``", "``a ` b``"),
                 ("one\n  two\n", "one two"),
@@ -538,6 +541,7 @@ mod tests {
             Place::Prose,
             &[
                 ("a\n---\n# b\n- c", "a\n\\---\n\\# b\n- c"),
+                ("a ` b\n\n` <c>", "a \\` b\n\n\\` &lt;c>"),
                 ("::: tip\n[a]: x", "\\::: tip\n\\[a]: x"),
             ],
         );
