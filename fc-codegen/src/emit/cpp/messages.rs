@@ -235,7 +235,11 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, comm
         |out| {
             for (error, result) in package.errors(command) {
                 out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
-                out.line(format!("{} = {},", result.name, integer(result.code.into())));
+                out.line(format!(
+                    "{} = {},",
+                    result.name,
+                    integer(result.code.into())
+                ));
             }
         },
     );

@@ -49,7 +49,11 @@ fn results(out: &mut Source, context: &Context<'_>) {
             let mut docs = Docs::of(&result.text);
             docs.text(&result.about);
             out.docs(&docs);
-            out.line(format!("{} = {},", result.name, integer(result.code.into())));
+            out.line(format!(
+                "{} = {},",
+                result.name,
+                integer(result.code.into())
+            ));
         }
     });
     out.blank();
