@@ -84,11 +84,6 @@ internal class MemoryBudget(
         return true
     }
 
-    /** Lends more bytes than expected to a handler that has some. */
-    fun lendMore(bytes: Long) {
-        lent += bytes
-    }
-
     /** Takes back the bytes of a handler that has ended. */
     fun giveBack(bytes: Long) {
         lent -= bytes
