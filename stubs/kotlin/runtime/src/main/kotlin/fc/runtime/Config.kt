@@ -208,9 +208,10 @@ public class ServerConfig private constructor(from: ServerConfig?) {
         with { abandonedHandlers = Settings.integer("ServerConfig.abandonedHandlers", limit, 0) }
 
     /**
-     * Most bytes that apps may make the robot hold, at both ports together; 256 MiB unless set. They count received frames, bodies,
-     * requests in handlers, and unsent responses, reports and streams. When they are short, the connection that holds most is
-     * closed, and requests wait while handlers hold half. A frame or body may have a quarter.
+     * Most bytes that apps may make the robot hold, at both ports together; 256 MiB unless set. They count received frames,
+     * bodies, requests in handlers, and unsent responses, reports and streams. When they are short, the connection that holds
+     * most is closed, and requests wait while handlers hold half. A frame or body may have a quarter. Set less if the heap has
+     * not twice as much.
      */
     public fun memory(bytes: Long): ServerConfig = with { memory = Settings.long("ServerConfig.memory", bytes, 1) }
 

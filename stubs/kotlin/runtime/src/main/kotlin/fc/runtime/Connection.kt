@@ -174,8 +174,8 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     public fun states(): Flow<ConnectionState> = core.life.states
 
     /**
-     * Calls [listener] with the state and each that it comes to, until the result is closed. For Java. An exception of the listener
-     * is logged, and the next state reaches it all the same.
+     * Calls [listener] with the state and each that it comes to, until the result is closed. For Java. An exception of the
+     * listener is logged, and the next state reaches it all the same.
      */
     public fun onState(listener: Consumer<ConnectionState>): AutoCloseable {
         val watch = SCOPE.launch { states().collect { told("the listener of states", listener, it) } }

@@ -53,7 +53,7 @@ internal class Decoder(
 
     private fun grown(needed: Int): Int = maxOf(needed.toLong(), minOf(2L * buffer.size, limits.frameBytes), 512L).toInt()
 
-    /** About the bytes that handing on the frame at the front takes, together with its JSON text and message; 0 if it is not whole. */
+    /** About the bytes that handing on the frame at the front takes, with its text and message; 0 if it is not whole. */
     fun cost(): Long {
         val total = layout.peekTotal(buffer, start, pending)
         if (total < layout.length || total > pending) return 0

@@ -21,8 +21,8 @@ internal interface MemoryHolder {
 /**
  * The bytes that apps make a robot hold, at both ports together. On the loop alone, except [total].
  *
- * A connection asks for room before it grows. If there is none, the connection that holds most is closed. Requests in handlers are
- * not given back by closing a connection. They may take half of all, and further requests wait.
+ * A connection asks for room before it grows. If there is none, the connection that holds most is closed. Closing a connection
+ * does not give back its requests in handlers. They may take half of all, and further requests wait.
  */
 internal class MemoryBudget(
     private val limit: Long,
@@ -82,11 +82,6 @@ internal class MemoryBudget(
         }
         lent += bytes
         return true
-    }
-
-    /** Lends more bytes than expected to a handler that has some. */
-    fun lendMore(bytes: Long) {
-        lent += bytes
     }
 
     /** Takes back the bytes of a handler that has ended. */

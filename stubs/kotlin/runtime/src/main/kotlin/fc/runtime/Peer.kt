@@ -61,6 +61,9 @@ internal class Peer(
 
     /** A request that waits for memory. The others wait behind it. */
     private var waiting: Frame? = null
+
+    /** Bytes that have to be lent for [waiting]. */
+    private var waitingBytes = 0L
     private var isDraining = false
 
     /** Nothing more is read at all. What has been carried out is answered all the same. */
@@ -163,7 +166,7 @@ internal class Peer(
 
     // Requests.
 
-    private fun handle(frame: Frame, now: Long) {
+    private fun handle(frame: Frame, now: Long, bytes: Long = TEXTS * frame.body.size) {
         val (id, body) = frame.id to frame.body
         val entry = server.service.entries[id.code]
         val raw = server.service.rawHandler(id.code, isKnown = id.code in server.commands)
@@ -175,19 +178,16 @@ internal class Peer(
                 refuse(id, said(protocol.results.protocol, "not allowed from this address"))
             }
             entry != null || raw != null -> {
-                val bytes = TEXTS * body.size
-                if (!server.memory.lend(this, bytes)) {
-                    waiting = frame
-                    return
-                }
+                if (!server.memory.lend(this, bytes)) return defer(frame, bytes)
                 var task: Task? = null
                 try {
-                    task = if (entry != null) task(entry, id, body, bytes) else task(checkNotNull(raw), id, effect, body, bytes)
+                    task = if (entry != null) task(entry, id, body) else task(checkNotNull(raw), id, effect, body)
                 } finally {
-                    if (task == null) server.memory.giveBack(bytes)
+                    if (task?.bytes != bytes) server.memory.giveBack(bytes)
                 }
                 task ?: return
-                server.memory.lendMore(task.bytes - bytes)
+                // Short texts may have long lists.
+                if (task.bytes != bytes && !server.memory.lend(this, task.bytes)) return defer(frame, task.bytes)
                 launch(id, task, now)
             }
             id.code in server.commands -> refuse(id, notImplemented())
@@ -196,6 +196,11 @@ internal class Peer(
                 refuse(id, protocol.results.protocol)
             }
         }
+    }
+
+    private fun defer(frame: Frame, bytes: Long) {
+        waiting = frame
+        waitingBytes = bytes
     }
 
     private fun notImplemented(): Refusal {
@@ -243,20 +248,20 @@ internal class Peer(
         return null
     }
 
-    private fun <Q : Message, A : Message> task(entry: Service.Entry<Q, A>, id: FrameId, body: ByteArray, bytes: Long): Task? =
+    private fun <Q : Message, A : Message> task(entry: Service.Entry<Q, A>, id: FrameId, body: ByteArray): Task? =
         read(entry.command.request, id, body) { request, context, listBytes ->
             val handle: suspend () -> Any? = { entry.handler.handle(context, request) }
-            Task(entry.called, context, entry.command.effect, bytes + listBytes, handle) { response ->
+            Task(entry.called, context, entry.command.effect, TEXTS * body.size + listBytes, handle) { response ->
                 val success = protocol.results.success
                 encoded(entry.command.response.demand(response), success.code, success.text)
             }
         }
 
-    private fun task(entry: Service.RawEntry, id: FrameId, effect: Effect, body: ByteArray, bytes: Long): Task? =
+    private fun task(entry: Service.RawEntry, id: FrameId, effect: Effect, body: ByteArray): Task? =
         read(Keys, id, body) { _, context, _ ->
             val text = Json.trusted(if (body.isEmpty()) "{}" else Bodies.utf8(body))
             val handle: suspend () -> Any? = { entry.handler.handle(context, RawRequest(id.code, text)) }
-            Task(entry.called, context, effect, bytes, handle) { answer ->
+            Task(entry.called, context, effect, TEXTS * body.size, handle) { answer ->
                 if (answer !is Json) throw BodyError(BodyErrorKind.WRONG_TYPE, "found something else; send a `Json`")
                 server.encoder.prepare(completed(answer))
             }
@@ -422,7 +427,7 @@ internal class Peer(
     private fun resume(now: Long) {
         val frame = waiting ?: return
         waiting = null
-        handle(frame, now)
+        handle(frame, now, waitingBytes)
         if (waiting == null) wake()
     }
 

@@ -135,13 +135,15 @@ public class Limits private constructor(private val values: LongArray) {
         connections: Int,
     ) : this(
         longArrayOf(
-            minOf(frameBytes, MOST_BYTES), minOf(inflatedBytes, MOST_BYTES), jsonDepth.toLong(), inFlight.toLong(), queuedReports.toLong(), connections.toLong(),
-            INFLATE_RATIO, 1L shl 20, 32L shl 20,
+            minOf(frameBytes, MOST_BYTES), minOf(inflatedBytes, MOST_BYTES), jsonDepth.toLong(), inFlight.toLong(),
+            queuedReports.toLong(), connections.toLong(), INFLATE_RATIO, 1L shl 20, 32L shl 20,
         ),
     )
 
     init {
-        for (index in values.indices) Settings.long("Limits.${NAMES[index]}", values[index], if (index == QUEUED_REPORTS) 0 else 1)
+        for (index in values.indices) {
+            Settings.long("Limits.${NAMES[index]}", values[index], if (index == QUEUED_REPORTS) 0 else 1)
+        }
     }
 
     /** Longest frame, header included, in bytes. */

@@ -15,7 +15,8 @@ internal class Thrown(protocol: Protocol?) {
         val place = when {
             own != null -> " at ${shown(own)}"
             called != null -> " in ${called.javaClass.name}"
-            else -> frames.firstNotNullOfOrNull { it.firstOrNull() }?.let { " at ${shown(it)}" } ?: ""
+            // A fault of the runtime itself.
+            else -> error.stackTrace.firstOrNull()?.let { " at ${shown(it)}" } ?: ""
         }
         kind(error) + place
     } catch (_: Throwable) {
@@ -24,7 +25,8 @@ internal class Thrown(protocol: Protocol?) {
     }
 
     /** The call of user code is inside these: further out may be the test or program that runs the loop. */
-    private fun isInside(frame: StackTraceElement): Boolean = CALLERS.none { frame.className == it || frame.className.startsWith("$it$") }
+    private fun isInside(frame: StackTraceElement): Boolean =
+        CALLERS.none { frame.className == it || frame.className.startsWith("$it$") }
 
     private fun own(frames: List<StackTraceElement>): StackTraceElement? {
         val users = frames.filter { frame -> packageOf(frame.className) != RUNTIME && PLATFORM.none(frame.className::startsWith) }
@@ -49,8 +51,8 @@ internal class Thrown(protocol: Protocol?) {
         val CALLERS = listOf(Peer::class, ServerCore::class, Context::class).map { it.java.name }
         val RUNTIME = packageOf(Thrown::class.java.name)
         val PLATFORM = listOf(
-            "java.", "javax.", "jdk.", "sun.", "com.sun.", "kotlin.", "kotlinx.", "android.", "androidx.", "com.android.", "dalvik.",
-            "libcore.",
+            "java.", "javax.", "jdk.", "sun.", "com.sun.", "kotlin.", "kotlinx.", "android.", "androidx.", "com.android.",
+            "dalvik.", "libcore.",
         )
 
         fun packageOf(className: String): String = className.substringBeforeLast('.', "")

@@ -22,6 +22,9 @@ import kotlinx.coroutines.withTimeout
 private const val KIB = 1024
 private const val MIB = 1024 * KIB
 
+/** The code of a command with a list of strings. */
+private const val LISTS = 400
+
 /** Bytes that any connection may hold. */
 private const val NEEDED = 128 * KIB
 
@@ -34,6 +37,9 @@ private class CrowdedRobot(memory: Int, config: ServerConfig = ServerConfig(), r
         if (request.text.isNotEmpty()) CompletableDeferred<Unit>().also { gates.add(it) }.await()
         EchoReply.of(reply)
     }.on(Toy.GO) { _, _ ->
+        CompletableDeferred<Unit>().also { gates.add(it) }.await()
+        Done.of()
+    }.on(Command("lists", LISTS, Effect.MOTION, OneValue.of("lists", Types.list(Types.STRING)), Done)) { _, _ ->
         CompletableDeferred<Unit>().also { gates.add(it) }.await()
         Done.of()
     }
@@ -151,6 +157,21 @@ internal fun memoryTests(tests: Tests) {
         robot.gates.forEach { it.complete(Unit) }
         robot.loop.settle()
         expect(listOf<Any>(1, true), listOf(other.frames().size, robot.server.memory <= 3 * NEEDED))
+    }
+    tests.case("short texts with long lists wait for handlers") {
+        val robot = CrowdedRobot(MIB)
+        val (modest, app) = robot.app() to robot.app()
+        val body = "{\"value\":[${"\"\",".repeat(1000)}\"\"]}".toByteArray()
+        for (id in 1L..60L) app.link.give(TestWire.bytes(FrameId(false, Toy.commandKind, LISTS, id), body))
+        var answers = 0
+        while (answers < 60) {
+            robot.loop.settle()
+            expect(true, robot.server.memory <= MIB) { "${robot.server.memory}:" }
+            expect(true, robot.gates.size in answers + 1..answers + 14) { "${robot.gates.size} of $answers:" }
+            robot.gates[answers++].complete(Unit)
+        }
+        robot.loop.settle()
+        expect(listOf<Any>(60, 0L, true), listOf(app.frames().size, robot.evicted, robot.serves(modest)))
     }
     tests.case("a handler that is cancelled gives back what was lent to it") {
         val robot = CrowdedRobot(8 * MIB)

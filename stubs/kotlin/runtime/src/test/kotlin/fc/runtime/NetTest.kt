@@ -75,6 +75,14 @@ internal fun netTests(tests: Tests) {
         expect(listOf("refused", "protocol: the handler failed"), listOf(failed.name, failed.refusal?.text))
         expect(1L, robot.server.counters.handlersPanicked)
         expect("invalid_request", callError { app.call(Toy.ECHO, Echo.of("x".repeat(1_000_001))) })
+        expect("invalid_request", callError { app.callRaw(100, "[]") })
+        // Java can pass messages of another type.
+        @Suppress("UNCHECKED_CAST")
+        val wrong = runCatching { app.call(Toy.ECHO as Command<Go, EchoReply>, Go.of(1)) }.exceptionOrNull() as CallError
+        expect(listOf("invalid_request", "wrong_type"), listOf(wrong.name, (wrong.cause as BodyError).name))
+        @Suppress("UNCHECKED_CAST")
+        val report = runCatching { robot.server.push(Audience.ALL, Toy.MOVED as Report<Tick>, Tick.of()) }.exceptionOrNull() as PushError
+        expect(listOf("invalid_report", "wrong_type"), listOf(report.name, (report.cause as BodyError).name))
         expect(1L, app.callRaw(9, "{}").resultCode)
         expect(true, app.callRaw(100, "{\"text\":\"raw\"}").json.contains("\"text\":\"raw\""))
         expect(robot.server.connections().size, 1)
