@@ -10,7 +10,7 @@ import { alive, driven, withSite } from './browser.mjs'
 
 const BASE = '/docs/fc/'
 /** Pages of the site that have links of each kind. */
-const PAGES = ['index', 'lab/index', 'guides/first-call-typescript', 'guides/testing', 'reference/codes', 'reference/index', 'reference/commands/get_robot_sn']
+const PAGES = ['index', 'lab/index', 'reference/codes', 'reference/index', 'reference/commands/get_robot_sn']
 
 /** Texts that would leave their place in Markdown, HTML, Vue and VitePress. */
 const SECRET = 'the content of another file'
@@ -51,6 +51,7 @@ describe('a small site', driven, () => {
     for (const page of PAGES.flatMap((page) => [page, `en/${page}`])) cpSync(path.join(site, `${page}.md`), path.join(folder, `${page}.md`))
     cpSync(path.join(site, 'public'), path.join(folder, 'public'), { recursive: true })
     writeFileSync(path.join(folder, 'secret.txt'), SECRET)
+    writeFileSync(path.join(folder, 'api-links.md'), '# API\n\n[TypeScript](/api/typescript/index.html)\n')
 
     const dump = JSON.parse(fcproto(['inspect', '--format', 'json', '--root', path.join(root, 'fc-codegen/tests/docs')]))
     generated = path.join(folder, 'generated')
@@ -100,7 +101,7 @@ export default { ...site, ignoreDeadLinks: true }
     }
     assert.deepEqual([...new Set(wrong)], [])
     assert.match(read('index.html'), /<link rel="icon"[^>]* href="\/docs\/fc\/mark\.svg"/)
-    assert.match(read('guides/first-call-typescript.html'), /href="\/docs\/fc\/api\/typescript\//)
+    assert.match(read('api-links.html'), /href="\/docs\/fc\/api\/typescript\//)
   })
 
   test('the lab, the map and a missing page work below the base', async () => {
