@@ -76,7 +76,7 @@ describe('a small site', driven, () => {
       `import site from ${own.slice(0, -1)}/config"
 import { html } from ${own.slice(0, -1)}/markdown/html"
 import navigation from ${JSON.stringify(navigation)}
-site.themeConfig.sidebar = navigation.groups.map(({ en, items }) => ({ text: html(en), items: items.map((item) => ({ text: html(item.en), link: '/hostile/reference/' + item.link })) }))
+site.locales.en.themeConfig.sidebar = navigation.groups.map(({ en, items }) => ({ text: html(en), items: items.map((item) => ({ text: html(item.en), link: '/hostile/reference/' + item.link })) }))
 export default { ...site, ignoreDeadLinks: true }
 `,
     )
