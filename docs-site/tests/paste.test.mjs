@@ -156,18 +156,18 @@ for (const [name, file] of FILES) {
   })
 }
 
-test('a new connection between the same ports is a stream of its own', () => {
+test('a new connection between the same ports is another stream', () => {
   const again = [packet(APP, ROBOT, 70, [], SYN), packet(APP, ROBOT, 71, request)]
   const { segments } = lab.readPaste(lab.readFile(pcap([...TALK, ...again]), heads), heads)
   assert.deepEqual(streams(segments), [request, response, request])
 })
 
-test('of a capture with a hole, what was captured is read', () => {
+test('the rest of a capture with a hole is read', () => {
   const { segments } = lab.readPaste(lab.readFile(pcap([...TALK.slice(0, 4), TALK[5], packet(ROBOT, APP, 5000 + response.length, response)]), heads), heads)
   assert.deepEqual(streams(segments), [request, [...rest, ...response]])
 })
 
-test('a capture without frames is refused, with the number of its packets', () => {
+test('a capture without frames is refused with its number of packets', () => {
   assert.throws(() => lab.readFile(pcap([web, udp]), heads), (problem) => {
     assert.ok(problem instanceof lab.Refusal, String(problem))
     assert.match(problem.text.en, /2 packets, 1 of them TCP/)
@@ -175,7 +175,7 @@ test('a capture without frames is refused, with the number of its packets', () =
   })
 })
 
-test('other files are opened: text as it is, bytes as a dump', () => {
+test('text files are opened unchanged, bytes as a dump', () => {
   const text = '17:40:01 TX: FC AA\n'
   assert.equal(lab.readFile(Uint8Array.from(Buffer.from(text)), heads), text)
   assert.equal(lab.readFile(Uint8Array.from(Buffer.from(`\ufeff${text}`, 'utf16le')), heads), text)
@@ -184,7 +184,7 @@ test('other files are opened: text as it is, bytes as a dump', () => {
   assert.throws(() => lab.readFile(new Uint8Array(lab.FILE_LIMIT + 1), heads), lab.Refusal)
 })
 
-test('damaged captures end, and are read as far as they go', () => {
+test('damaged captures are read up to the damage', () => {
   for (const [, file] of FILES) {
     for (let cut = 0; cut < file.length; cut += 7) {
       const part = file.slice(0, cut)

@@ -364,7 +364,7 @@ test('what is no frame is refused with the reason', driven, async () => {
   })
 })
 
-test('without scripts there is no verdict, and the page says what it needs', driven, async () => {
+test('without scripts the page asks for them and has no verdict', driven, async () => {
   for (const url of ['/lab/index.html', '/en/lab/index.html']) {
     assert.doesNotMatch(html(url), /data-out="(?:overall|piece|fault|findings|refused)"|fc-verdict|✓|✕/, url)
   }

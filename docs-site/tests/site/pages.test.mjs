@@ -94,7 +94,7 @@ test('the language switch stays in the same section', driven, async () => {
   })
 })
 
-test('without a connection, a page that does not come says so, and comes when there is one', driven, async () => {
+test('a page that fails offline loads after reconnecting', driven, async () => {
   await withSite(async ({ open }) => {
     const follow = (page, to) =>
       page.evaluate((to) => {
@@ -120,7 +120,7 @@ test('without a connection, a page that does not come says so, and comes when th
   })
 })
 
-test('without a connection, a part that does not come is told', driven, async () => {
+test('a part that fails offline is reported', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await open('/en/guides/testing.html')
     await alive(page)
@@ -152,7 +152,7 @@ test('the item of the page is in view in the sidebar', driven, async () => {
   })
 })
 
-test('each code has its place on the page of codes, and the free ones come first', driven, async () => {
+test('each code has an anchor, and free codes come first', driven, async () => {
   await withSite(async ({ base, open }) => {
     for (const language of ['', '/en']) {
       const text = html(`${language}/reference/codes.html`)
@@ -174,7 +174,7 @@ test('each code has its place on the page of codes, and the free ones come first
   })
 })
 
-test('the changelog has a heading for each year, and a date below it', built, () => {
+test('the changelog has headings of years', built, () => {
   for (const language of ['', '/en']) {
     const levels = Array.from(html(`${language}/reference/changelog.html`).matchAll(/<h([23]) id="([^"]+)"/g), ([, level, id]) => [level, id])
     const years = levels.filter(([level]) => level === '2').map(([, id]) => id)

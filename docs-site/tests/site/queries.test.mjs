@@ -56,7 +56,7 @@ for (const [language, locale, base] of [['zh', 'root', ''], ['en', 'en', '/en']]
   })
 }
 
-test('a code that no operation has says so', built, async () => {
+test('a free code is found', built, async () => {
   for (const [locale, free, closed] of [['root', /可用/, /不再分配/], ['en', /^Free/, /must not take it/]]) {
     const search = await searcher(locale)
     assert.match(search('0x0A0E')[0].title, free)
@@ -67,7 +67,7 @@ test('a code that no operation has says so', built, async () => {
   }
 })
 
-test('pages for people who write the spec come after those of the protocol', built, async () => {
+test('pages of the protocol rank above pages of the spec language', built, async () => {
   for (const [locale, queries] of [['root', ['枚举', '默认值', '单位', '号段', '上报']], ['en', ['enum', 'default', 'unit', 'range', 'example', 'report', 'timeout']]]) {
     const search = await searcher(locale)
     for (const query of queries) {

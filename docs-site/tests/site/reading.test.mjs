@@ -124,7 +124,7 @@ test('paper has the text alone, black on white, and every byte', driven, async (
   })
 })
 
-test('every frame is whole, and opens in the lab of its language', driven, async () => {
+test('whole frames open in the lab', driven, async () => {
   const framed = pages().filter((url) => html(url).includes('class="fc-frame"') && !/\/lab\//.test(url))
   const wrong = []
   for (const url of framed) {

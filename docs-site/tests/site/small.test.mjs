@@ -104,7 +104,7 @@ export default { ...site, ignoreDeadLinks: true }
     assert.match(read('api-links.html'), /href="\/docs\/fc\/api\/typescript\//)
   })
 
-  test('the lab, the map and a missing page work below the base', async () => {
+  test('all parts work below a base', async () => {
     await withSite(
       async ({ open, faults }) => {
         const page = await open(`${BASE}en/reference/commands/get_robot_sn.html`)

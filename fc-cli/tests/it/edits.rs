@@ -6,15 +6,18 @@ const LIGHT: &str = "lamp/spec/commands/light.yaml";
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
+/// Texts and their replacements.
+type Changes<'t> = &'t [(&'t str, &'t str)];
+
 /// A project of `init` in `lamp`, with some texts of a group replaced.
-fn lamp(changes: &[(&str, &str)]) -> Project {
+fn lamp(changes: Changes<'_>) -> Project {
     let place = Project::empty();
     place.fc(&["init", "lamp"]).expect(0);
     change(&place, LIGHT, changes);
     place
 }
 
-fn change(place: &Project, path: &str, changes: &[(&str, &str)]) {
+fn change(place: &Project, path: &str, changes: Changes<'_>) {
     let mut text = place.read(path);
     for (old, new) in changes {
         assert!(text.contains(old), "{old}");
@@ -48,7 +51,7 @@ const REQUEST: &str = "    request:
 #[test]
 fn settle_works_in_a_project_of_init() {
     let body = "level: { type: u8, max: 100, example: 1, zh: 级别, en: Level }\n";
-    let cases: [(&[(&str, &str)], &[&str]); 9] = [
+    let cases: [(Changes<'_>, &[&str]); 9] = [
         (&[CODE], &["set_light.code", "--code", "0x0102"]),
         (
             &[(
@@ -185,7 +188,7 @@ fn fix_leaves_a_formatted_file() {
 fn editing_commands_keep_line_ends_and_mark() {
     let answered = ["settle", "set_light.code", "--code", "0x0102", "--by", "me"];
     let retired = ["retire", "get_light", "--zh", "不用", "--en", "Unused"];
-    let commands: [(&[(&str, &str)], &[&str]); 8] = [
+    let commands: [(Changes<'_>, &[&str]); 8] = [
         (&[], &["new", "added", "--group", "light"]),
         (&[], &["new", "added", "--group", "light", "--report"]),
         (&[], &["new", "added", "--group", "light", "--stream"]),

@@ -92,8 +92,11 @@ streams:
       level: { type: u8, example: 1, zh: 音量, en: Level }
 ";
 
+/// Texts and their replacements.
+type Changes = &'static [(&'static str, &'static str)];
+
 /// Names of packages, sections of the group, and changes of `protocol.yaml`.
-const SPECS: [(&str, &[&str], &[(&str, &str)]); 14] = [
+const SPECS: [(&str, &[&str], Changes); 14] = [
     ("all", &[COMMANDS, REPORTS, FROM_ROBOT], &[]),
     ("more", &[MORE_COMMANDS, EMPTY_REPORT, FROM_APP], &[]),
     ("no_reports", &[COMMANDS], &[]),

@@ -103,7 +103,7 @@ fn reports_are_acknowledged_between_calls_and_waited_for() {
 }
 
 #[fc_test::test]
-fn nobody_there_is_an_error() {
+fn a_missing_robot_is_an_error() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);

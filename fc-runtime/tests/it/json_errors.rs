@@ -436,7 +436,7 @@ fn what_is_checked_before_sending_has_a_path_too() {
 
 /// `null` in place of a number would be read as a field that is absent.
 #[fc_test::test]
-fn what_is_no_number_is_not_sent() {
+fn values_that_are_not_numbers_are_not_sent() {
     #[derive(Clone, Debug, Default, PartialEq, Message)]
     struct Pose {
         x: f64,

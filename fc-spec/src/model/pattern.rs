@@ -10,7 +10,7 @@ use regex_syntax::ast::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 /// A regular expression that a text must match as a whole.
 ///
@@ -263,12 +263,17 @@ fn write_literal(character: char, out: &mut String) {
     write_character(character, out);
 }
 
+fn write_hex(character: char, out: &mut String) {
+    // Writing to a String cannot fail.
+    let _ = write!(out, "\\x{:02X}", u32::from(character));
+}
+
 fn write_character(character: char, out: &mut String) {
     match character {
         '\n' => out.push_str(r"\n"),
         '\r' => out.push_str(r"\r"),
         '\t' => out.push_str(r"\t"),
-        c if c.is_ascii_control() => out.push_str(&format!("\\x{:02X}", u32::from(c))),
+        c if c.is_ascii_control() => write_hex(c, out),
         c => out.push(c),
     }
 }
@@ -345,7 +350,7 @@ fn write_in_class(character: u32, out: &mut String) {
     match character {
         '[' | ']' | '\\' | '^' | '-' => out.extend(['\\', character]),
         // Doubled, they are operators of sets in some languages.
-        '&' | '|' | '~' => out.push_str(&format!("\\x{:02X}", u32::from(character))),
+        '&' | '|' | '~' => write_hex(character, out),
         _ => write_character(character, out),
     }
 }

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 IN_FLIGHT = (1, 64)
-"""How many calls are in flight at a time."""
+"""Calls in flight at a time."""
 
 
 class Span(NamedTuple):

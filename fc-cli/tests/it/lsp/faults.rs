@@ -285,7 +285,7 @@ const NO_COMMANDS: &str = "\
 ";
 
 #[test]
-fn what_the_lint_finds_is_told_where_there_are_no_errors() {
+fn lint_findings_are_shown_without_errors() {
     let project = project();
     project.write(
         "fc.yaml",

@@ -151,15 +151,12 @@ fn phrase(pattern: &str, arguments: &[Value]) -> Result<Value, Error> {
             let index: usize = index.parse().ok()?;
             Some((arguments.get(index)?, rest))
         });
-        rest = match named {
-            Some((argument, rest)) => {
-                out.push_str(&spelled(argument)?);
-                rest
-            }
-            None => {
-                out.push('{');
-                behind
-            }
+        rest = if let Some((argument, rest)) = named {
+            out.push_str(&spelled(argument)?);
+            rest
+        } else {
+            out.push('{');
+            behind
         };
     }
     out.push_str(rest);

@@ -15,7 +15,7 @@ struct Case {
     refuses: Vec<String>,
 }
 
-#[test]
+#[fc_test::test]
 fn texts_match_or_are_refused() {
     let table = fs::read_to_string(folder().join("patterns.json")).unwrap();
     let cases: Vec<Case> = serde_json::from_str(&table).unwrap();

@@ -67,7 +67,7 @@ pub(in crate::load) fn unknown_keys(
     faults: &mut Faults,
 ) -> (Vec<String>, usize) {
     let (mut meant, mut strangers) = (Vec::new(), 0);
-    let present: HashSet<&str> = node.entries().map(|entry| entry.name()).collect();
+    let present: HashSet<&str> = node.entries().map(Entry::name).collect();
     let keys = table.keys.iter().map(|key| key.name);
     let free: Vec<&str> = keys.filter(|key| !present.contains(key)).collect();
     let mut before: Option<Entry<'_>> = None;

@@ -83,7 +83,7 @@ mod tests {
     use super::told;
 
     #[test]
-    fn examples_say_which_is_wrong() {
+    fn bad_and_good_examples_are_marked() {
         let text = "Why.\n\n```yaml bad\na: 1\n```\n\n```yaml good\na: 2\n```\n";
         let want = "Why.\n\nNo:\n\n```yaml\na: 1\n```\n\nYes:\n\n```yaml\na: 2\n```\n";
         assert_eq!(told(text, "No:", "Yes:"), want);
