@@ -72,8 +72,7 @@ struct Lexis {
     interpolation: Option<(&'static str, &'static [&'static str])>,
 }
 
-fn lexis(path: &str) -> Option<Lexis> {
-    let (_, extension) = path.rsplit_once('.')?;
+fn lexis(extension: &str) -> Option<Lexis> {
     Some(match extension {
         "py" | "pyi" => Lexis {
             line_comment: "#",
@@ -204,7 +203,8 @@ fn is_sampled(text: &str) -> bool {
 
 /// Why a file has a text of the spec as code.
 fn fault(path: &str, text: &str) -> Option<String> {
-    if path.ends_with(".rs") {
+    let extension = path.rsplit_once('.').map(|(_, extension)| extension);
+    if extension == Some("rs") {
         return match text.parse::<TokenStream>() {
             Err(error) => Some(format!("it is not Rust: {error}")),
             Ok(_) if syn::parse_file(text).is_err() => Some("it does not parse".to_owned()),
@@ -212,11 +212,11 @@ fn fault(path: &str, text: &str) -> Option<String> {
             Ok(_) => is_sampled(text).then(|| "a sample has the text as code".to_owned()),
         };
     }
-    if path.ends_with(".json") {
+    if extension == Some("json") {
         let parsed = serde_json::from_str::<Value>(text);
         return parsed.err().map(|error| error.to_string());
     }
-    let lexis = lexis(path)?;
+    let lexis = lexis(extension?)?;
     let code = code(text, &lexis);
     let at = code.find(MARK)?;
     let line = code[..at].lines().last().unwrap_or_default();
