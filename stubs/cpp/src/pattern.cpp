@@ -174,7 +174,8 @@ class Parser {
     } else if (!take('*')) {
       return part;
     }
-    good_ = good_ && std::max(least, most.value_or(0)) * std::max<std::size_t>(part.size(), 1) <= kMostSteps;
+    good_ = good_ &&
+            std::max(least, most.value_or(0)) * std::max<std::size_t>(part.size(), 1) <= kMostSteps;
     Steps out;
     if (!good_) return out;
     for (std::size_t index = 0; index < least; ++index) append(out, part);
