@@ -144,9 +144,10 @@ class Codec(Generic[M]):
                 slot.write(value, out)
             except BodyError as error:
                 raise error.inside(slot.key.name) from None
-        if not isinstance(message.extra, Extra):
-            raise _not_a("`extra` of type Extra", message.extra)
-        for key, tree in message.extra.entries:
+        extra = cast("object", message.extra)
+        if not isinstance(extra, Extra):
+            raise _not_a("`extra` of type Extra", extra)
+        for key, tree in extra.entries:
             if key in self.by_key:
                 raise BodyError(BodyErrorKind.DUPLICATE_KEY, "the type has a field for this key").inside(key)
             out.append(separator + write_text(key) + ":")
@@ -219,7 +220,7 @@ def write_content(body: type[Any], content: object) -> bytes:
         return codec_of(body).write_text(cast("Message", content)).encode()
     if not isinstance(content, (bytes, bytearray, memoryview)):
         raise _not_a("bytes", content)
-    return bytes(content)
+    return bytes(cast("bytes", content))
 
 
 def _slot(cls: type[Message], attribute: str) -> Slot:

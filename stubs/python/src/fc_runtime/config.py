@@ -154,7 +154,7 @@ def _networks(name: str, value: Any) -> None:
     """Checks what may be called from which networks."""
     if not isinstance(value, Mapping):
         raise TypeError(wrong(name, value, "effects by network"))
-    for network, effects in value.items():
+    for network, effects in cast("dict[Any, Any]", value).items():
         network_expected = "a network such as '10.0.0.0/24'"
         # An integer would be an address, too.
         if not isinstance(network, str):
@@ -165,7 +165,7 @@ def _networks(name: str, value: Any) -> None:
             raise ValueError(wrong(name, network, network_expected)) from None
         is_collection = isinstance(effects, Collection)
         if not is_collection or not all(isinstance(one, Effect) for one in cast("Collection[Any]", effects)):
-            raise TypeError(wrong(f"{name}[{network!r}]", effects, "a collection of `Effect`"))
+            raise TypeError(wrong(f"{name}[{network!r}]", cast("object", effects), "a collection of `Effect`"))
 
 
 _PORT: Final = integer(1, 65_535)

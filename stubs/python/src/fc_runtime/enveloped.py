@@ -111,7 +111,7 @@ def write_raw_response(protocol: Protocol, result: ResultText, body: Json) -> by
     return _write_entries(envelope, own)
 
 
-def _entries_of(body: Json) -> Entries:
+def _entries_of(body: object) -> Entries:
     """The keys of an object. Raises `BodyError` for what is none."""
     if not isinstance(body, Json):
         raise BodyError(BodyErrorKind.WRONG_TYPE, f"Json is wanted, not {type(body).__name__}")

@@ -6,7 +6,7 @@ import gzip
 import hashlib
 import zlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 from .errors import FrameError, FrameErrorKind
 from .layout import Digest, HeaderRole
@@ -282,8 +282,9 @@ def stream_frame(protocol: Protocol, code: int, message_id: int) -> FrameId:
 
 def frame_bytes(data: bytes | bytearray | memoryview) -> bytes:
     """The bytes of a frame of raw bytes. Raises `TypeError` for what is none."""
-    if not isinstance(data, (bytes, bytearray, memoryview)):
-        raise TypeError(wrong("data", data, "bytes"))
+    given = cast("object", data)
+    if not isinstance(given, (bytes, bytearray, memoryview)):
+        raise TypeError(wrong("data", given, "bytes"))
     return bytes(data)
 
 
