@@ -105,6 +105,8 @@ internal fun netTests(tests: Tests) {
     tests.net("reports, and following a command to its end") {
         val robot = TestRobot()
         val app = robot.app()
+        // Once it has a response, the robot knows the app.
+        app.call(Toy.ECHO, Echo.of("hello"))
         expect(AckOutcome.TIMED_OUT, robot.server.push(Audience.ALL, Report("moved", 300, Moved, Empty).ack(AckPolicy(1, 0)), Moved.of(1))[0].outcome)
         // It is sent once, and nobody is there to take it: what is answered behind it has been read after it.
         app.call(Toy.ECHO, Echo.of("behind it"))
