@@ -97,6 +97,7 @@ fn line(change: &Change, language: Language, why: &[String]) -> String {
 }
 
 #[test]
+#[ignore = "takes long"]
 fn name_gone_is_a_source_break() {
     let mut unsaid = Vec::new();
     for change in changes() {
@@ -110,6 +111,7 @@ fn name_gone_is_a_source_break() {
 }
 
 #[test]
+#[ignore = "takes long"]
 fn source_break_is_visible_in_a_package() {
     let mut wrong = Vec::new();
     for change in changes() {

@@ -216,6 +216,7 @@ fn the_spec_has_no_fault_before() {
 }
 
 #[test]
+#[ignore = "takes long"]
 fn a_slip_is_one_fault_where_it_is() {
     let Corpus {
         slips,
@@ -271,6 +272,7 @@ fn a_slip_is_one_fault_where_it_is() {
 
 /// Two slips far apart are two faults: what one of them hides is not what the other one says.
 #[test]
+#[ignore = "takes long"]
 fn two_slips_are_two_faults() {
     let Corpus {
         spec,
