@@ -317,7 +317,12 @@ std::optional<Instant> RobotPeer::patience() const {
   if (pending > 0 && pending < shared_->protocol->header.length && begun_) {
     return after(*begun_, settings.header_timeout);
   }
-  if (pending > 0) return after(last_read_, settings.stall_timeout);
+  if (pending > 0) {
+    const Instant silent = after(last_read_, settings.stall_timeout);
+    if (!begun_ || settings.least_rate == 0) return silent;
+    const std::chrono::seconds earned(pending / settings.least_rate);
+    return std::min(silent, after(after(*begun_, settings.stall_timeout), earned));
+  }
   if (settings.idle_timeout && handlers_.empty()) {
     return after(std::max(last_read_, last_written_), *settings.idle_timeout);
   }

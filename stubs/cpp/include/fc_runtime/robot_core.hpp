@@ -69,6 +69,7 @@ struct RobotSettings {
   std::chrono::milliseconds handler_timeout{2500};
   std::chrono::milliseconds header_timeout{5000};
   std::chrono::milliseconds stall_timeout{30000};
+  std::uint32_t least_rate = 1024;
   std::optional<std::chrono::milliseconds> idle_timeout;
   std::size_t queued_bytes = 0;
   std::size_t abandoned_handlers = 64;

@@ -78,6 +78,9 @@ struct ServerConfig {
   /// How long a connection may make no progress, in the middle of a frame or while it has something
   /// to read, before it is closed.
   std::chrono::milliseconds stall_timeout{30000};
+  /// Lowest rate of a frame that arrives, in bytes per second. Its time is `stall_timeout`, plus a
+  /// second for each so many bytes. 0 allows any rate.
+  std::uint32_t least_rate = 1024;
   /// Longest silence of a connection in between frames.
   std::optional<std::chrono::milliseconds> idle_timeout;
   /// After how much silence TCP asks whether the app is still there, or none not to ask.

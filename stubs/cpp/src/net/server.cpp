@@ -57,6 +57,7 @@ RobotSettings filled_in(const Protocol& protocol, const ServerConfig& config) {
   settings.handler_timeout = config.handler_timeout.value_or(protocol.defaults.handler_timeout);
   settings.header_timeout = config.header_timeout;
   settings.stall_timeout = config.stall_timeout;
+  settings.least_rate = config.least_rate;
   settings.idle_timeout = config.idle_timeout;
   settings.queued_bytes = config.queued_bytes.value_or(settings.limits.inflated_bytes);
   settings.abandoned_handlers = config.abandoned_handlers;
