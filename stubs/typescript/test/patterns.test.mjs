@@ -13,7 +13,8 @@ test('texts match or are refused', () => {
   for (const { pattern, portable, matches, refuses } of table.filter(({ refused }) => !refused)) {
     const [field] = planOf({ fields: { text: { key: 'text', type: 'string', pattern: portable } } }).fields
     for (const text of matches) assert.doesNotThrow(() => check(field, text), `${pattern} on ${JSON.stringify(text)}`)
-    for (const text of refuses) assert.throws(() => check(field, text), BodyError, `${pattern} on ${JSON.stringify(text)}`)
+    for (const text of refuses)
+      assert.throws(() => check(field, text), BodyError, `${pattern} on ${JSON.stringify(text)}`)
     for (const _ of [...matches, ...refuses]) holds('patterns')
   }
 })
