@@ -20,6 +20,7 @@ class Required<T, false> {
   /// Unset.
   constexpr Required() noexcept = default;
   // NOLINTBEGIN(google-explicit-constructor): it is used like a `T`
+  /// Set to a value.
   constexpr Required(T value) noexcept : value_(value), is_set_(true) {}
   constexpr operator T() const noexcept { return value_; }
   // NOLINTEND(google-explicit-constructor)
@@ -53,6 +54,7 @@ class Required<T, true> : public T {
  public:
   /// Unset.
   Required() = default;
+  /// Set to a value.
   // NOLINTNEXTLINE(google-explicit-constructor): it is used like a `T`
   template <class U = T, class = IfOther<U>, class = std::enable_if_t<std::is_convertible_v<U, T>>>
   Required(U&& value) : T(std::forward<U>(value)), is_set_(true) {}

@@ -65,11 +65,11 @@ struct Request {
 
 /// What a robot needs to know, all of it filled in.
 struct RobotSettings {
-  Limits limits;
-  std::chrono::milliseconds handler_timeout{2500};
-  std::chrono::milliseconds header_timeout{5000};
-  std::chrono::milliseconds stall_timeout{30000};
-  std::uint32_t least_rate = 1024;
+  Limits limits;                                    ///< Limits of frames, bodies and calls.
+  std::chrono::milliseconds handler_timeout{2500};  ///< Longest time of a handler.
+  std::chrono::milliseconds header_timeout{5000};   ///< Longest time of a header.
+  std::chrono::milliseconds stall_timeout{30000};   ///< Longest time without progress.
+  std::uint32_t least_rate = 1024;  ///< Lowest rate of a frame, in bytes per second.
   std::optional<std::chrono::milliseconds> idle_timeout;
   std::size_t queued_bytes = 0;
   std::size_t abandoned_handlers = 64;
