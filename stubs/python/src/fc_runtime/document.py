@@ -46,7 +46,7 @@ MAX_DEPTH: Final = 127
 """Levels of nesting that are read whatever is configured."""
 
 _SURROGATE: Final = re.compile("[\ud800-\udfff]")
-# What is looked at together, in bytes.
+# Size of a chunk of the survey, in bytes.
 _CHUNK: Final = 1 << 16
 _SPACES: Final = " \t\n\r"
 _SPACE: Final = _SPACES.encode()
@@ -169,7 +169,7 @@ class _Survey:
         try:
             _CHECKER.decode(text)
         except json.JSONDecodeError as error:
-            # What is cut off is missed at the end.
+            # The reader reports a text that is cut off.
             if error.pos < len(text.rstrip(_SPACES)):
                 raise _bad_json(error) from None
         raise BodyError(kind, detail)
