@@ -33,11 +33,26 @@ pub(crate) fn is_device(name: &str) -> bool {
 }
 
 /// True for a character that does not show, or that changes how the text after it shows. Lines and tabs do neither.
-pub(crate) fn is_hidden(character: char) -> bool {
-    let is_layout = matches!(character, '\n' | '\t');
-    let is_mark = matches!(character,
-        '\u{061C}' | '\u{200E}' | '\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}' | '\u{FEFF}');
-    is_mark || (character.is_control() && !is_layout)
+#[must_use]
+pub const fn is_hidden(character: char) -> bool {
+    matches!(
+        character,
+        '\0'..='\u{8}'
+            | '\u{B}'..='\u{1F}'
+            | '\u{7F}'..='\u{9F}'
+            | '\u{61C}'
+            | '\u{200B}'
+            | '\u{200E}'
+            | '\u{200F}'
+            | '\u{2028}'..='\u{202E}'
+            | '\u{2060}'..='\u{206F}'
+            | '\u{FDD0}'..='\u{FDEF}'
+            | '\u{FEFF}'
+            | '\u{FFF9}'..='\u{FFFB}'
+            | '\u{FFFE}'
+            | '\u{FFFF}'
+            | '\u{E0000}'..='\u{E007F}'
+    )
 }
 
 /// True for one line of visible characters.

@@ -1,9 +1,10 @@
 //! What clang-format does, in Google's style, beyond any language: parameters, files, namespaces.
 
-use crate::emit::stub::docs::{columns_of, is_invisible};
+use crate::emit::stub::docs::columns_of;
 use crate::emit::stub::source::{Source, join};
 use crate::emit::stub::style::{Comment, Style};
 use crate::surface::package::Item;
+use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
@@ -171,7 +172,7 @@ pub fn literal(text: &str) -> String {
             '\t' => out.push_str("\\t"),
             // Three digits, so that no digit behind them is taken for one more.
             c if c.is_ascii_control() => out.extend(format!("\\{:03o}", u32::from(c)).chars()),
-            c if is_hidden(c) => out.extend(format!("\\u{:04x}", u32::from(c)).chars()),
+            c if is_hidden(c) => out.extend(format!("\\U{:08x}", u32::from(c)).chars()),
             c => out.push(c),
         }
     }
@@ -181,11 +182,6 @@ pub fn literal(text: &str) -> String {
 
 /// Bytes of a raw string literal: a compiler may refuse longer ones, and several beside each other are one.
 const LONGEST: usize = 16_000;
-
-/// A character that must not stand in source text as it is.
-fn is_hidden(character: char) -> bool {
-    (character.is_control() && character != '\n') || is_invisible(character)
-}
 
 /// A text as a raw string literal, which shows it as it is.
 pub fn raw(text: &str) -> String {

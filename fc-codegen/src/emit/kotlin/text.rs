@@ -2,13 +2,14 @@
 
 use crate::emit::stub::context::Context;
 use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::{escape_links, is_invisible};
+use crate::emit::stub::docs::escape_links;
 use crate::emit::stub::style::{Comment, Style};
 use crate::surface::package::Item;
 use fc_spec::model::{
-    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm,
+    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm, is_hidden,
 };
 use std::borrow::Cow;
+use std::fmt::Write as _;
 
 /// Kotlin as ktlint lays it out.
 pub static STYLE: Style = Style {
@@ -77,7 +78,7 @@ pub fn scalar(wire: &Scalar) -> String {
 
 /// A text as a string literal, raw where that spares escapes.
 pub fn literal(text: &str) -> String {
-    let needs_escape = |c: char| c.is_control() || is_invisible(c);
+    let needs_escape = |c: char| c.is_control() || is_hidden(c);
     let is_plain = !text.contains(needs_escape) && !text.contains('$');
     if is_plain && text.contains(['"', '\\']) && !text.contains("\"\"\"") && !text.ends_with('"') {
         return format!("\"\"\"{text}\"\"\"");
@@ -91,8 +92,10 @@ pub fn literal(text: &str) -> String {
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
             c if needs_escape(c) => {
-                let code = format!("\\u{:04x}", u32::from(c));
-                out.push_str(&code);
+                for unit in c.encode_utf16(&mut [0; 2]) {
+                    // Writing to a String cannot fail.
+                    let _ = write!(out, "\\u{unit:04x}");
+                }
             }
             c => out.push(c),
         }

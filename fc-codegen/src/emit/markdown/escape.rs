@@ -5,6 +5,7 @@
 //! Markdown, `|` and a line break the next cell. `VitePress` also obeys `<!--@include: …-->` in front matter and code.
 //! Characters that do not show are spelled as `\u202e`.
 
+use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -59,12 +60,12 @@ pub(super) fn write(source: &str, place: Place<'_>) -> String {
 
 /// A text with every character that does not show, or turns the direction of others, spelled as JSON spells it.
 fn visible(source: &str) -> Cow<'_, str> {
-    if !source.contains(is_invisible) {
+    if !source.contains(is_hidden) {
         return source.into();
     }
     let mut out = String::with_capacity(source.len());
     for character in source.chars() {
-        if is_invisible(character) {
+        if is_hidden(character) {
             for unit in character.encode_utf16(&mut [0; 2]) {
                 // Writing to a String cannot fail.
                 let _ = write!(out, "\\u{unit:04x}");
@@ -74,27 +75,6 @@ fn visible(source: &str) -> Cow<'_, str> {
         }
     }
     out.into()
-}
-
-const fn is_invisible(character: char) -> bool {
-    matches!(
-        character,
-        '\0'..='\u{8}'
-            | '\u{b}'..='\u{1f}'
-            | '\u{7f}'..='\u{9f}'
-            | '\u{61c}'
-            | '\u{200b}'
-            | '\u{200e}'
-            | '\u{200f}'
-            | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}'
-            | '\u{feff}'
-            | '\u{fff9}'..='\u{fffb}'
-            | '\u{fdd0}'..='\u{fdef}'
-            | '\u{fffe}'
-            | '\u{ffff}'
-            | '\u{e0000}'..='\u{e007f}'
-    )
 }
 
 fn line(source: &str) -> String {

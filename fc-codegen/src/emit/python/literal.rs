@@ -2,10 +2,9 @@
 
 use super::source::Code;
 use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::is_invisible;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Item;
-use fc_spec::model::{Number, Scalar};
+use fc_spec::model::{Number, Scalar, is_hidden};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -22,11 +21,12 @@ pub fn literal(text: &str) -> String {
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
             c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || is_invisible(c) => {
+            c if c.is_control() || is_hidden(c) => {
                 let code = u32::from(c);
                 let _ = match code {
                     0..0x100 => write!(out, "\\x{code:02x}"),
-                    _ => write!(out, "\\u{code:04x}"),
+                    0x100..0x1_0000 => write!(out, "\\u{code:04x}"),
+                    _ => write!(out, "\\U{code:08x}"),
                 };
             }
             c => out.push(c),
@@ -38,7 +38,7 @@ pub fn literal(text: &str) -> String {
 
 /// A regular expression: raw where that shows it as it is.
 pub fn regex(text: &str) -> String {
-    let plain = |c: char| !(c.is_control() || is_invisible(c) || c == '"');
+    let plain = |c: char| !(c.is_control() || is_hidden(c) || c == '"');
     if text.contains('\\') && text.chars().all(plain) {
         format!("r\"{text}\"")
     } else {

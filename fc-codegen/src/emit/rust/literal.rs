@@ -1,14 +1,18 @@
 //! Literals of Rust: texts and integers.
 
 use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::is_invisible;
-use fc_spec::model::Number;
+use fc_spec::model::{Number, is_hidden};
 
 /// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.
 pub fn literal(text: &str) -> String {
-    let needs_escape = |c: char| c.is_control() || is_invisible(c);
+    let needs_escape = |c: char| c.is_control() || is_hidden(c);
     // First bytes of what is escaped and of some that is not.
-    let suspect = |byte| matches!(byte, 0..=0x1F | b'"' | b'\\' | 0x7F | 0xC2 | 0xE2);
+    let suspect = |byte| {
+        matches!(
+            byte,
+            0..=0x1F | b'"' | b'\\' | 0x7F | 0xC2 | 0xD8 | 0xE2 | 0xEF | 0xF3
+        )
+    };
     if !text.bytes().any(suspect) {
         return ["\"", text, "\""].concat();
     }

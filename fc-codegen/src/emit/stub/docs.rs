@@ -1,7 +1,7 @@
 //! Prose of the spec as documentation comments that compilers and documentation tools accept as they are.
 
 use super::style::Comment;
-use fc_spec::model::Text;
+use fc_spec::model::{Text, is_hidden};
 use std::borrow::Cow;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.
@@ -201,19 +201,14 @@ pub fn columns_of(text: &str) -> usize {
 
 /// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
 fn clean(line: &str) -> Cow<'_, str> {
-    let unclean = |c: char| c.is_control() || is_invisible(c);
+    let unclean = |c: char| c.is_control() || is_hidden(c);
     // First bytes of what is unclean and of some that is not.
-    let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xE2);
+    let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xD8 | 0xE2 | 0xEF | 0xF3);
     if !line.bytes().any(suspect) || !line.contains(unclean) {
         return Cow::Borrowed(line);
     }
     let line = line.replace('\t', "    ");
     Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
-}
-
-/// True for a character that ends a line in some languages, or changes the direction of the text after it.
-pub fn is_invisible(character: char) -> bool {
-    matches!(character, '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 /// Escapes, outside code spans, what Markdown reads as a link or as HTML, and marks addresses as such.

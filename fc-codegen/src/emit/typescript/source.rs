@@ -1,8 +1,9 @@
 //! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
 
-use crate::emit::stub::docs::{Docs, escape_links, is_invisible};
+use crate::emit::stub::docs::{Docs, escape_links};
 use crate::emit::stub::source::join;
 use crate::emit::stub::style::{Comment, Style};
+use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 
 pub use crate::emit::stub::source::Source;
@@ -77,7 +78,7 @@ pub fn literal(text: &str) -> String {
             '\t' => out.push_str("\\t"),
             '\\' => out.push_str("\\\\"),
             c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || is_invisible(c) => {
+            c if c.is_control() || is_hidden(c) => {
                 out.extend(c.escape_unicode());
             }
             c => out.push(c),
