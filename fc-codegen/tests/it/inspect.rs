@@ -310,6 +310,13 @@ fn what_is_no_dump_is_refused_with_a_reason() {
     assert!(matches!(Dump::read(&other), Err(DumpError::Format(1))));
     let role = text.replacen("\"role\": \"digest\"", "\"role\": \"hash\"", 1);
     assert!(refused(&role).contains("unknown variant `hash`"));
+    let code = text.replacen("\"code_spelling\": \"0x", "\"code_spelling\": \"0xF", 1);
+    assert!(refused(&code).contains("is not a code"));
+    let spelled = "\"code_spelling\": \"";
+    let start = text.find(spelled).expect("a code") + spelled.len();
+    let mut code = text.clone();
+    code.replace_range(start..start + 6, "0xFFFE");
+    assert!(refused(&code).contains("does not match its number"));
 }
 
 /// Dumps are kept, as what a protocol was. This one was made when the format began, and is never made again: what is

@@ -8,7 +8,7 @@ use super::{
     Question, ResultCode, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types,
     Unlinked, Waiver,
 };
-use crate::text;
+use crate::{names, text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashSet};
@@ -85,6 +85,8 @@ pub enum DumpError {
     Format(u32),
     /// A name that stands for nothing.
     Name(Unlinked),
+    /// The spelling of a code is that of another code.
+    Spelling(String),
 }
 
 impl DumpError {
@@ -103,6 +105,10 @@ impl DumpError {
                     "a dump of format {found}; this version reads format {format}: print it again from its spec, with this `fcproto inspect`"
                 )
             }
+            Self::Spelling(spelling) => text!(
+                "功能码的写法 {spelling} 与它的数值不一致",
+                "the spelling {spelling} of a code does not match its number"
+            ),
             Self::Name(Unlinked { missing, user }) => text!(
                 "{user} 用到了 {missing}，而输出中没有它",
                 "{user} names {missing}, which is not in the dump"
@@ -121,7 +127,7 @@ impl std::error::Error for DumpError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Shape(error) => Some(error),
-            Self::Format(_) | Self::Name(_) => None,
+            Self::Format(_) | Self::Name(_) | Self::Spelling(_) => None,
         }
     }
 }
@@ -182,6 +188,7 @@ impl Dump {
             return Err(DumpError::Format(format));
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
+        dump.check_codes()?;
         dump.check_groups().map_err(DumpError::Name)?;
         dump.check_entities().map_err(DumpError::Name)?;
         dump.check_conditions().map_err(DumpError::Name)?;
@@ -221,6 +228,25 @@ impl Dump {
             answers: self.answers,
             questions: self.questions,
             changes: self.changes,
+        }
+    }
+
+    /// Every code is spelled as its number.
+    fn check_codes(&self) -> Result<(), DumpError> {
+        let operations = self.operations.iter().map(|it| &it.code);
+        let operations = operations.map(|code| (code.value, &code.spelling));
+        let ranges = self.ranges.iter().flat_map(|it| {
+            [
+                (Some(it.first), &it.first_spelling),
+                (Some(it.last), &it.last_spelling),
+            ]
+        });
+        let retired = self.retired_codes.iter();
+        let retired = retired.map(|it| (Some(it.code), &it.spelling));
+        let mut codes = operations.chain(ranges).chain(retired);
+        match codes.find(|(value, spelling)| names::code(spelling) != *value) {
+            Some((_, spelling)) => Err(DumpError::Spelling(spelling.clone())),
+            None => Ok(()),
         }
     }
 

@@ -469,7 +469,7 @@ pub struct CodeRange {
     #[serde(rename = "use")]
     pub usage: RangeUse,
     /// IDs of the groups whose new operations get their codes here; none if it names no groups.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "names::read_snake")]
     pub groups: Vec<String>,
     /// Description.
     #[serde(flatten)]
