@@ -10,10 +10,12 @@ pub mod codes;
 pub mod emit;
 pub mod inspect;
 pub mod output;
+mod plugin;
 pub mod product;
 pub mod questions;
 pub mod surface;
 pub mod target;
+mod yaml_error;
 
 use fc_reflect::sample;
 

@@ -14,6 +14,9 @@
 //! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
 //! that language.
 
+pub use crate::plugin::Plugin;
+
+use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
 use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
 use fc_spec::model::{Model, ProjectionError, Text};
@@ -71,90 +74,6 @@ pub enum Language {
 
 impl Language {
     const ALL: [Self; 2] = [Self::Zh, Self::En];
-}
-
-/// A target that another program makes.
-///
-/// The program gets the dump of the model on standard input, with the target's `options` as one more key, and
-/// answers on standard output with a JSON list of `{ "path", "contents" }`, the paths from the target's `out`.
-#[derive(Clone, Debug)]
-pub struct Plugin {
-    /// Name of the target.
-    pub name: String,
-    /// The program: a path from the root where it has a `/`, or else one that the system finds.
-    pub program: String,
-    /// Directory of its files, from the root.
-    pub out: String,
-    /// The programming language in which its names have to be free, if it says one.
-    pub names: Option<&'static surface::Language>,
-    /// Whose part of the protocol it gets; all of it where nobody is named.
-    pub audience: Option<String>,
-    /// Longest run of the program.
-    pub timeout: Duration,
-    /// Largest output of the program, in bytes.
-    pub output_bytes: u64,
-    /// Whatever it needs to know.
-    pub options: Options,
-}
-
-/// A number in `fc.yaml` with its default and its largest value; the smallest is 1.
-struct Bound {
-    key: &'static str,
-    default: u64,
-    most: u64,
-}
-
-/// Longest run of a plugin: a minute, or up to an hour.
-const TIMEOUT_MS: Bound = Bound {
-    key: "timeout_ms",
-    default: 60_000,
-    most: 3_600_000,
-};
-
-/// Largest output of a plugin: 64 MiB, or up to 1 GiB.
-const OUTPUT_BYTES: Bound = Bound {
-    key: "output_bytes",
-    default: 64 << 20,
-    most: 1 << 30,
-};
-
-impl Bound {
-    fn of(&self, written: Option<u64>, name: &str) -> Result<u64, TargetError> {
-        let value = written.unwrap_or(self.default);
-        if (1..=self.most).contains(&value) {
-            return Ok(value);
-        }
-        Err(TargetError::OutOfRange {
-            name: name.to_owned(),
-            key: self.key,
-            most: self.most,
-        })
-    }
-}
-
-/// What a plugin answers with: a file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Answer {
-    path: String,
-    contents: String,
-}
-
-impl Plugin {
-    /// The files that the program has answered with.
-    ///
-    /// # Errors
-    ///
-    /// If it is no list of files.
-    pub fn artifacts(&self, answer: &[u8]) -> Result<Vec<Artifact>, serde_json::Error> {
-        let files: Vec<Answer> = serde_json::from_slice(answer)?;
-        let artifact = |file: Answer| Artifact {
-            target: self.name.clone(),
-            path: below(&self.out, &file.path),
-            contents: file.contents,
-        };
-        Ok(files.into_iter().map(artifact).collect())
-    }
 }
 
 /// Why `fc.yaml` cannot be used.
@@ -228,7 +147,7 @@ impl TargetError {
     pub fn text(&self) -> Text {
         let zh = match self {
             Self::Audience(error) => return error.text(),
-            Self::Shape(error) => format!("`{FILE}`：{}", shape(error)),
+            Self::Shape(error) => format!("`{FILE}`：{}", crate::yaml_error::chinese(error)),
             Self::Unknown { name } => format!(
                 "`{FILE}`：没有产物 `{name}`；产物有：{}。其他名称的目标需要 `plugin`",
                 products()
@@ -249,87 +168,6 @@ impl TargetError {
         let en = self.to_string();
         Text { zh, en }
     }
-}
-
-/// Describes in Chinese why the text of the file does not fit; the library knows English alone.
-fn shape(error: &serde_yaml::Error) -> String {
-    let message = error.to_string();
-    let (message, place) = match (message.split_once(" at line "), error.location()) {
-        (Some((message, _)), Some(at)) => (
-            message,
-            format!("第 {} 行第 {} 列：", at.line(), at.column()),
-        ),
-        _ => (message.as_str(), String::new()),
-    };
-    let (path, message) = match message.split_once(": ") {
-        // The path of keys, such as `targets.rust`.
-        Some((path, rest)) if !path.contains(' ') => (format!("`{path}` 中"), rest),
-        _ => (String::new(), message),
-    };
-    let facts = [
-        ("unknown field ", "有未知的键"),
-        ("missing field ", "缺少键"),
-        ("duplicate field ", "有重复的键"),
-        ("unknown variant ", "有未知的值"),
-        ("invalid type: ", "类型不对，实际为"),
-        ("invalid value: ", "值不对，实际为"),
-    ];
-    let fact = facts.iter().find_map(|(en, zh)| {
-        let rest = message.strip_prefix(en)?;
-        let (found, expected) = match rest.split_once(", expected ") {
-            Some((found, expected)) => (found, format!("，应为{}", words(expected))),
-            None => (rest, String::new()),
-        };
-        Some(format!("{zh}{}{expected}", words(found)))
-    });
-    let fact = fact.unwrap_or_else(|| "YAML 的写法有错误".to_owned());
-    format!("{place}{path}{fact}")
-}
-
-/// The library's words for kinds of values, in Chinese.
-fn words(text: &str) -> String {
-    let known = [
-        ("one of ", ""),
-        ("a mapping", "映射"),
-        ("a map", "映射"),
-        ("map", "映射"),
-        ("a sequence", "列表"),
-        ("sequence", "列表"),
-        ("a boolean", "布尔值"),
-        ("boolean", "布尔值"),
-        ("a string", "字符串"),
-        ("string", "字符串"),
-        ("floating point", "小数"),
-        ("integer", "整数"),
-        ("unit value", "空值"),
-        ("u64", "正整数"),
-        ("option", "值"),
-        (" or ", " 或 "),
-        (", ", "、"),
-    ];
-    let is_type = ["struct ", "variant of ", "enum ", "any "];
-    if let Some(start) = is_type.iter().find(|start| text.starts_with(*start)) {
-        return if *start == "struct " {
-            "映射"
-        } else {
-            "列出的值"
-        }
-        .to_owned();
-    }
-    let is_quote = |c: char| matches!(c, '`' | '"');
-    let parts = text.split_inclusive(is_quote).enumerate();
-    let parts = parts.map(|(at, part)| {
-        // Words between quotes are those of the file.
-        let known = known.iter().filter(|_| at % 2 == 0);
-        known.fold(part.to_owned(), |part, (en, zh)| part.replace(en, zh))
-    });
-    let text: String = parts.collect();
-    Text {
-        zh: text,
-        en: String::new(),
-    }
-    .spaced()
-    .zh
 }
 
 fn products() -> String {
