@@ -209,3 +209,22 @@ fn talks(lang: &str) {
         assert!(said.contains(test), "{said}");
     }
 }
+
+/// The programs of a project in both languages: only comments and texts may differ.
+#[test]
+fn programs_of_both_languages_are_the_same() {
+    let templates = Path::new(env!("CARGO_MANIFEST_DIR")).join("templates/init");
+    for file in ["examples/app.rs", "examples/robot.rs", "tests/talk.rs"] {
+        let read = |path| std::fs::read_to_string(templates.join(path)).expect("a template");
+        let [en, zh] = [read(file.to_owned()), read(format!("zh/{file}"))];
+        assert_eq!(en.lines().count(), zh.lines().count(), "{file}");
+        for (en, zh) in en.lines().zip(zh.lines()) {
+            // Without the comment, and without the text.
+            let code = |line: &str| {
+                let line = line.split("//").next().unwrap_or_default();
+                line.split('"').step_by(2).collect::<String>()
+            };
+            assert_eq!(code(en), code(zh), "{file}");
+        }
+    }
+}
