@@ -16,7 +16,8 @@ use crate::support::typed::{Typed, Verdict};
 use crate::support::{self, hex, number};
 use fc_generated::{Fc, FrameHeader};
 use fc_reflect::Reflector;
-use fc_runtime::{Command as _, Encoder, FrameId, Header as _, Protocol as _};
+use fc_runtime::{Encoder, FrameId, Header as _, Protocol as _};
+use fc_spec::model::{self, Model};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -37,7 +38,7 @@ fn judges_agree() {
     let reflector = Reflector::new(&model);
     let seeds = mutate::seeds(&support::vectors(), &reflector);
     let typed = Typed::new(&model);
-    let foreign = std::env::var("FC_FOREIGN").map(|folder| foreign_frames(&folder));
+    let foreign = std::env::var("FC_FOREIGN").map(|folder| foreign_frames(&folder, &model));
     let (first, count) = match &foreign {
         Ok(frames) => (0, frames.len() as u64),
         Err(_) => (
@@ -109,21 +110,31 @@ fn judges_agree() {
     }
 }
 
-/// Frames with the texts of a folder, each with the name of its file: as a body, and as the value of an unknown key.
-fn foreign_frames(folder: &str) -> Vec<(String, Vec<u8>)> {
+/// Requests of an unknown command with the texts of a folder, each with the name of its file: as a body, and as the value
+/// of a key.
+fn foreign_frames(folder: &str, model: &Model) -> Vec<(String, Vec<u8>)> {
     let files = fs::read_dir(folder).expect("the folder of FC_FOREIGN");
     let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
     files.sort();
+    let taken = model.taken_codes();
+    let mut codes = (0..=u16::MAX).filter(|code| !taken.contains(code));
     let id = FrameId {
         response: false,
         kind: Fc::COMMAND,
-        code: fc_generated::GetRobotSnRequest::CODE,
+        code: codes.next().expect("a free code"),
         id: 1,
+    };
+    let envelope = model.envelope.request.iter();
+    let envelope = envelope.map(|it| (it.wire.clone(), model::Value::from(&it.example)));
+    let envelope = model::Value::Object(envelope.collect()).to_string();
+    let beside = match envelope.strip_suffix('}').expect("an object") {
+        "{" => "{\"value\":".to_owned(),
+        some => format!("{some},\"value\":"),
     };
     let frames = files.iter().flat_map(|file| {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let text = fs::read(file).unwrap();
-        let wrapped = [br#"{"cmdTime":1,"value":"#, &*text, b"}"].concat();
+        let wrapped = [beside.as_bytes(), &*text, b"}"].concat();
         [text, wrapped].map(|body| {
             let mut frame = Vec::new();
             let encoded = Encoder::<Fc>::new().bytes(&mut frame, id, &body);
