@@ -111,7 +111,9 @@ class Programs(AsyncCase):
             process = await start([*program(language, "robot"), *ports])
             self.addCleanup(end, process)
             self.assertEqual(await calling, fc.GetFloorsResponse.example())
-            self.assertEqual(client.state, rt.Connected(2))
+            # A connection to a robot that is still starting may be lost once more.
+            self.assertIsInstance(client.state, rt.Connected)
+            self.assertGreaterEqual(client.state.connects, 2)
         process.send_signal(signal.SIGTERM)
         self.assertEqual((await outcome(process))[0], 0)
 
