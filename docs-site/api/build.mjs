@@ -2,7 +2,7 @@
 // A word on the command line chooses a language.
 
 import { spawnSync } from 'node:child_process'
-import { cpSync, existsSync, mkdirSync, rmSync } from 'node:fs'
+import { cpSync, mkdirSync, rmSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import path from 'node:path'
 import { faults } from './doxygen.mjs'
@@ -28,9 +28,6 @@ const LANGUAGES = {
     cpSync(path.join(target, 'doc'), folder, { recursive: true })
   },
   typescript(folder) {
-    const stub = path.join(root, 'stubs/typescript')
-    // Its sources name the types of Node.js.
-    if (!existsSync(path.join(stub, 'node_modules'))) run('npm', ['ci', '--no-audit', '--no-fund'], { cwd: stub })
     run(path.join(site, 'node_modules/.bin/typedoc'), ['--options', path.join(here, 'typedoc.json'), '--out', folder])
   },
   python(folder) {
