@@ -8,7 +8,7 @@
 // Tests under tests/site need a built site, and a build takes long. So breaks that name different
 // tests share a build; `--alone` gives each its own. `--green` takes it that all tests have just
 // passed on the whole site, and does not run them there once more. A word on the command line chooses
-// the breaks whose names have it.
+// the breaks whose names have it. `--check` only looks whether all breaks can be carried out.
 
 import { spawn } from 'node:child_process'
 import { cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs'
@@ -22,6 +22,12 @@ const alone = process.argv.includes('--alone')
 const green = process.argv.includes('--green')
 const KEYS = ['name', 'file', 'find', 'replace', 'test', 'pattern', 'says']
 
+/** Whether a pattern fits the title of a test. A title that is made at run time fits every pattern. */
+function fits(pattern, file) {
+  const titles = readFileSync(path.join(site, file), 'utf8').matchAll(/\btest\((['`])(.*?)\1,/g)
+  return [...titles].some(([, , title]) => title.includes('${') || new RegExp(pattern).test(title))
+}
+
 /** What keeps an entry from being carried out. */
 function slip(entry) {
   const strange = Object.keys(entry).filter((key) => !KEYS.includes(key))
@@ -30,6 +36,7 @@ function slip(entry) {
   if (lacks.length > 0) return `lacks ${lacks.join(', ')}`
   if (!existsSync(path.join(site, entry.file))) return `there is no ${entry.file}`
   if (!existsSync(path.join(site, entry.test))) return `there is no ${entry.test}`
+  if (entry.pattern && !fits(entry.pattern, entry.test)) return `no test of ${entry.test} matches ${entry.pattern}`
   const times = readFileSync(path.join(site, entry.file), 'utf8').split(entry.find).length - 1
   return times === 1 ? null : `\`find\` stands ${times} times in ${entry.file}, and must stand there once`
 }
@@ -45,6 +52,7 @@ if (slips.length > 0) {
   for (const [name, what] of slips) console.error(`${name}: ${what}`)
   process.exit(1)
 }
+if (process.argv.includes('--check')) process.exit(0)
 const breaks = all.filter(({ name }) => words.every((word) => name.includes(word)))
 
 const built = ({ test }) => test.startsWith('tests/site/')
