@@ -285,8 +285,11 @@ class Robot {
     } else if (step.contains("finish")) {
       const json& said = step["finish"];
       const std::uint64_t handler = at_work_.at(said.at("handler_of"));
-      fc_runtime::Handled handled(fc_runtime::Refusal(kResults.at(said.at("result")), "so"));
-      if (said["result"] == "success") handled = std::string(R"({"resultCode":1001,"text":""})");
+      fc_runtime::Handled handled = fc_runtime::handler_failed(protocol());
+      if (!said.contains("fails")) {
+        handled = fc_runtime::Refusal(kResults.at(said.at("result")), "so");
+        if (said["result"] == "success") handled = std::string(R"({"resultCode":1001,"text":""})");
+      }
       core_.finish(handler, handled, now);
     } else if (step.contains("shutdown")) {
       core_.shutdown(milliseconds(step["shutdown"].at("grace").get<int>()), now);

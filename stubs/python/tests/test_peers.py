@@ -201,7 +201,11 @@ class Run:
                 self.got.append({"hands_on": self.name_of(event.code, event.id, json.loads(event.data))})
         elif "finish" in step:
             handler = self.handlers.pop(step["finish"]["handler_of"])
-            if not handler.done():
+            if handler.done():
+                pass
+            elif "fails" in step["finish"]:
+                handler.set_exception(ValueError("as the script says"))
+            else:
                 handler.set_result(step["finish"]["result"])
         elif "close" in step:
             self.app.close()

@@ -208,9 +208,10 @@ class Run {
     void receiver.next().then(({ value }) => this.events.push({ hands_on: this.nameOf(value.code, value.id) }))
   }
 
-  finish({ handler_of: name, result }) {
+  finish({ handler_of: name, result, fails }) {
     const { resolve, reject } = this.handlers.get(name)
-    if (result === 'success') resolve()
+    if (fails) reject(new Error('as the script says'))
+    else if (result === 'success') resolve()
     else reject(new Refusal(results[result].code, 'as the script says'))
   }
 

@@ -9,14 +9,19 @@ use std::collections::HashMap;
 use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 
-/// A handler at work: the code and id of its command, and by what it is ended.
-type AtWork = (u16, u32, oneshot::Sender<Outcome>);
+/// The result of a handler, or its panic.
+type End = Result<Outcome, Panic>;
+
+struct Panic;
+
+/// A handler at work: the code and id of its command, and the sender that ends it.
+type AtWork = (u16, u32, oneshot::Sender<End>);
 
 pub struct Robot {
     server: net::Robot,
     wire: Wire,
     begun: Results<AtWork>,
-    handlers: HashMap<String, oneshot::Sender<Outcome>>,
+    handlers: HashMap<String, oneshot::Sender<End>>,
     /// By the reports' numbers.
     results: Results<(usize, &'static str)>,
     over: Results<()>,
@@ -61,7 +66,12 @@ impl Peer for Robot {
                 let handler = self.handlers.remove(&finish.handler_of);
                 let handler = handler.ok_or("there is no such handler")?;
                 // It may have been dropped meanwhile.
-                let _ = handler.send(finish.result);
+                let end = match (finish.result, finish.fails) {
+                    (Some(result), false) => Ok(result),
+                    (None, true) => Err(Panic),
+                    _ => return Err("a handler has a result or fails".to_owned()),
+                };
+                let _ = handler.send(end);
             }
             Action::Shutdown(shutdown) => {
                 let (handle, over) = (self.server.handle.clone(), self.over.sender.clone());
@@ -106,8 +116,9 @@ fn service(begun: mpsc::UnboundedSender<AtWork>) -> impl Service<Toy> {
             let _ = work.send((code, id, handler));
             async move {
                 match ended.await {
-                    Ok(Outcome::Success) => Ok(()),
-                    Ok(other) => Err(Refusal::new(result_code(other), "as the script says")),
+                    Ok(Ok(Outcome::Success)) => Ok(()),
+                    Ok(Ok(other)) => Err(Refusal::new(result_code(other), "as the script says")),
+                    Ok(Err(Panic)) => panic!("as the script says"),
                     Err(_) => std::future::pending().await,
                 }
             }

@@ -313,7 +313,10 @@ pub struct Lose {
 #[serde(deny_unknown_fields)]
 pub struct Finish {
     pub handler_of: String,
-    pub result: Outcome,
+    pub result: Option<Outcome>,
+    /// Without a result, the handler panics.
+    #[serde(default)]
+    pub fails: bool,
 }
 
 #[derive(Debug, Deserialize)]

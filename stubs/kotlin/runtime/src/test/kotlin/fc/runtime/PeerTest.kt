@@ -253,7 +253,12 @@ private class RobotRun(given: Tree) : PeerRun() {
             "report" -> push(said)
             "lose" -> wire!!.also { wire = null }.link.lose()
             "reconnect" -> expect(true, core.serve(connect(), null))
-            "finish" -> handlers.remove(said["handler_of"].text)!!.complete(OUTCOMES.indexOf(said["result"].text).toLong())
+            "finish" -> {
+                val handler = handlers.remove(said["handler_of"].text)!!
+                val result = said.find("result")
+                if (result != null) handler.complete(OUTCOMES.indexOf(result.text).toLong())
+                else handler.completeExceptionally(IllegalStateException("as the script says"))
+            }
             "shutdown" -> scope.launch(start = CoroutineStart.UNDISPATCHED) {
                 robot.shutdown(said["grace"].long, MILLISECONDS)
                 got.add("over")
