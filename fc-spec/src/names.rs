@@ -55,6 +55,14 @@ pub const fn is_hidden(character: char) -> bool {
     )
 }
 
+/// True for text with a control or hidden character. Most text is decided by its bytes.
+#[must_use]
+pub fn has_unprintable(text: &str) -> bool {
+    // First bytes of all such characters, and of some others.
+    let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xD8 | 0xE2 | 0xEF | 0xF3);
+    text.bytes().any(suspect) && text.contains(|c: char| c.is_control() || is_hidden(c))
+}
+
 /// True for one line of visible characters.
 pub(crate) fn is_line(word: &str) -> bool {
     !word.contains(|c| matches!(c, '\n' | '\t') || is_hidden(c))

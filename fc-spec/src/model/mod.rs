@@ -27,7 +27,7 @@ mod value;
 mod waiver;
 mod written;
 
-pub use crate::names::is_hidden;
+pub use crate::names::{has_unprintable, is_hidden};
 pub use crate::vocabulary::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
     EnvelopeRole, Fact, FloatKind, HeaderQuirk, HeaderRole, Impact, IntKind, JsonRule, Kind,

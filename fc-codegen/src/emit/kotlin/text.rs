@@ -6,7 +6,8 @@ use crate::emit::stub::docs::escape_links;
 use crate::emit::stub::style::{Comment, Style};
 use crate::surface::package::Item;
 use fc_spec::model::{
-    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm, is_hidden,
+    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm, has_unprintable,
+    is_hidden,
 };
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -79,7 +80,7 @@ pub fn scalar(wire: &Scalar) -> String {
 /// A text as a string literal, raw where that spares escapes.
 pub fn literal(text: &str) -> String {
     let needs_escape = |c: char| c.is_control() || is_hidden(c);
-    let is_plain = !text.contains(needs_escape) && !text.contains('$');
+    let is_plain = !has_unprintable(text) && !text.contains('$');
     if is_plain && text.contains(['"', '\\']) && !text.contains("\"\"\"") && !text.ends_with('"') {
         return format!("\"\"\"{text}\"\"\"");
     }

@@ -5,7 +5,7 @@
 //! Markdown, `|` and a line break the next cell. `VitePress` also obeys `<!--@include: …-->` in front matter and code.
 //! Characters that do not show are spelled as `\u202e`.
 
-use fc_spec::model::is_hidden;
+use fc_spec::model::{has_unprintable, is_hidden};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -60,7 +60,7 @@ pub(super) fn write(source: &str, place: Place<'_>) -> String {
 
 /// A text with every character that does not show, or turns the direction of others, spelled as JSON spells it.
 fn visible(source: &str) -> Cow<'_, str> {
-    if !source.contains(is_hidden) {
+    if !has_unprintable(source) {
         return source.into();
     }
     let mut out = String::with_capacity(source.len());

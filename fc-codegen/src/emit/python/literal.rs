@@ -4,7 +4,7 @@ use super::source::Code;
 use crate::emit::stub::digits::grouped;
 use crate::surface::expr::{Expr, Record};
 use crate::surface::package::Item;
-use fc_spec::model::{Number, Scalar, is_hidden};
+use fc_spec::model::{Number, Scalar, has_unprintable, is_hidden};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -12,6 +12,9 @@ use std::fmt::Write as _;
 pub fn literal(text: &str) -> String {
     let count = |quote| text.matches(quote).count();
     let quote = if count('"') > count('\'') { '\'' } else { '"' };
+    if !has_unprintable(text) && !text.contains(['\\', quote]) {
+        return format!("{quote}{text}{quote}");
+    }
     let mut out = String::with_capacity(text.len() + 2);
     out.push(quote);
     for character in text.chars() {

@@ -1,7 +1,7 @@
 //! Prose of the spec as documentation comments that compilers and documentation tools accept as they are.
 
 use super::style::Comment;
-use fc_spec::model::{Text, is_hidden};
+use fc_spec::model::{Text, has_unprintable, is_hidden};
 use std::borrow::Cow;
 
 /// Paragraphs of a documentation comment, in the spec's own Markdown.
@@ -201,12 +201,10 @@ pub fn columns_of(text: &str) -> usize {
 
 /// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
 fn clean(line: &str) -> Cow<'_, str> {
-    let unclean = |c: char| c.is_control() || is_hidden(c);
-    // First bytes of what is unclean and of some that is not.
-    let suspect = |byte| matches!(byte, 0..=0x1F | 0x7F | 0xC2 | 0xD8 | 0xE2 | 0xEF | 0xF3);
-    if !line.bytes().any(suspect) || !line.contains(unclean) {
+    if !has_unprintable(line) {
         return Cow::Borrowed(line);
     }
+    let unclean = |c: char| c.is_control() || is_hidden(c);
     let line = line.replace('\t', "    ");
     Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
 }
