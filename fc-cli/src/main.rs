@@ -86,7 +86,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Man(options) => shell::man(options),
         Command::Git(options) => git::run(&args.place, options),
         Command::GitDiff(options) => git::diff::run(&args.place, options),
-        Command::Schema(options) => schema::run(options),
+        Command::Schema(options) => schema::run(&args.place, options),
         Command::HelpPage(_) => help::page(),
     }
 }

@@ -121,6 +121,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             code: options.code,
             started_by: options.started_by.as_deref(),
             lang: lang(),
+            texts: spec.texts(),
         },
     )?;
     let after = spec.with(&new.path, &new.text);

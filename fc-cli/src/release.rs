@@ -128,10 +128,16 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
 
     let title = format!("{number} ({today})");
-    let sections = CHANGELOGS.map(|(lang, _)| match &findings {
-        Some(findings) => section(&title, findings, &change.agreed, lang),
-        None => first_section(&title, &change.agreed, lang),
+    let languages = CHANGELOGS.into_iter();
+    let languages = languages.filter(|(lang, _)| spec.texts().include(*lang));
+    let sections = languages.map(|(lang, file)| {
+        let section = match &findings {
+            Some(findings) => section(&title, findings, &change.agreed, lang),
+            None => first_section(&title, &change.agreed, lang),
+        };
+        (lang, file, section)
     });
+    let sections: Vec<_> = sections.collect();
     let mut text = String::new();
     if options.dry_run {
         // Writing to a String cannot fail.
@@ -143,13 +149,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         for (path, diff) in &change.diffs {
             let _ = writeln!(text, "\n{path}\n{}", print::diff(diff).trim_end());
         }
-        for section in sections {
+        for (.., section) in &sections {
             let _ = write!(text, "\n{section}");
         }
         print::result(&text)?;
         return Ok(Status::Fine);
     }
-    let mut written = write(&project, &shelf, &change.released, number, sections)?;
+    let mut written = write(&project, &shelf, &change.released, number, &sections)?;
     for ((_, before), (_, file)) in spec.sources.iter().zip(change.sources.iter()) {
         if file.text != before.text {
             replace_spec_file(&project.root, &file.path, &file.text)?;
@@ -280,12 +286,12 @@ fn write(
     shelf: &Shelf,
     model: &Model,
     number: &Number,
-    sections: [String; 2],
+    sections: &[(Lang, &str, String)],
 ) -> Result<Vec<String>, Failure> {
     let path = slashed(&shelf.file(&file(number)));
     replace_spec_file(&project.root, &path, &frozen(model))?;
     let mut written = vec![path];
-    for ((lang, name), section) in CHANGELOGS.into_iter().zip(sections) {
+    for (lang, name, section) in sections {
         let path = slashed(&shelf.file(&format!("{DIRECTORY}/{name}")));
         let disk = project.root.join(&path);
         let before = if is_there(&disk) {
@@ -293,7 +299,7 @@ fn write(
         } else {
             None
         };
-        let text = with_section(before.as_deref(), &section, lang);
+        let text = with_section(before.as_deref(), section, *lang);
         replace_spec_file(&project.root, &path, &text)?;
         written.push(path);
     }

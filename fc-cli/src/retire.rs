@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fc_codegen::output::replace_spec_file;
-use fc_spec::model::Text;
+use fc_spec::model::{Lang, Text};
 use fc_spec::retire::retire;
 
 use crate::help::{Help, Part};
@@ -23,9 +23,9 @@ pub struct Options {
     )]
     name: String,
     #[arg(long, value_name = "TEXT", help = both("理由，中文", "Reason in Chinese"))]
-    zh: String,
+    zh: Option<String>,
     #[arg(long, value_name = "TEXT", help = both("理由，英文", "Reason in English"))]
-    en: String,
+    en: Option<String>,
     #[arg(
         long,
         help = both("显示修改，什么也不写", "Show the changes and write nothing")
@@ -68,9 +68,21 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec.show_faults()?;
         return Ok(spec.status());
     };
+    for (lang, option, reason) in [
+        (Lang::Zh, "--zh", &options.zh),
+        (Lang::En, "--en", &options.en),
+    ] {
+        if reason.is_none() && spec.texts().include(lang) {
+            return Err(said!(
+                "缺少 `{option}`：`fc.yaml` 的 `languages` 要求用这种语言写理由",
+                "`{option}` is missing: `languages` in `fc.yaml` requires a reason in this language"
+            )
+            .into());
+        }
+    }
     let why = Text {
-        zh: options.zh.clone(),
-        en: options.en.clone(),
+        zh: options.zh.clone().unwrap_or_default(),
+        en: options.en.clone().unwrap_or_default(),
     };
     let retired = retire(model, &spec.sources, &options.name, &why)?;
     let after = spec.instead(retired.sources);

@@ -1,11 +1,14 @@
 //! `fcproto schema`.
 
 use clap::ValueEnum;
+use fc_spec::model::Languages;
 
 use crate::help::{Help, Part};
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
+use crate::place::Place;
 use crate::print;
+use crate::project::Project;
 
 /// Options of `fcproto schema`.
 #[derive(Debug, clap::Args)]
@@ -49,9 +52,13 @@ enum Of {
     Dump,
 }
 
-pub fn run(options: &Options) -> Result<Status, Failure> {
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     print::result(&match options.of {
-        Of::Spec => fc_spec::schema::schema(),
+        Of::Spec => {
+            // Without a project, texts are in both languages.
+            let project = Project::find(place).ok();
+            fc_spec::schema::schema(project.map_or(Languages::All, |it| it.targets.texts))
+        }
         Of::Dump => fc_spec::schema::dump(),
     })?;
     Ok(Status::Fine)

@@ -199,7 +199,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let mut diffs = String::new();
     let mut ids = Vec::new();
     for said in said {
-        let settled = settle(&spec.sources, &said)?;
+        let settled = settle(&spec.sources, spec.texts(), &said)?;
         let after = spec.with(&settled.path, &settled.text);
         if after.model.is_none() {
             let (id, objection) = (&settled.id, after.objection());

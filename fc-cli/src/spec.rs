@@ -1,9 +1,8 @@
 //! Reading the spec and showing its faults.
 
-use fc_codegen::check::check;
-use fc_codegen::surface::language::Language;
+use fc_codegen::check::{Requirements, check};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
-use fc_spec::model::Model;
+use fc_spec::model::{Languages, Model};
 use fc_spec::syntax::{Sources, read_dir};
 
 use crate::lang::{both, lang, said};
@@ -21,8 +20,8 @@ pub struct Spec {
     pub faults: Faults,
     /// What it means, unless there is an error in it.
     pub model: Option<Model>,
-    /// In which its names have to be free.
-    languages: Vec<&'static Language>,
+    /// Those of its project.
+    requirements: Requirements,
 }
 
 impl Spec {
@@ -36,17 +35,22 @@ impl Spec {
         progress::doing(both("正在检查规范", "checking the spec"));
         let mut faults = Faults::new();
         let sources = read_dir(&project.root, &project.spec, &mut faults);
-        Self::of(sources, faults, project.targets.languages())
+        Self::of(sources, faults, project.targets.requirements())
     }
 
-    fn of(sources: Sources, mut faults: Faults, languages: Vec<&'static Language>) -> Self {
-        let model = check(&sources, &languages, &mut faults).model();
+    fn of(sources: Sources, mut faults: Faults, requirements: Requirements) -> Self {
+        let model = check(&sources, &requirements, &mut faults).model();
         Self {
             sources,
             faults,
             model,
-            languages,
+            requirements,
         }
+    }
+
+    /// The languages in which each text is required.
+    pub fn texts(&self) -> Languages {
+        self.requirements.texts
     }
 
     /// The spec as it would be with another text in one of its files.
@@ -60,7 +64,7 @@ impl Spec {
 
     /// The spec as it would be with other files.
     pub fn instead(&self, sources: Sources) -> Self {
-        Self::of(sources, Faults::new(), self.languages.clone())
+        Self::of(sources, Faults::new(), self.requirements.clone())
     }
 
     /// Why a spec that is not on disk yet does not get there: its errors without their places.

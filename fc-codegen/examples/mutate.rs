@@ -15,7 +15,7 @@ use fc_codegen::product::Artifact;
 use fc_codegen::target::Targets;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::Trees;
-use fc_spec::model::Model;
+use fc_spec::model::{Languages, Model};
 use fc_spec::syntax::{self, FileId, Node, NodeKind, SourceFile, Style};
 use std::collections::HashMap;
 use std::path::Path;
@@ -75,7 +75,7 @@ fn main() -> ExitCode {
     let mut faults = Faults::default();
     let sources = syntax::read_dir(Path::new("."), Path::new("spec"), &mut faults);
     let trees = Trees::new(&sources);
-    let Some(model) = trees.load(&mut faults).model() else {
+    let Some(model) = trees.load(Languages::All, &mut faults).model() else {
         eprintln!("the spec has faults; run `fcproto check`");
         return ExitCode::from(2);
     };
@@ -170,7 +170,12 @@ fn try_one(mutation: &Mutation, baseline: &Baseline) -> Outcome {
         sources.replace(file);
     }
     let mut faults = Faults::default();
-    match baseline.trees.with(&sources).load(&mut faults).model() {
+    match baseline
+        .trees
+        .with(&sources)
+        .load(Languages::All, &mut faults)
+        .model()
+    {
         None => Outcome::Refused,
         Some(model) if baseline.differs(&model) => Outcome::Stale,
         Some(_) => Outcome::Dead,

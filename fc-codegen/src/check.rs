@@ -4,7 +4,7 @@ use crate::surface::language::Language;
 use crate::surface::package::clashes;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Partial, Trees};
-use fc_spec::model::Model;
+use fc_spec::model::{Languages, Model};
 use fc_spec::syntax::Sources;
 
 /// A spec that has been checked.
@@ -26,19 +26,27 @@ impl Checked {
     }
 }
 
-/// Reads a spec and adds its faults to those of reading its files, all in the order of their places. Its names have to
-/// be free in each of the `languages`.
-pub fn check(sources: &Sources, languages: &[&Language], faults: &mut Faults) -> Checked {
-    check_trees(&Trees::new(sources), languages, faults)
+/// The requirements that a project has on its spec.
+#[derive(Clone, Debug)]
+pub struct Requirements {
+    /// Languages in which each text is required.
+    pub texts: Languages,
+    /// Programming languages in which each name has to be free.
+    pub names: Vec<&'static Language>,
+}
+
+/// Reads a spec and adds its faults to those of reading its files, all in the order of their places.
+pub fn check(sources: &Sources, requirements: &Requirements, faults: &mut Faults) -> Checked {
+    check_trees(&Trees::new(sources), requirements, faults)
 }
 
 /// The same of files that have been parsed.
-pub fn check_trees(trees: &Trees, languages: &[&Language], faults: &mut Faults) -> Checked {
-    let loaded = trees.load(faults);
+pub fn check_trees(trees: &Trees, requirements: &Requirements, faults: &mut Faults) -> Checked {
+    let loaded = trees.load(requirements.texts, faults);
     let is_whole = loaded.whole;
     let read = loaded.into_model();
     let clashes = match &read {
-        Ok(model) => clashes(model, languages),
+        Ok(model) => clashes(model, &requirements.names),
         Err(_) => Vec::new(),
     };
     if !clashes.is_empty() {

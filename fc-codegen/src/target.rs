@@ -2,6 +2,7 @@
 //!
 //! ```yaml
 //! spec: spec
+//! languages: [zh, en]
 //! targets:
 //!   rust: { out: fc-generated, crate: fc_generated }
 //!   markdown: { out: docs-site, languages: [zh, en] }
@@ -10,16 +11,17 @@
 //!
 //! A target with the name of a product is made here; one with a `plugin` is made by that program, which gets what
 //! `fcproto inspect` prints and answers with files ([`Plugin`]). A project without the file, or without `targets` in it, has every product at its
-//! usual place. `lint` is read by `fc_spec::lint`. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
+//! usual place. Each text of the spec is required in the `languages`, both by default. `lint` is read by `fc_spec::lint`. `newtypes: true` on `rust` or `python` gives the ids of each entity a type of their own, in both. A target with an `audience` is
 //! made of what that audience has ([`part`]). A plugin's `names: kotlin` says that the names of the spec have to be free in
 //! that language.
 
 pub use crate::plugin::Plugin;
 
+use crate::check::Requirements;
 use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
 use crate::product::{Artifact, Product};
 use crate::surface::language as surface;
-use fc_spec::model::{Model, ProjectionError, Text};
+use fc_spec::model::{Lang, Languages, Model, ProjectionError, Text};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_yaml::Value as Options;
@@ -41,6 +43,8 @@ const SPEC: &str = "spec";
 pub struct Targets {
     /// Directory of the spec, from the root.
     pub spec: String,
+    /// Languages in which each text of the spec is required.
+    pub texts: Languages,
     products: BTreeMap<Product, Settings>,
     plugins: Vec<Plugin>,
     /// Whether the ids of each entity have a type of their own in the Rust package. The docs show them, also where
@@ -55,25 +59,11 @@ pub struct Targets {
 #[derive(Clone, Debug)]
 struct Settings {
     out: String,
-    languages: Vec<Language>,
+    languages: Vec<Lang>,
     /// What the Rust package calls itself.
     krate: String,
     /// Whose part of the protocol it holds; all of it where nobody is named.
     audience: Option<String>,
-}
-
-/// A language of the docs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Language {
-    /// Chinese.
-    Zh,
-    /// English.
-    En,
-}
-
-impl Language {
-    const ALL: [Self; 2] = [Self::Zh, Self::En];
 }
 
 /// Why `fc.yaml` cannot be used.
@@ -91,6 +81,9 @@ pub enum TargetError {
         /// The name.
         name: String,
     },
+    /// A list of languages is empty.
+    #[error("`{FILE}`: `languages` needs at least one of `zh` and `en`")]
+    NoLanguage,
     /// A key that means nothing in this target.
     #[error("`{FILE}`: the target `{name}` cannot have `{key}`")]
     Misplaced {
@@ -152,6 +145,7 @@ impl TargetError {
                 "`{FILE}`：没有产物 `{name}`；产物有：{}。其他名称的目标需要 `plugin`",
                 products()
             ),
+            Self::NoLanguage => format!("`{FILE}`：`languages` 至少需要 `zh` 和 `en` 中的一个"),
             Self::Misplaced { name, key } => {
                 format!("`{FILE}`：目标 `{name}` 不能有 `{key}`")
             }
@@ -189,6 +183,7 @@ fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
 struct Written {
     #[serde(default = "usual_spec")]
     spec: String,
+    languages: Option<Vec<Lang>>,
     targets: Option<BTreeMap<String, WrittenTarget>>,
     /// Read by `fc_spec::lint`, which tells of faults in it with their places.
     #[serde(default, rename = "lint")]
@@ -199,7 +194,7 @@ struct Written {
 #[serde(deny_unknown_fields, default)]
 struct WrittenTarget {
     out: Option<String>,
-    languages: Option<Vec<Language>>,
+    languages: Option<Vec<Lang>>,
     #[serde(rename = "crate")]
     krate: Option<String>,
     newtypes: Option<bool>,
@@ -223,10 +218,11 @@ impl Default for Targets {
 }
 
 impl Settings {
-    fn usual(product: Product) -> Self {
+    fn usual(product: Product, texts: Languages) -> Self {
+        let languages = Lang::ALL.into_iter();
         Self {
             out: product.usual_place().to_owned(),
-            languages: Language::ALL.to_vec(),
+            languages: languages.filter(|it| texts.include(*it)).collect(),
             krate: CRATE.to_owned(),
             audience: None,
         }
@@ -236,11 +232,16 @@ impl Settings {
 impl Targets {
     /// These products at their usual places.
     pub fn of(products: impl IntoIterator<Item = Product>) -> Self {
+        Self::in_languages(Languages::All, products)
+    }
+
+    fn in_languages(texts: Languages, products: impl IntoIterator<Item = Product>) -> Self {
         let products = products.into_iter();
         Self {
             spec: usual_spec(),
+            texts,
             products: products
-                .map(|product| (product, Settings::usual(product)))
+                .map(|product| (product, Settings::usual(product, texts)))
                 .collect(),
             plugins: Vec::new(),
             newtypes: false,
@@ -255,24 +256,27 @@ impl Targets {
     /// [`TargetError`] with the place in the file, or the target and the key.
     pub fn read(yaml: &str) -> Result<Self, TargetError> {
         let written: Written = serde_yaml::from_str(yaml)?;
-        let Some(written_targets) = written.targets else {
-            return Ok(Self {
-                spec: written.spec,
-                ..Self::default()
-            });
+        let texts = match written.languages.as_deref() {
+            Some([]) => return Err(TargetError::NoLanguage),
+            Some([first, others @ ..]) if others.iter().all(|other| other == first) => {
+                Languages::Only(*first)
+            }
+            Some(_) | None => Languages::All,
+        };
+        let usual = match written.targets {
+            None => Product::ALL.as_slice(),
+            Some(_) => &[],
         };
         let mut targets = Self {
             spec: written.spec,
-            products: BTreeMap::new(),
-            plugins: Vec::new(),
-            newtypes: false,
-            others: BTreeMap::new(),
+            ..Self::in_languages(texts, usual.iter().copied())
         };
+        let written_targets = written.targets.unwrap_or_default();
         for (name, target) in written_targets {
             match Product::named(&name) {
                 Some(product) => {
                     targets.newtypes |= target.newtypes == Some(true);
-                    let settings = target.settings(product, name)?;
+                    let settings = target.settings(product, name, texts)?;
                     targets.products.insert(product, settings);
                 }
                 None => targets.plugins.push(target.into_plugin(name)?),
@@ -323,6 +327,15 @@ impl Targets {
         &self.plugins
     }
 
+    /// Returns the requirements that the project has on its spec.
+    #[must_use]
+    pub fn requirements(&self) -> Requirements {
+        Requirements {
+            texts: self.texts,
+            names: self.languages(),
+        }
+    }
+
     /// The programming languages in which the names of the spec have to be free.
     #[must_use]
     pub fn languages(&self) -> Vec<&'static surface::Language> {
@@ -359,21 +372,21 @@ impl Targets {
 
     /// Whether the docs are made in this language.
     #[must_use]
-    pub fn speaks(&self, language: Language) -> bool {
+    pub fn speaks(&self, language: Lang) -> bool {
         let settings = self.products.get(&Product::Markdown);
         settings.is_none_or(|settings| settings.languages.contains(&language))
     }
 
     /// The folders of the docs that the project has, one for each language.
     #[must_use]
-    pub fn docs(&self) -> Vec<(Language, String)> {
+    pub fn docs(&self) -> Vec<(Lang, String)> {
         let Some(out) = self.place(Product::Markdown) else {
             return Vec::new();
         };
-        let spoken = Language::ALL.into_iter().filter(|it| self.speaks(*it));
+        let spoken = Lang::ALL.into_iter().filter(|it| self.speaks(*it));
         let folder = |language| match language {
-            Language::Zh => out.to_owned(),
-            Language::En => format!("{out}/en"),
+            Lang::Zh => out.to_owned(),
+            Lang::En => format!("{out}/en"),
         };
         spoken
             .map(|language| (language, folder(language)))
@@ -480,7 +493,12 @@ pub(crate) fn below(directory: &str, path: &str) -> String {
 }
 
 impl WrittenTarget {
-    fn settings(self, product: Product, name: String) -> Result<Settings, TargetError> {
+    fn settings(
+        self,
+        product: Product,
+        name: String,
+        texts: Languages,
+    ) -> Result<Settings, TargetError> {
         let misplaced = [
             ("plugin", self.plugin.is_some()),
             ("names", self.names.is_some()),
@@ -505,7 +523,10 @@ impl WrittenTarget {
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
         }
-        let usual = Settings::usual(product);
+        if self.languages.as_ref().is_some_and(Vec::is_empty) {
+            return Err(TargetError::NoLanguage);
+        }
+        let usual = Settings::usual(product, texts);
         Ok(Settings {
             out: self.out.unwrap_or(usual.out),
             languages: self.languages.unwrap_or(usual.languages),

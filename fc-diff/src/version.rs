@@ -2,9 +2,8 @@
 
 use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Places, load, places};
-use fc_spec::model::Text;
-use fc_spec::model::{Dump, DumpError, Model};
+use fc_spec::load::{Places, Trees};
+use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
 use fc_spec::syntax::{Sources, read_dir};
 use fc_spec::text;
 use std::fmt;
@@ -185,11 +184,13 @@ impl Version {
     /// [`VersionError::Faulty`].
     pub fn of(name: &str, sources: Sources, mut faults: Faults) -> Result<Self, VersionError> {
         let name = name.to_owned();
-        match load(&sources, &mut faults).model() {
+        // The settings of another version are unknown.
+        let trees = Trees::new(&sources);
+        match trees.load(Languages::Any, &mut faults).model() {
             Some(model) => Ok(Self {
                 name,
                 model,
-                places: places(&sources),
+                places: trees.places(),
                 sources,
             }),
             None => Err(VersionError::Faulty {

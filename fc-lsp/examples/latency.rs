@@ -112,7 +112,7 @@ fn median(mut once: impl FnMut() -> Duration) -> Duration {
 /// Checks the spec as `fcproto check` does; the number of its operations.
 fn checked(sources: &Sources) -> usize {
     let mut faults = Faults::new();
-    let checked = check(sources, &Targets::default().languages(), &mut faults);
+    let checked = check(sources, &Targets::default().requirements(), &mut faults);
     let model = checked.model();
     let model = model.unwrap_or_else(|| panic!("the spec has errors: {:#?}", faults.iter().next()));
     model.operations.len()

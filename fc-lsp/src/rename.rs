@@ -83,7 +83,11 @@ fn worse(snapshot: &Snapshot, changes: &[(Span, String)]) -> BTreeSet<String> {
     }
     let trees = snapshot.trees().with(&sources);
     let mut faults = Faults::new();
-    check_trees(&trees, &snapshot.project.targets.languages(), &mut faults);
+    check_trees(
+        &trees,
+        &snapshot.project.targets.requirements(),
+        &mut faults,
+    );
     // By code: a fault that is there already may only call the thing by its new name.
     let errors = |faults: &Faults| {
         let lang = snapshot.settings.lang;

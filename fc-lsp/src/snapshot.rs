@@ -59,8 +59,8 @@ impl State {
     pub fn analysis(&self) -> &Analysis {
         self.analysis.get_or_init(|| {
             let mut faults = self.unread.clone();
-            let languages = self.project.targets.languages();
-            let checked = check_trees(&self.trees, &languages, &mut faults);
+            let requirements = self.project.targets.requirements();
+            let checked = check_trees(&self.trees, &requirements, &mut faults);
             if let Ok(model) = &checked.read
                 && !faults.has_errors()
             {

@@ -3,9 +3,9 @@
 
 use crate::diagnostic::{FaultCode, Faults, nearest};
 use crate::format::{Edited, edited};
+use crate::load::Trees;
 use crate::load::grammar::{CODES, FILE, RETIRED, TEXT};
-use crate::load::load;
-use crate::model::{Kind, Model, Text};
+use crate::model::{Kind, Languages, Model, Text};
 use crate::syntax::{Edits, Entry, SourceFile, Sources, Span, Tree, parse, quoted};
 use crate::text;
 use std::fmt;
@@ -181,7 +181,7 @@ impl Rest {
 /// The first thing that nothing uses.
 fn unused(sources: &Sources) -> Option<Span> {
     let mut faults = Faults::new();
-    let _ = load(sources, &mut faults);
+    let _ = Trees::new(sources).load(Languages::Any, &mut faults);
     let fault = faults.iter().find(|fault| UNUSED.contains(&fault.code))?;
     Some(fault.primary.span)
 }
@@ -237,14 +237,12 @@ pub(crate) fn with_comments(file: &SourceFile, gone: Entry<'_>) -> Span {
 /// With a code among the retired ones. `None` if there is no line for it.
 fn buried(file: &SourceFile, codes: Entry<'_>, code: &str, why: &Text) -> Option<Edits> {
     let one_line = |text: &str| quoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-    let item = format!(
-        "- {{ {}: {code}, {}: {}, {}: {} }}",
-        RETIRED.code.name,
-        TEXT.zh.name,
-        one_line(&why.zh),
-        TEXT.en.name,
-        one_line(&why.en),
-    );
+    let texts = [(TEXT.zh.name, &why.zh), (TEXT.en.name, &why.en)].into_iter();
+    let texts = texts.filter(|(_, text)| !text.is_empty());
+    let texts = texts.map(|(key, text)| format!("{key}: {}", one_line(text)));
+    let code = format!("{}: {code}", RETIRED.code.name);
+    let entries: Vec<_> = std::iter::once(code).chain(texts).collect();
+    let item = format!("- {{ {} }}", entries.join(", "));
     if is_flow(file, codes) {
         return None;
     }

@@ -4,7 +4,7 @@ use crate::diagnostic::Faults;
 use crate::format::edited;
 use crate::load::grammar::FILE;
 use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
-use crate::model::{Kind, Lang, Location, Model, Operation, RangeUse, Text};
+use crate::model::{Kind, Lang, Languages, Location, Model, Operation, RangeUse, Text};
 use crate::syntax::{Edits, Entry, FileId, Node, SourceFile, Sources, Span, parse};
 use crate::text;
 use std::fmt;
@@ -24,6 +24,8 @@ pub struct NewOperation<'a> {
     pub started_by: Option<&'a str>,
     /// Language of its comments.
     pub lang: Lang,
+    /// Languages of its texts.
+    pub texts: Languages,
 }
 
 /// A new operation in its place.
@@ -366,9 +368,18 @@ fn beginning(new: &NewOperation<'_>, code: Option<u16>) -> String {
     let name = new.name;
     let code = code.map_or_else(|| "unassigned".to_owned(), |code| format!("0x{code:04X}"));
     let (zh, en) = (TO_BE_WRITTEN_ZH, TO_BE_WRITTEN_EN);
-    let field = format!("value: {{ type: i32, example: 1, zh: {zh}）, en: {en}) }}");
-    let head =
-        format!("{name}:\n  code: {code}\n  zh: {zh}：做什么）\n  en: {en}, what it does)\n");
+    let mut field = vec!["type: i32".to_owned(), "example: 1".to_owned()];
+    let mut head = vec![format!("{name}:"), format!("code: {code}")];
+    if new.texts.include(Lang::Zh) {
+        field.push(format!("zh: {zh}）"));
+        head.push(format!("zh: {zh}：做什么）"));
+    }
+    if new.texts.include(Lang::En) {
+        field.push(format!("en: {en})"));
+        head.push(format!("en: {en}, what it does)"));
+    }
+    let field = format!("value: {{ {} }}", field.join(", "));
+    let head = head.join("\n  ") + "\n";
     let rest = match new.kind {
         Kind::Report => {
             format!("  source: {{ sections: [] }}\n  body:\n    data:\n      {field}\n")

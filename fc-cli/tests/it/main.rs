@@ -26,6 +26,7 @@ mod init;
 #[cfg(unix)]
 mod inputs;
 mod lang;
+mod languages;
 mod lint;
 mod lsp;
 mod merge;

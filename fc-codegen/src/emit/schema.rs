@@ -5,8 +5,12 @@ use crate::target::Targets;
 use fc_spec::model::Model;
 use fc_spec::schema::schema;
 
-/// The schema, which is the same for every spec.
+/// The schema, which is the same for every spec with the same languages.
 #[must_use]
 pub fn emit(_: &Model, targets: &Targets) -> Vec<Artifact> {
-    vec![targets.artifact(Product::Schema, "fc-spec.schema.json", schema())]
+    vec![targets.artifact(
+        Product::Schema,
+        "fc-spec.schema.json",
+        schema(targets.texts),
+    )]
 }

@@ -125,7 +125,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "target: {}\n",
-            "unknown field `target`, expected one of `spec`, `targets`, `lint`",
+            "unknown field `target`, expected one of `spec`, `languages`, `targets`, `lint`",
         ),
         (
             "targets: { cobol: { out: a } }",
@@ -170,6 +170,14 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         (
             "targets: { markdown: { languages: [fr] } }",
             "unknown variant `fr`, expected `zh` or `en`",
+        ),
+        (
+            "languages: []",
+            "`languages` needs at least one of `zh` and `en`",
+        ),
+        (
+            "targets: { markdown: { languages: [] } }",
+            "`languages` needs at least one of `zh` and `en`",
         ),
     ] {
         let error = Targets::read(yaml).expect_err(yaml).to_string();

@@ -8,8 +8,8 @@ use crate::diagnostic::Faults;
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
     CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
-    JsonRule, Limits, MissingSection, Operation, Protocol, Question, ResultCode, RetiredCode,
-    Store, Table, Term, Text, Transport, TypeDef, Waiver,
+    JsonRule, Languages, Limits, MissingSection, Operation, Protocol, Question, ResultCode,
+    RetiredCode, Store, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::syntax::{Node, Span};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -134,6 +134,8 @@ pub(crate) struct AnswerDraft<'a> {
 /// A whole spec.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Draft<'a> {
+    /// Languages in which each text is required.
+    pub texts: Languages,
     pub protocol: Option<Placed<'a, Protocol>>,
     pub transport: Option<Placed<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,

@@ -7,7 +7,9 @@ use super::grammar::{
     TEXT,
 };
 use super::misread::misread;
-use crate::model::{AnswerKind, BodyState, Confirmation, Fact, Kind, Operation, Text};
+use crate::model::{
+    AnswerKind, BodyState, Confirmation, Fact, Kind, Lang, Languages, Operation, Text,
+};
 use crate::syntax::{Edits, Entry, Node, SourceFile, Sources, Span, quoted};
 
 /// What only the owner can say.
@@ -68,14 +70,17 @@ fn confirmation<'v>(entries: impl IntoIterator<Item = (&'static str, &'v str)>) 
 /// The edits of one answer.
 pub(super) struct Writing<'s> {
     sources: &'s Sources,
+    /// Languages of new texts.
+    texts: Languages,
     word: &'s dyn Word,
     pub edits: Edits,
 }
 
 impl<'s> Writing<'s> {
-    pub fn new(sources: &'s Sources, word: &'s dyn Word) -> Self {
+    pub fn new(sources: &'s Sources, texts: Languages, word: &'s dyn Word) -> Self {
         Self {
             sources,
+            texts,
             word,
             edits: Edits::default(),
         }
@@ -305,10 +310,16 @@ impl<'s> Writing<'s> {
             (ANSWER.about.name, format!("{{ {path}: {meanwhile} }}")),
             (ANSWER.r#as.name, AnswerKind::Question.name().to_owned()),
             (ANSWER.confirmed.name, self.word.confirmed()),
-            (TEXT.zh.name, text(&asked.zh)),
-            (TEXT.en.name, text(&asked.en)),
         ];
-        let entries = entries.map(|(key, value)| format!("{key}: {value}"));
+        let texts = Lang::ALL.into_iter().filter(|it| self.texts.include(*it));
+        let texts = texts.map(|lang| {
+            let key = lang.pick(TEXT.zh.name, TEXT.en.name);
+            (key, text(lang.text(asked)))
+        });
+        let entries = entries.into_iter().chain(texts);
+        let entries: Vec<_> = entries
+            .map(|(key, value)| format!("{key}: {value}"))
+            .collect();
         lines += &indent;
         lines += "  - ";
         lines += &entries.join(&format!("\n{indent}    "));

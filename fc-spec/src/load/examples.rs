@@ -3,7 +3,7 @@
 use super::grammar::{Kind, STATED, Table};
 use super::shape;
 use crate::diagnostic::{Faults, Format, render};
-use crate::model::Lang;
+use crate::model::{Lang, Languages};
 use crate::schema;
 use crate::syntax::{Sources, parse};
 
@@ -19,7 +19,13 @@ fn check(what: &str, kind: &Kind, value: &str) -> Option<String> {
         if let Some(tree) = parse(id, &file.text, &mut faults)
             && let Some(entry) = tree.root().entry("shown")
         {
-            shape::check_kind(kind, entry.value, entry.key.span(), &mut faults);
+            shape::check_kind(
+                kind,
+                entry.value,
+                entry.key.span(),
+                Languages::All,
+                &mut faults,
+            );
         }
     }
     let is_sound = faults.is_empty();

@@ -3,6 +3,7 @@
 use super::grammar::{FIELD_KIND, File, Kind, Table};
 use super::shape;
 use crate::diagnostic::Faults;
+use crate::model::Languages;
 use crate::syntax::Node;
 
 /// What the grammar says of what is in a node.
@@ -21,7 +22,13 @@ pub(crate) enum Inside {
 /// What the grammar says of a file with this root; reports a root that no file can have.
 pub(crate) fn inside(root: Node<'_>, faults: &mut Faults) -> Inside {
     if root.as_mapping().is_none() {
-        shape::check_kind(&Kind::Map(File::TABLE), root, root.span(), faults);
+        shape::check_kind(
+            &Kind::Map(File::TABLE),
+            root,
+            root.span(),
+            Languages::Any,
+            faults,
+        );
         return Inside::Free;
     }
     Inside::Declared(File::TABLE)

@@ -36,6 +36,7 @@ mod trees;
 mod uses;
 
 use crate::diagnostic::Faults;
+use crate::model::Languages;
 use crate::syntax::Sources;
 use draft::Draft;
 
@@ -52,10 +53,10 @@ pub(crate) use inside::{Inside, inside};
 pub(crate) use site::entry_at;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
-/// Reads a spec: what it says, as far as it can be read, and all of its faults.
+/// Reads a spec whose texts are in both languages: what it says, as far as it can be read, and all of its faults.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
-    Trees::new(sources).load(faults)
+    Trees::new(sources).load(Languages::All, faults)
 }
 
 /// Where each thing is written that [`load`] reads. It is asked for apart: few ask, and to remember every place takes as
@@ -68,13 +69,14 @@ pub fn places(sources: &Sources) -> Places {
 /// Reads a spec as a draft, whose places lie in its trees; and whether all of it could be read.
 fn read<T>(
     trees: &Trees,
+    texts: Languages,
     faults: &mut Faults,
     then: impl FnOnce(Draft<'_>, bool, &mut Faults) -> T,
 ) -> T {
     let (parsed, mut whole) = trees.parsed(faults);
-    let sections = section::collect(&parsed, &mut whole, faults);
+    let sections = section::collect(&parsed, texts, &mut whole, faults);
     whole &= !faults.has_lost();
-    let mut draft = lower::lower(&sections, trees.sources());
+    let mut draft = lower::lower(&sections, trees.sources(), texts);
     draft.note_doubtful(faults);
     resolve::resolve(&mut draft);
     draft.questions = questions::questions(&draft, trees.sources());

@@ -14,6 +14,7 @@ use std::collections::{HashMap, HashSet};
 
 /// All of them, the most pressing first.
 pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
+    let writing = || Writing::new(sources, draft.texts, &Silence);
     let mut asked: HashSet<(&str, Fact)> = HashSet::new();
     let mut questions = Vec::new();
     let severities: HashMap<&str, Severity> = draft
@@ -33,7 +34,7 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
             answer.item.kind,
             AnswerKind::Question | AnswerKind::Decision
         ) {
-            let mut question = of_answer(answer, &governed, &severities, sources);
+            let mut question = of_answer(answer, &governed, &severities, writing());
             if question.ids.is_empty() {
                 question.id = format!("{}.{}", place(draft, &question.subject), question.id);
             }
@@ -47,7 +48,8 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
                 && is_doubt(state)
                 && !asked.contains(&(operation.item.name.as_str(), fact))
             {
-                questions.push(of_loss(operation, fact, state, sources));
+                let text = draft.texts.limit(ask(&operation.item, fact, state));
+                questions.push(of_loss(operation, fact, state, text, writing()));
             }
         }
     }
@@ -66,7 +68,7 @@ fn of_answer(
     answer: &AnswerDraft<'_>,
     governed: &[Governed<'_>],
     severities: &HashMap<&str, Severity>,
-    sources: &Sources,
+    mut edit: Writing<'_>,
 ) -> Question {
     let item = &answer.item;
     let facts = governed.iter().map(|governed| match governed.found {
@@ -80,7 +82,6 @@ fn of_answer(
         AnswerKind::Decision => Impact::Decided,
         _ => facts.min().unwrap_or(Impact::Behaviour),
     };
-    let mut edit = Writing::new(sources, &Silence);
     if item.confirmed.is_none() {
         edit.settle_answer(answer, governed);
     }
@@ -110,11 +111,10 @@ fn of_loss(
     operation: &Placed<'_, Operation>,
     fact: Fact,
     state: BodyState,
-    sources: &Sources,
+    text: Text,
+    mut edit: Writing<'_>,
 ) -> Question {
     let item = &operation.item;
-    let text = ask(item, fact, state);
-    let mut edit = Writing::new(sources, &Silence);
     edit.settle_loss(operation, fact, state, &text);
     Question {
         id: format!("{}.{}", item.name, fact.name()),

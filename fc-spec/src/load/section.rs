@@ -4,7 +4,7 @@ use super::draft::Place;
 use super::grammar::{self, FILE, File, GROUP};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::model::Text;
+use crate::model::{Languages, Text};
 use crate::syntax::{self, Entry, Node, Span};
 use crate::text;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
@@ -47,11 +47,12 @@ pub(super) struct Section<'a> {
 /// every spec has is not there, which is the cause of all else that is missing.
 pub(super) fn collect<'a>(
     trees: &'a [Parsed<'_>],
+    texts: Languages,
     whole: &mut bool,
     faults: &mut Faults,
 ) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
-    let shaped: Vec<_> = trees.par_iter().map(shaped).collect();
+    let shaped: Vec<_> = trees.par_iter().map(|tree| shaped(tree, texts)).collect();
     for (found, own) in shaped {
         sections.extend(found);
         faults.append(own);
@@ -69,23 +70,23 @@ pub(super) fn collect<'a>(
 
 /// The sections of one file by itself.
 pub(super) fn of_file<'a>(tree: &'a Parsed<'_>) -> Vec<Section<'a>> {
-    let (mut sections, mut faults) = shaped(tree);
+    let (mut sections, mut faults) = shaped(tree, Languages::Any);
     drop_repeated(&mut sections, &mut faults);
     sections
 }
 
 /// The sections of one file, and what is wrong with their shape.
-fn shaped<'a>(tree: &'a Parsed<'_>) -> (Vec<Section<'a>>, Faults) {
+fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
     tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
-    check_file(tree, &mut faults);
+    check_file(tree, texts, &mut faults);
     let group = GROUP.id.of(FILE.group.of(tree.root()));
     for entry in tree.root().entries() {
         if let Some(key) = File::TABLE.key(entry.name()) {
             let before = (faults.errors(), faults.hidden().len());
             if !(entry.value.is_null() && shape::is_left_behind(File::TABLE, tree.root(), entry)) {
-                shape::check_kind(&key.kind, entry.value, entry.key.span(), &mut faults);
+                shape::check_kind(&key.kind, entry.value, entry.key.span(), texts, &mut faults);
             }
             sections.push(Section {
                 name: key.name,
@@ -108,12 +109,13 @@ fn holds_operations(tree: &Parsed<'_>) -> bool {
     parts.nth(1) == Some("commands")
 }
 
-fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
+fn check_file(tree: &Parsed<'_>, texts: Languages, faults: &mut Faults) {
     let Some(entries) = tree.root().as_mapping() else {
         shape::check_kind(
             &grammar::Kind::Map(File::TABLE),
             tree.root(),
             tree.root().span(),
+            texts,
             faults,
         );
         return;

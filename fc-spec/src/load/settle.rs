@@ -6,7 +6,8 @@ use super::govern::{Found, Governed, governed};
 use crate::diagnostic::{Faults, nearest};
 use crate::format::{Edited, edited};
 use crate::model::{
-    AnswerKind, BodyState, Confirmation, Fact, Location, Operation, Question, Subject, Text,
+    AnswerKind, BodyState, Confirmation, Fact, Languages, Location, Operation, Question, Subject,
+    Text,
 };
 use crate::syntax::{Sources, quoted};
 use crate::text;
@@ -146,15 +147,16 @@ impl fmt::Display for SettleError {
 
 impl std::error::Error for SettleError {}
 
-/// Writes down what the owner says to a question of a spec, and nothing else. The files are not read again: whether the
+/// Writes down what the owner says to a question of a spec, and nothing else. New texts are in the languages `texts`. The files are not read again: whether the
 /// spec is sound with it is for [`load`](super::load) to say.
 ///
 /// # Errors
 ///
 /// [`SettleError`] if there is no such question, or what is said does not answer it.
-pub fn settle(sources: &Sources, said: &Said) -> Result<Settled, SettleError> {
+pub fn settle(sources: &Sources, texts: Languages, said: &Said) -> Result<Settled, SettleError> {
     super::read(
         &super::Trees::new(sources),
+        texts,
         &mut Faults::new(),
         |draft, _, _| settle_in(&draft, sources, said),
     )
@@ -180,7 +182,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
         }
     }
     let word = Spoken(said);
-    let mut writing = Writing::new(sources, &word);
+    let mut writing = Writing::new(sources, draft.texts, &word);
     let mut missing = Vec::new();
     let mut ask_for = |path: &str| {
         if word.value(path).is_none() {

@@ -5,6 +5,7 @@ use super::section::Parsed;
 use super::uses::{Named, Uses};
 use super::{Loaded, check, lower, partial, places, read, section, uses};
 use crate::diagnostic::Faults;
+use crate::model::Languages;
 use crate::syntax::{FileId, SourceFile, Sources, Tree, parse_parts};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::fmt;
@@ -80,10 +81,10 @@ impl Trees {
         Some(file.tree.as_ref()?.over(&file.source.text))
     }
 
-    /// What the spec says, as far as it can be read, and all of its faults.
+    /// What the spec says, as far as it can be read, and all of its faults. Each text has to be in these languages.
     #[must_use]
-    pub fn load(&self, faults: &mut Faults) -> Loaded {
-        read(self, faults, |draft, whole, faults| {
+    pub fn load(&self, texts: Languages, faults: &mut Faults) -> Loaded {
+        read(self, texts, faults, |draft, whole, faults| {
             check::check(&draft, &self.sources, whole, faults);
             partial::build(draft, whole, !faults.has_errors())
         })
@@ -179,7 +180,11 @@ impl File {
         let own = self.own.get_or_init(|| {
             let parsed = self.parsed();
             let sections = parsed.as_ref().map(section::of_file).unwrap_or_default();
-            Arc::new(places::own(&lower::lower(&sections, sources)))
+            Arc::new(places::own(&lower::lower(
+                &sections,
+                sources,
+                Languages::Any,
+            )))
         });
         Arc::clone(own)
     }

@@ -60,7 +60,9 @@ pub use protocol::{
 pub use question::{Confirmation, Governed, Question};
 pub use reference::{StructRef, TypeId, TypeRef};
 pub use stream::{Content, Stream};
-pub use text::{Aliases, Answer, Change, Deprecation, Lang, Location, Part, Subject, Text};
+pub use text::{
+    Aliases, Answer, Change, Deprecation, Lang, Languages, Location, Part, Subject, Text,
+};
 pub(crate) use types::link;
 pub use types::{Types, Unlinked};
 pub use value::{Number, Scalar, Value};

@@ -6,8 +6,9 @@ use crate::vocabulary::AnswerKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A language in which everything is said.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A language of texts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Lang {
     /// Chinese.
     Zh,
@@ -37,6 +38,51 @@ impl Lang {
     #[must_use]
     pub fn aliases(self, aliases: &Aliases) -> Vec<String> {
         self.pick(&aliases.zh, &aliases.en).clone()
+    }
+}
+
+/// The languages in which each text of a spec is required. A missing text is read as the text in the other language.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Languages {
+    /// Both.
+    #[default]
+    All,
+    /// This one.
+    Only(Lang),
+    /// Either: for a spec whose settings are unknown, such as an old version in git.
+    Any,
+}
+
+impl Languages {
+    /// Returns `true` if a text needs this language, with or without the other one.
+    #[must_use]
+    pub fn require(self, lang: Lang, has_other: bool) -> bool {
+        match self {
+            Self::All => true,
+            Self::Only(only) => lang == only,
+            Self::Any => !has_other,
+        }
+    }
+
+    /// A text of the generator for a spec in these languages.
+    #[must_use]
+    pub fn limit(self, text: Text) -> Text {
+        match self {
+            Self::Only(lang) => {
+                let text = lang.text(&text);
+                Text {
+                    zh: text.to_owned(),
+                    en: text.to_owned(),
+                }
+            }
+            Self::All | Self::Any => text,
+        }
+    }
+
+    /// Returns `true` if new texts are written in this language.
+    #[must_use]
+    pub fn include(self, lang: Lang) -> bool {
+        self.require(lang, false)
     }
 }
 
@@ -96,6 +142,17 @@ impl Text {
     pub fn listed(words: impl IntoIterator<Item = impl std::fmt::Display>) -> Self {
         let words = words.into_iter();
         Self::joined(words.map(|word| text!("{word}", "{word}")), "、", ", ")
+    }
+
+    /// The text with a missing language taken from the other one.
+    #[must_use]
+    pub fn completed(mut self) -> Self {
+        if self.zh.is_empty() {
+            self.zh.clone_from(&self.en);
+        } else if self.en.is_empty() {
+            self.en.clone_from(&self.zh);
+        }
+        self
     }
 
     /// The text as it follows Chinese: a space separates a Chinese character from a letter or a backtick.

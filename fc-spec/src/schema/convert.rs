@@ -4,7 +4,7 @@ use crate::diagnostic::Faults;
 use crate::load::grammar::unit::UNITS;
 use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
 use crate::load::scalar;
-use crate::model::{Number, Type, Value};
+use crate::model::{Lang, Languages, Number, Type, Value};
 use crate::syntax::{FileId, parse};
 use crate::vocabulary::Meaning;
 use std::collections::BTreeMap;
@@ -19,8 +19,11 @@ const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
 const LISTS_IN_TYPE: usize = 4;
 
 /// The whole schema.
-pub(super) fn schema() -> Value {
-    let mut definitions = Definitions::default();
+pub(super) fn schema(texts: Languages) -> Value {
+    let mut definitions = Definitions {
+        texts,
+        done: BTreeMap::new(),
+    };
     let mut root = vec![
         entry(
             "$schema",
@@ -48,8 +51,9 @@ pub(super) fn schema() -> Value {
 
 /// The `$defs` made so far, by name. A name stands there from when it is first asked for, so that a table may
 /// hold itself.
-#[derive(Default)]
 struct Definitions {
+    /// Languages of required texts.
+    texts: Languages,
     done: BTreeMap<String, Value>,
 }
 
@@ -77,12 +81,21 @@ impl Definitions {
             .iter()
             .map(|key| (key.name.to_owned(), self.key(key)))
             .collect();
-        let required = table.keys.iter().filter(|key| key.required);
+        let is_needed = |key: &AnyKey| match key.name {
+            name if name == TEXT.zh.name => self.texts.include(Lang::Zh),
+            name if name == TEXT.en.name => self.texts.include(Lang::En),
+            _ => true,
+        };
+        let required = table.keys.iter();
+        let required: Vec<_> = required
+            .filter(|key| key.required && is_needed(key))
+            .map(|key| string(key.name))
+            .collect();
         vec![
             entry("description", string(table.doc.en)),
             entry("type", string("object")),
             entry("properties", Value::Object(properties)),
-            entry("required", required.map(|key| string(key.name)).collect()),
+            entry("required", Value::Array(required)),
             entry("additionalProperties", Value::Bool(false)),
         ]
     }
@@ -213,10 +226,14 @@ impl Definitions {
     ) -> Value {
         let mut last = self.kind(otherwise);
         if let (Kind::Body, Some((_, first))) = (otherwise, tables.first()) {
+            let key = match self.texts {
+                Languages::Only(Lang::En) => TEXT.en.name,
+                _ => TEXT.zh.name,
+            };
             let text = object([("type", string("string")), ("not", self.kind(&Kind::Type))]);
             let has_text = object([
-                ("required", [string(TEXT.zh.name)].into_iter().collect()),
-                ("properties", object([(TEXT.zh.name, text)])),
+                ("required", [string(key)].into_iter().collect()),
+                ("properties", object([(key, text)])),
             ]);
             last = object([
                 ("if", has_text),

@@ -10,7 +10,7 @@ mod example;
 mod faults;
 mod reference;
 
-use crate::model::Dump;
+use crate::model::{Dump, Languages};
 
 pub use reference::{Key, Part, Takes, Word, reference};
 
@@ -18,10 +18,10 @@ pub use reference::{Key, Part, Takes, Word, reference};
 pub(crate) use reference::tables;
 pub(crate) use reference::words;
 
-/// The schema of the language, indented, with a newline at its end.
+/// The schema of the language for specs whose texts are in these languages, indented, with a newline at its end.
 #[must_use]
-pub fn schema() -> String {
-    let mut out = convert::schema().pretty();
+pub fn schema(texts: Languages) -> String {
+    let mut out = convert::schema(texts).pretty();
     out.push('\n');
     out
 }

@@ -8,7 +8,7 @@ use crate::good_spec;
 use crate::syntax_support;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{Said, SettleError, Settled, load, settle};
-use fc_spec::model::{Confirmation, Lang, Model};
+use fc_spec::model::{Confirmation, Lang, Languages, Model};
 use fc_spec::syntax::Sources;
 use std::path::Path;
 
@@ -103,7 +103,7 @@ fn an_answer_changes_the_lines_it_is_about_and_no_others() {
     let before = sources(&asked);
     let mut text = String::new();
     for Case { head, said } in cases(&good_spec::read("settle/answers.txt")) {
-        let found = match settle(&before, &said) {
+        let found = match settle(&before, Languages::All, &said) {
             Err(error) => error.to_string(),
             Ok(Settled {
                 id,
@@ -143,7 +143,7 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
         let about = about.filter(|fact| fact.meanwhile != "inferred");
         let values = about.map(|fact| (fact.path.clone(), value(&fact.path).to_owned()));
         let said = say(&question.id, values.collect());
-        let settled = match settle(&before, &said) {
+        let settled = match settle(&before, Languages::All, &said) {
             // What cannot be written has no lines to show.
             Err(SettleError::Layout { .. }) if question.edit.is_empty() => continue,
             settled => settled.unwrap_or_else(|error| panic!("{error}")),
@@ -162,8 +162,8 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
 fn what_is_settled_stays_settled() {
     let before = sources(&good_spec::read("settle/asked.yaml"));
     let said = say("C013", vec![("code".to_owned(), "0x0109".to_owned())]);
-    let settled = settle(&before, &said).expect("it can be settled");
-    let again = settle(&sources(&settled.text), &said);
+    let settled = settle(&before, Languages::All, &said).expect("it can be settled");
+    let again = settle(&sources(&settled.text), Languages::All, &said);
     assert!(
         matches!(again, Err(SettleError::Settled { .. })),
         "{again:?}"
@@ -174,7 +174,7 @@ fn what_is_settled_stays_settled() {
 fn a_file_with_the_line_ends_of_windows_keeps_them_elsewhere() {
     let asked = good_spec::read("settle/asked.yaml").replace('\n', "\r\n");
     let said = say("C013", vec![("code".to_owned(), "0x0109".to_owned())]);
-    let settled = settle(&sources(&asked), &said).expect("it can be settled");
+    let settled = settle(&sources(&asked), Languages::All, &said).expect("it can be settled");
     assert_eq!(
         settled.text.matches('\n').count(),
         settled.text.matches("\r\n").count()

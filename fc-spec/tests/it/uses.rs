@@ -3,6 +3,7 @@
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Trees, places, site_at, uses};
+use fc_spec::model::Languages;
 use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
 use std::path::Path;
 
@@ -79,7 +80,7 @@ fn trees_that_stay_say_what_new_ones_do() {
                 let new = Trees::new(&changed);
                 let faults = [&trees, &new].map(|trees| {
                     let mut faults = Faults::new();
-                    let _ = trees.load(&mut faults);
+                    let _ = trees.load(Languages::All, &mut faults);
                     faults.iter().cloned().collect::<Vec<_>>()
                 });
                 assert_eq!(faults[0], faults[1], "{}", file.path);

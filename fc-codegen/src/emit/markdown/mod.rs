@@ -32,7 +32,7 @@ pub(crate) use tabs::TabsOf;
 pub(crate) use words::{Word, confirmed};
 
 use crate::product::{Artifact, Product};
-use crate::target::{Language, Targets};
+use crate::target::Targets;
 use engine::{Engine, tidy};
 use fc_spec::model::Model;
 use pages::Desk;
@@ -88,8 +88,7 @@ impl<'m> Press<'m> {
     fn new(model: &'m Model, targets: &'m Targets) -> Self {
         let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
         let languages = Lang::ALL.into_iter();
-        let languages =
-            languages.filter(|lang| targets.speaks(lang.pick(Language::Zh, Language::En)));
+        let languages = languages.filter(|lang| targets.speaks(*lang));
         Self {
             book: Book::new(model, tabs::of(model, targets)),
             targets,

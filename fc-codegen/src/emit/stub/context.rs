@@ -3,15 +3,15 @@
 use super::style::Style;
 use crate::surface::language::Language;
 use crate::surface::package::{Call, Package};
-use crate::target::{self as docs, Targets};
-use fc_spec::model::{Field, Kind, Location, Model, Operation, TypeRef};
+use crate::target::Targets;
+use fc_spec::model::{Field, Kind, Lang, Location, Model, Operation, TypeRef};
 
 /// The package, and where its documentation is.
 pub struct Context<'m> {
     pub package: Package<'m>,
     pub style: &'static Style,
     /// The folder of the pages in each language, if the project has them.
-    docs: Vec<(docs::Language, String)>,
+    docs: Vec<(Lang, String)>,
 }
 
 impl<'m> Context<'m> {
@@ -45,9 +45,9 @@ impl<'m> Context<'m> {
 
     /// Links to a page in each language, if the project has the pages.
     pub fn page(&self, page: &str) -> Option<String> {
-        let link = |(language, folder): &(docs::Language, String)| match language {
-            docs::Language::Zh => format!("- 文档：`{folder}/{page}`"),
-            docs::Language::En => format!("- Docs: `{folder}/{page}`"),
+        let link = |(language, folder): &(Lang, String)| match language {
+            Lang::Zh => format!("- 文档：`{folder}/{page}`"),
+            Lang::En => format!("- Docs: `{folder}/{page}`"),
         };
         let links: Vec<String> = self.docs.iter().map(link).collect();
         (!links.is_empty()).then(|| links.join("\n"))

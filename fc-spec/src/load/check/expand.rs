@@ -3,8 +3,7 @@
 use super::reach::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
-use crate::load::grammar::LIMITS;
-use crate::model::{Example, Text, Type, TypeShape};
+use crate::model::{Text, TypeShape};
 use crate::syntax::Span;
 use crate::text;
 
@@ -161,77 +160,6 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
         ));
     }
     faults.errors() == before
-}
-
-/// A body that follows every type may be nested as deep as `limits.json_depth`. Types do not hold themselves.
-pub(super) fn check_depth(draft: &Draft<'_>, faults: &mut Faults) {
-    let Some(limits) = &draft.limits else {
-        return;
-    };
-    let mut levels = vec![None; draft.types.len()];
-    let bodies = draft.types.iter().enumerate().filter(|(_, ty)| {
-        let body = ty.def.body_of.as_ref();
-        body.is_some_and(|body| body.path.is_empty())
-    });
-    let deepest = bodies
-        .map(|(index, ty)| (json_levels(draft, index, &mut levels), ty))
-        .max_by_key(|(levels, _)| *levels);
-    if let Some((levels, ty)) = deepest.filter(|(levels, _)| *levels > limits.item.json_depth) {
-        let message = text!(
-            "报文嵌套 {levels} 层，超过这个上限",
-            "messages of this spec are nested {levels} levels deep"
-        );
-        faults.push(
-            Diagnostic::error(
-                FaultCode::LimitTooSmall,
-                limits.place.at(LIMITS.json_depth),
-                message,
-            )
-            .also(
-                ty.place.name(),
-                text!("嵌套最深的消息体", "the most deeply nested body"),
-            ),
-        );
-    }
-}
-
-/// Levels of nesting in the JSON of a type: objects, lists, and those in examples of `json`. A value has none.
-fn json_levels(draft: &Draft<'_>, index: usize, known: &mut [Option<u32>]) -> u32 {
-    if let Some(Some(levels)) = known.get(index) {
-        return *levels;
-    }
-    let mut named = |name: &str| {
-        let inner = draft.type_index.get(name);
-        inner.map_or(0, |inner| json_levels(draft, *inner, known))
-    };
-    let levels = match draft.types.get(index).map(|ty| &ty.def.shape) {
-        Some(TypeShape::Struct(shape)) => {
-            let fields = shape.fields.iter().map(|field| {
-                let mut lists = 0;
-                let mut ty = &field.ty;
-                while let Type::Array(item) = ty {
-                    lists += 1;
-                    ty = item;
-                }
-                match (ty, &field.example) {
-                    (Type::Named(inner), _) => lists + named(inner.name()),
-                    (Type::Json, Example::Given(value)) => value.levels().max(lists),
-                    _ => lists,
-                }
-            });
-            1 + fields.max().unwrap_or_default()
-        }
-        // The object of a choice is that of its variant.
-        Some(TypeShape::OneOf(choice)) => {
-            let variants = choice.variants.iter();
-            variants.map(|it| named(it.ty.name())).max().unwrap_or(1)
-        }
-        Some(TypeShape::Enum(_)) | None => 0,
-    };
-    if let Some(known) = known.get_mut(index) {
-        *known = Some(levels);
-    }
-    levels
 }
 
 /// Number of fields and nesting of a type, written out.

@@ -5,10 +5,11 @@ use super::value::{Mismatch, check_constraints, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::Draft;
 use crate::load::grammar::{FIELD, TEXT};
+use crate::load::lower::USUAL_OBJECT;
 use crate::load::scalar;
 use crate::model::{
-    BodyState, Example, Field, Number, Pattern, PatternError, Quirk, Scalar, Text, Type, TypeShape,
-    Value, WireForm,
+    BodyState, Example, Field, Lang, Number, Pattern, PatternError, Quirk, Scalar, Text, Type,
+    TypeShape, Value, WireForm,
 };
 use crate::syntax::{Node, Span};
 use crate::text;
@@ -39,9 +40,13 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         let span = part.place.name();
-        let zh = field.text.zh.is_empty() && TEXT.zh.of(node).is_none();
-        let en = field.text.en.is_empty() && TEXT.en.of(node).is_none();
-        let message = match (zh, en) {
+        let [has_zh, has_en] = [TEXT.zh, TEXT.en].map(|key| key.of(node).is_some());
+        if field.wire == USUAL_OBJECT && !has_zh && !has_en {
+            continue;
+        }
+        let lacks_zh = !has_zh && draft.texts.require(Lang::Zh, has_en);
+        let lacks_en = !has_en && draft.texts.require(Lang::En, has_zh);
+        let message = match (lacks_zh, lacks_en) {
             (true, true) => text!(
                 "这个内嵌对象既没有中文，也没有英文",
                 "this inline object has neither a Chinese nor an English text"

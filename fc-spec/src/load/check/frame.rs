@@ -1,9 +1,9 @@
-//! Ports, header, heads, kinds, encodings, limits.
+//! Ports, header, heads, kinds, encodings.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, FrameDraft, Placed};
 use crate::load::grammar::{
-    COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, LIMITS, PORT, TRANSPORT,
+    COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, PORT, TRANSPORT,
 };
 use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
@@ -430,31 +430,8 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     );
 }
 
-/// A frame may be as long as its own header at least.
-pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
-    let (Some(frame), Some(limits)) = (&draft.frame, &draft.limits) else {
-        return;
-    };
-    let header = header_len(frame);
-    if usize::try_from(limits.item.frame_bytes).is_ok_and(|bytes| bytes < header) {
-        faults.push(
-            Diagnostic::error(
-                FaultCode::LimitTooSmall,
-                limits.place.at(LIMITS.frame_bytes),
-                text!(
-                    "上限放不下任何帧：包头就有 {header} 字节",
-                    "the limit is too small for any frame: the header alone has {header} bytes"
-                ),
-            )
-            .also(
-                frame.place.key_at(FRAME.header),
-                text!("包头", "the header"),
-            ),
-        );
-    }
-}
-
-fn header_len(frame: &FrameDraft<'_>) -> usize {
+/// Length of the header in bytes.
+pub(super) fn header_len(frame: &FrameDraft<'_>) -> usize {
     frame.header.iter().fold(0, |length, field| {
         length.saturating_add(field.item.ty.size())
     })

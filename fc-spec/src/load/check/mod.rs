@@ -19,6 +19,7 @@ mod frame;
 mod glossary;
 mod governed;
 mod history;
+mod limits;
 mod names;
 mod places;
 mod preconditions;
@@ -52,7 +53,7 @@ const EVER: &[Check] = &[
     frame::check_heads,
     frame::check_kinds,
     frame::check_encodings,
-    frame::check_limits,
+    limits::check_header,
     envelope::check_roles,
     envelope::check_fields,
     envelope::check_age,
@@ -176,7 +177,7 @@ fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
 fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     if expand::check_recursion(draft, faults) {
         if expand::check_size(draft, faults) {
-            expand::check_depth(draft, faults);
+            limits::check_bodies(draft, faults);
         }
         examples::check_values(draft, faults);
         examples::check_rows(draft, faults);

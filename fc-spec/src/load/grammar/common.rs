@@ -151,10 +151,11 @@ impl Form for BothLanguages {
     }
 }
 
-/// `zh` and `en` of a mapping; empty where missing.
+/// `zh` and `en` of a mapping. A missing one is the same as the other, and both are empty if both are missing.
 pub(crate) fn both_languages(node: Node<'_>) -> model::Text {
-    model::Text {
+    let text = model::Text {
         zh: TEXT.zh.read(node).unwrap_or_default(),
         en: TEXT.en.read(node).unwrap_or_default(),
-    }
+    };
+    text.completed()
 }

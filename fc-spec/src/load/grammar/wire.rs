@@ -228,7 +228,7 @@ grammar! {
         required frame_bytes: Int<u32, 1>, example "65536", faults [LimitTooSmall];
         /// Maximum length of the data after decompression.
         /// 数据解压后的最大长度。
-        required inflated_bytes: Int<u32, 1>, example "1048576";
+        required inflated_bytes: Int<u32, 1>, example "1048576", faults [LimitTooSmall];
         /// Maximum nesting depth of a JSON body.
         /// JSON 的最大嵌套层数。
         required json_depth: Int<u32, 1, 127>, example "32", faults [LimitTooSmall];

@@ -173,8 +173,8 @@ impl<'a> Lowering<'a, '_> {
         let name = name.unwrap_or_else(|| names::snake(&wire));
         let is_inline = node.as_mapping().is_some() && !is_typed;
         let has_text = TEXT.zh.of(keys).or(TEXT.en.of(keys)).is_some();
-        let title = if is_inline && wire == "data" && !has_text {
-            default_title()
+        let title = if is_inline && wire == USUAL_OBJECT && !has_text {
+            self.draft.texts.limit(default_title())
         } else {
             text(keys.unwrap_or(Node::nothing()))
         };
@@ -325,7 +325,10 @@ fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
     })
 }
 
-/// Title of an inline object under the key `data` that has none of its own.
+/// Wire key of the inline object that needs no text.
+pub(in crate::load) const USUAL_OBJECT: &str = "data";
+
+/// Title of an inline object under [`USUAL_OBJECT`] that has none of its own.
 fn default_title() -> Text {
     Text {
         zh: "业务数据".to_owned(),

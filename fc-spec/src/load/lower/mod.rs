@@ -15,20 +15,28 @@ mod types;
 mod waiver;
 mod wire;
 
+pub(super) use body::USUAL_OBJECT;
 pub(super) use wire::envelope_type_fits;
 
 use super::draft::{AnswerDraft, Draft, Place};
 use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use super::section::Section;
-use crate::model::{Answer, Confirmation, Governed, Location, Subject};
+use crate::model::{Answer, Confirmation, Governed, Languages, Location, Subject};
 use crate::names::is_conflict_id;
 use crate::syntax::{Entry, Node, Sources, Span};
 use std::collections::HashMap;
 
 /// Makes the draft of all sections.
-pub(super) fn lower<'a>(sections: &[Section<'a>], sources: &Sources) -> Draft<'a> {
+pub(super) fn lower<'a>(
+    sections: &[Section<'a>],
+    sources: &Sources,
+    texts: Languages,
+) -> Draft<'a> {
     let mut lowering = Lowering {
-        draft: Draft::default(),
+        draft: Draft {
+            texts,
+            ..Draft::default()
+        },
         sources,
         group: None,
         entry: String::new(),

@@ -160,10 +160,10 @@ impl<'a> Lowering<'a, '_> {
         };
         let title = match (side.zh, side.en) {
             ("", "") => item.title.clone(),
-            (zh, en) => Text {
+            (zh, en) => self.draft.texts.limit(Text {
                 zh: format!("`{}` 的{zh}", item.name),
                 en: format!("{en} of `{}`", item.name),
-            },
+            }),
         };
         let body_place = entry.map_or(*place, |entry| Place {
             key: entry.key,

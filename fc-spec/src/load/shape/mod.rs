@@ -11,6 +11,7 @@ pub(super) use keys::unknown_keys;
 use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
 use super::{scalar, texts};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::model::{Lang, Languages};
 use crate::syntax::{Entry, Items, Node, NodeKind, Span, quoted};
 use crate::text;
 use expected::{describe_either, describe_key, wrong_kind};
@@ -19,22 +20,38 @@ use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 use stray::{is_split, misplaced, misplaced_entry, section_of};
 
-/// Reports what `node` lacks of `kind`.
-pub(super) fn check_kind(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Faults) {
+/// Reports what `node` lacks of `kind`. Each text has to be in the languages `texts`.
+pub(super) fn check_kind(
+    kind: &Kind,
+    node: Node<'_>,
+    at: Span,
+    texts: Languages,
+    faults: &mut Faults,
+) {
     match kind {
-        Kind::Map(table) => check_map(table, node, at, faults),
-        Kind::Entries { key, value, min } => check_entries(key, value, *min, node, at, faults),
-        Kind::Body => check_entries(&Kind::WireKey, &FIELD_KIND, 0, node, at, faults),
-        Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, faults),
-        Kind::Either(kinds) => check_either(kinds, node, at, faults),
-        Kind::ByKey { tables, otherwise } => check_by_key(tables, otherwise, node, at, faults),
+        Kind::Map(table) => check_map(table, node, at, texts, faults),
+        Kind::Entries { key, value, min } => {
+            check_entries(key, value, *min, node, at, texts, faults);
+        }
+        Kind::Body => check_entries(&Kind::WireKey, &FIELD_KIND, 0, node, at, texts, faults),
+        Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, texts, faults),
+        Kind::Either(kinds) => check_either(kinds, node, at, texts, faults),
+        Kind::ByKey { tables, otherwise } => {
+            check_by_key(tables, otherwise, node, at, texts, faults);
+        }
         Kind::Json => check_json(node, Wanted::Either, faults),
         Kind::Type => check_type(node, at, faults),
         _ => check_scalar(kind, node, at, faults),
     }
 }
 
-fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Faults) {
+fn check_map(
+    table: &'static Table,
+    node: Node<'_>,
+    at: Span,
+    texts: Languages,
+    faults: &mut Faults,
+) {
     let Some(entries) = node.as_mapping() else {
         wrong_kind(
             &text!(
@@ -58,7 +75,7 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
         if matches!(key.kind, Kind::Json) {
             check_json(entry.value, Wanted::of(node), faults);
         } else {
-            check_kind(&key.kind, entry.value, entry.key.span(), faults);
+            check_kind(&key.kind, entry.value, entry.key.span(), texts, faults);
         }
     }
     // A key that an unknown one is a slip of is not missing as well.
@@ -70,10 +87,15 @@ fn check_map(table: &'static Table, node: Node<'_>, at: Span, faults: &mut Fault
         !entries.clone().any(|entry| entry.name() == name)
             && !meant.iter().any(|meant| meant == name)
     };
+    let is_needed = |name: &str| match name {
+        _ if name == TEXT.zh.name => texts.require(Lang::Zh, !missing(TEXT.en.name)),
+        _ if name == TEXT.en.name => texts.require(Lang::En, !missing(TEXT.zh.name)),
+        _ => true,
+    };
     let required = table.keys.iter().filter(|key| key.required);
     let missing: Vec<&str> = required
         .map(|key| key.name)
-        .filter(|name| missing(name))
+        .filter(|name| is_needed(name) && missing(name))
         .collect();
     // Nor is one that any of them may be meant as.
     if missing.len() > strangers && !node.lacks(faults.gaps(), at) {
@@ -97,6 +119,7 @@ fn check_entries(
     min: usize,
     node: Node<'_>,
     at: Span,
+    texts: Languages,
     faults: &mut Faults,
 ) {
     let Some(entries) = node.as_mapping() else {
@@ -148,7 +171,7 @@ fn check_entries(
                 }
             }
         }
-        check_kind(value, entry.value, entry.key.span(), faults);
+        check_kind(value, entry.value, entry.key.span(), texts, faults);
     }
     faults.extend(stray.map(misplaced_entry));
     if count < min {
@@ -198,6 +221,7 @@ fn check_list(
     (min, max): (usize, usize),
     node: Node<'_>,
     at: Span,
+    texts: Languages,
     faults: &mut Faults,
 ) {
     let Some(items) = node.as_sequence() else {
@@ -226,7 +250,7 @@ fn check_list(
             faults.hide(item.span().to(second.span()));
             continue;
         }
-        check_kind(of, item, item.span(), faults);
+        check_kind(of, item, item.span(), texts, faults);
     }
     if matches!(
         of,
@@ -273,7 +297,7 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
 }
 
 /// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
-fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
+fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, texts: Languages, faults: &mut Faults) {
     let candidates: Vec<_> = kinds.iter().filter(|kind| could_be(kind, node)).collect();
     let chosen = candidates
         .iter()
@@ -281,7 +305,7 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, faults: &mut Faults) {
         .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
         .or(candidates.first());
     if let Some(kind) = chosen {
-        check_kind(kind, node, at, faults);
+        check_kind(kind, node, at, texts, faults);
     } else {
         let expected = describe_either(kinds);
         wrong_kind(&expected, node, at, faults);
@@ -329,6 +353,7 @@ fn check_by_key(
     otherwise: &Kind,
     node: Node<'_>,
     at: Span,
+    texts: Languages,
     faults: &mut Faults,
 ) {
     let entries = node.entries().filter(|entry| entry.value.is_null());
@@ -342,8 +367,8 @@ fn check_by_key(
         .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
     let Some((first, table)) = marks.next() else {
         match likely(tables, otherwise, node) {
-            Some(table) => check_map(table, node, at, faults),
-            None => check_kind(otherwise, node, at, faults),
+            Some(table) => check_map(table, node, at, texts, faults),
+            None => check_kind(otherwise, node, at, texts, faults),
         }
         return;
     };
@@ -379,7 +404,7 @@ fn check_by_key(
         );
         return;
     }
-    check_map(table, node, at, faults);
+    check_map(table, node, at, texts, faults);
 }
 
 /// The table of a mapping that lacks the key which decides, where its other keys tell what it was meant as.
@@ -446,7 +471,8 @@ pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
         marker.value.as_mapping().is_some()
     } else {
         let ty = FIELD.r#type.of(marker.value);
-        ty.is_some_and(|ty| ty.as_mapping().is_none()) && TEXT.zh.of(marker.value).is_some()
+        let text = TEXT.zh.of(marker.value).or(TEXT.en.of(marker.value));
+        ty.is_some_and(|ty| ty.as_mapping().is_none()) && text.is_some()
     };
     // Fields beside it, where only keys of the longhand may stand.
     let has_fields_beside = node

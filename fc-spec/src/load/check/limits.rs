@@ -1,0 +1,188 @@
+//! Limits compared with the spec's own messages.
+
+use super::frame::header_len;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::load::draft::{Draft, Placed, TypeDraft};
+use crate::load::grammar::{FRAME, Form, Key, LIMITS};
+use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
+use crate::text;
+
+/// A frame may be as long as its own header at least.
+pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
+    let (Some(frame), Some(limits)) = (&draft.frame, &draft.limits) else {
+        return;
+    };
+    let header = header_len(frame);
+    if usize::try_from(limits.item.frame_bytes).is_ok_and(|bytes| bytes < header) {
+        faults.push(
+            Diagnostic::error(
+                FaultCode::LimitTooSmall,
+                limits.place.at(LIMITS.frame_bytes),
+                text!(
+                    "上限放不下任何帧：包头就有 {header} 字节",
+                    "the limit is too small for any frame: the header alone has {header} bytes"
+                ),
+            )
+            .also(
+                frame.place.key_at(FRAME.header),
+                text!("包头", "the header"),
+            ),
+        );
+    }
+}
+
+/// Each body of the spec fits into the limits, plain and with its examples. Types do not hold themselves.
+pub(super) fn check_bodies(draft: &Draft<'_>, faults: &mut Faults) {
+    let Some(limits) = &draft.limits else {
+        return;
+    };
+    let mut known = vec![None; draft.types.len()];
+    let bodies = draft.types.iter().enumerate().filter(|(_, ty)| {
+        let body = ty.def.body_of.as_ref();
+        body.is_some_and(|body| body.path.is_empty())
+    });
+    let bodies: Vec<_> = bodies
+        .map(|(index, ty)| (extent(draft, index, &mut known), ty))
+        .collect();
+    if let Some((Extent { levels, .. }, body)) = bodies.iter().max_by_key(|(it, _)| it.levels)
+        && *levels > limits.item.json_depth
+    {
+        let message = text!(
+            "报文嵌套 {levels} 层，超过这个上限",
+            "messages of this spec are nested {levels} levels deep"
+        );
+        let which = text!("嵌套最深的消息体", "the most deeply nested body");
+        faults.push(too_small(limits, LIMITS.json_depth, message, body, which));
+    }
+    let Some((Extent { bytes, .. }, body)) = bodies.iter().max_by_key(|(it, _)| it.bytes) else {
+        return;
+    };
+    let longest = || text!("最长的消息体", "the longest body");
+    if *bytes > u64::from(limits.item.inflated_bytes) {
+        let message = text!(
+            "报文的正文至少有 {bytes} 字节，超过这个上限",
+            "messages of this spec have bodies of at least {bytes} bytes"
+        );
+        faults.push(too_small(
+            limits,
+            LIMITS.inflated_bytes,
+            message,
+            body,
+            longest(),
+        ));
+    }
+    let header = draft.frame.as_ref().map_or(0, header_len);
+    let header = u64::try_from(header).unwrap_or(u64::MAX);
+    let limit = u64::from(limits.item.frame_bytes);
+    let frame = bytes.saturating_add(header);
+    if frame > limit && header <= limit {
+        let message = text!(
+            "不压缩时，报文的帧至少有 {frame} 字节，超过这个上限",
+            "uncompressed messages of this spec have frames of at least {frame} bytes"
+        );
+        faults.push(too_small(
+            limits,
+            LIMITS.frame_bytes,
+            message,
+            body,
+            longest(),
+        ));
+    }
+}
+
+fn too_small(
+    limits: &Placed<'_, Limits>,
+    key: Key<impl Form>,
+    message: Text,
+    body: &TypeDraft<'_>,
+    which: Text,
+) -> Diagnostic {
+    Diagnostic::error(FaultCode::LimitTooSmall, limits.place.at(key), message)
+        .also(body.place.name(), which)
+}
+
+/// What the JSON of a type needs at least, with each key that its example has.
+#[derive(Clone, Copy, Default)]
+struct Extent {
+    /// Levels of nesting: objects, lists, and those in examples of `json`. A number has none.
+    levels: u32,
+    /// Bytes of text.
+    bytes: u64,
+}
+
+fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Extent {
+    if let Some(Some(extent)) = known.get(index) {
+        return *extent;
+    }
+    let mut named = |name: &str| {
+        let inner = draft.type_index.get(name);
+        inner.map_or_else(Extent::default, |inner| extent(draft, *inner, known))
+    };
+    let extent = match draft.types.get(index).map(|ty| &ty.def.shape) {
+        Some(TypeShape::Struct(shape)) => {
+            let mut whole = Extent {
+                levels: 1,
+                bytes: 2,
+            };
+            for (index, field) in shape.fields.iter().enumerate() {
+                let inner = extent_of_field(field, &mut named);
+                whole.levels = whole.levels.max(inner.levels.saturating_add(1));
+                // A key under a condition may exclude another one.
+                if field.details().condition.is_none() && field.example != Example::Absent {
+                    let marks = if index == 0 { 3 } else { 4 };
+                    let key = u64::try_from(field.wire.len()).unwrap_or(u64::MAX);
+                    let entry = key.saturating_add(marks).saturating_add(inner.bytes);
+                    whole.bytes = whole.bytes.saturating_add(entry);
+                }
+            }
+            whole
+        }
+        // The object of a choice is that of its variant.
+        Some(TypeShape::OneOf(choice)) => {
+            let variants = choice.variants.iter().map(|it| named(it.ty.name()));
+            variants.fold(Extent::default(), |most, it| Extent {
+                levels: most.levels.max(it.levels),
+                bytes: most.bytes.max(it.bytes),
+            })
+        }
+        Some(TypeShape::Enum(_)) | None => Extent {
+            levels: 0,
+            bytes: 1,
+        },
+    };
+    if let Some(known) = known.get_mut(index) {
+        *known = Some(extent);
+    }
+    extent
+}
+
+fn extent_of_field(field: &Field, named: &mut impl FnMut(&str) -> Extent) -> Extent {
+    let mut lists = 0;
+    let mut ty = &field.ty;
+    while let Type::Array(item) = ty {
+        lists += 1;
+        ty = item;
+    }
+    let inner = match ty {
+        Type::Named(inner) => named(inner.name()),
+        _ => Extent::default(),
+    };
+    let mut extent = Extent {
+        levels: inner.levels.saturating_add(lists),
+        bytes: match ty {
+            _ if lists > 0 => 2,
+            Type::Named(_) => inner.bytes,
+            Type::String | Type::Base64 => 2,
+            _ => 1,
+        },
+    };
+    // An example of a named type has names of values, which may be longer than the values.
+    if let Example::Given(value) = &field.example
+        && ty.innermost().is_none()
+    {
+        let text = value.to_string();
+        extent.levels = extent.levels.max(value.levels());
+        extent.bytes = u64::try_from(text.len()).unwrap_or(u64::MAX);
+    }
+    extent
+}
