@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::fix::{Done, fix_all};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 use crate::help::{Help, Part};
 use crate::lang::{both, counted, lang, said};

@@ -69,7 +69,7 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
                 let _ = writeln!(text, "{}  {}", rule.code(), rule.title_in(lang));
             }
             for rule in lint::Rule::all() {
-                let _ = writeln!(text, "{}  {}", rule.code, rule.title_in(lang));
+                let _ = writeln!(text, "{}  {}", rule.code.number, rule.code.title_in(lang));
             }
         }
         Some(number) => {
@@ -77,7 +77,7 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
                 let (code, title) = (rule.code(), rule.title_in(lang));
                 let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
             } else if let Some(rule) = lint::Rule::parse(number) {
-                let (code, title) = (rule.code, rule.title_in(lang));
+                let (code, title) = (rule.code.number, rule.code.title_in(lang));
                 let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
             } else {
                 let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
@@ -92,7 +92,7 @@ pub fn run(options: &Options) -> Result<Status, Failure> {
 
 fn unknown(number: &str) -> String {
     let codes = FaultCode::ALL.iter().map(|code| code.as_str());
-    let codes = codes.chain(lint::Rule::all().flat_map(|rule| [rule.code, rule.name]));
+    let codes = codes.chain(lint::Rule::all().flat_map(|rule| [rule.code.number, rule.name]));
     match nearest(number, codes) {
         Some(code) => said!(
             "没有错误码 `{number}`；是否想写 `{code}`？",

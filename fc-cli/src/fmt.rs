@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
 use fc_spec::format::{Refused, format};
-use fc_spec::syntax::{FileId, SourceFile, limits, read_bytes, read_dir, read_files};
+use fc_spec::source::{FileId, SourceFile};
+use fc_spec::syntax::{limits, read_bytes, read_dir, read_files};
 
 use crate::help::{Help, Part};
 use crate::lang::{both, counted, lang, said};

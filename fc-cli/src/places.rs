@@ -2,7 +2,8 @@
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Place as Written, load, places};
-use fc_spec::syntax::{Sources, read_dir};
+use fc_spec::source::Sources;
+use fc_spec::syntax::read_dir;
 
 use crate::help::{Help, Part};
 use crate::lang::{both, in_lang, said};

@@ -9,7 +9,7 @@ use fc_diff::release::{DIRECTORY, NoNumber, Number, Objection, file, goes_back, 
 use fc_diff::{Finding, Lang, first_section, is_ours, section, with_section};
 use fc_spec::model::{Model, Text};
 use fc_spec::revision::{renumbered, without_waiver};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 use crate::help::{Help, Part};
 use crate::lang::{both, said};

@@ -3,7 +3,8 @@
 use fc_codegen::check::{Requirements, check};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
 use fc_spec::model::{Languages, Model};
-use fc_spec::syntax::{Sources, read_dir};
+use fc_spec::source::Sources;
+use fc_spec::syntax::read_dir;
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};

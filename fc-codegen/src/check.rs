@@ -5,7 +5,7 @@ use crate::surface::package::clashes;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Partial, Trees};
 use fc_spec::model::{Languages, Model};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 /// A spec that has been checked.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use crate::version::Version;
 use fc_spec::load::{Item, Place};
 use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
-use fc_spec::syntax::Span;
+use fc_spec::source::Span;
 use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Fix;
 use fc_spec::fix::in_files;
 use fc_spec::model::Lang;
-use fc_spec::syntax::Span;
+use fc_spec::source::Span;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
 /// The changes that fix the faults in a range of a file. A fault of several places can be fixed at each of them, there or

@@ -8,7 +8,8 @@ use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{OtherKey, Site, site_at};
 use fc_spec::schema::Word;
-use fc_spec::syntax::{FileId, SourceFile, Span, parse};
+use fc_spec::source::{FileId, SourceFile, Span};
+use fc_spec::syntax::parse;
 use gen_lsp_types::{CompletionItem, CompletionItemKind, MarkupContent, MarkupKind, TextEdit};
 
 /// A word that no spec has.

@@ -2,7 +2,7 @@
 
 use crate::item::meant;
 use crate::snapshot::Snapshot;
-use fc_spec::syntax::FileId;
+use fc_spec::source::FileId;
 use gen_lsp_types::Location;
 
 /// The key of the thing that is named at an offset, in whichever file.

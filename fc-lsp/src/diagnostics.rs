@@ -4,7 +4,7 @@ use crate::snapshot::Snapshot;
 use crate::uri;
 use fc_spec::diagnostic::{Diagnostic, Severity};
 use fc_spec::model::Lang;
-use fc_spec::syntax::Span;
+use fc_spec::source::Span;
 use gen_lsp_types as lsp;
 use std::collections::BTreeMap;
 

@@ -21,7 +21,7 @@ pub fn formatting(snapshot: &Snapshot, uri: &Uri) -> Option<Vec<TextEdit>> {
         old.split_inclusive('\n').rev(),
         new.split_inclusive('\n').rev(),
     );
-    let span = fc_spec::syntax::Span::new(file, head, head + old.len() - tail);
+    let span = fc_spec::source::Span::new(file, head, head + old.len() - tail);
     Some(vec![TextEdit {
         range: snapshot.range(span),
         new_text: new.get(..new.len() - tail)?.to_owned(),

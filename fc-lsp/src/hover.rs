@@ -9,7 +9,7 @@ use fc_reflect::sample::{Profile, Samples};
 use fc_spec::load::{Item, Role, Site};
 use fc_spec::model::Lang;
 use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
-use fc_spec::syntax::FileId;
+use fc_spec::source::FileId;
 use gen_lsp_types::{Hover, MarkupContent, MarkupKind};
 use std::fmt::Write as _;
 

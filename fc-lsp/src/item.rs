@@ -2,7 +2,7 @@
 
 use crate::snapshot::Snapshot;
 use fc_spec::load::{Item, Place, Role, Site};
-use fc_spec::syntax::{FileId, Span};
+use fc_spec::source::{FileId, Span};
 
 /// A thing, and the words at which it is meant.
 #[derive(Clone, Debug)]

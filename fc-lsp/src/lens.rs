@@ -4,7 +4,7 @@ use crate::snapshot::Snapshot;
 use fc_diff::Finding;
 use fc_spec::load::{Item, Place, Role, sites};
 use fc_spec::model::{Lang, RangeUse};
-use fc_spec::syntax::{FileId, Span};
+use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{CodeLens, Command, Location};
 
 /// The command of clients that show references: the file, the position of the thing, and the places that name it.

@@ -1,6 +1,6 @@
 //! Places as clients count them: lines from 0, columns in units of UTF-16 or in bytes.
 
-use fc_spec::syntax::{SourceFile, Span};
+use fc_spec::source::{SourceFile, Span};
 use gen_lsp_types::{Position, Range, TextDocumentContentChangeEvent};
 
 /// How columns are counted.

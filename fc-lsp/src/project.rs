@@ -7,7 +7,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::lint::{self, faults, lint, waive};
 use fc_spec::load::Places;
 use fc_spec::model::Model;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

@@ -2,7 +2,7 @@
 
 use crate::item::meant;
 use crate::snapshot::Snapshot;
-use fc_spec::syntax::FileId;
+use fc_spec::source::FileId;
 use gen_lsp_types::Location;
 
 /// All places at which the thing at an offset is named, in all files; with its own if that is asked for.

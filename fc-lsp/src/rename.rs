@@ -5,7 +5,7 @@ use crate::snapshot::Snapshot;
 use fc_codegen::check::check_trees;
 use fc_spec::diagnostic::{Faults, Severity};
 use fc_spec::model::Lang;
-use fc_spec::syntax::{FileId, SourceFile, Span};
+use fc_spec::source::{FileId, SourceFile, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -7,7 +7,7 @@ use fc_diff::{Against, Finding, diff_since, waive};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
 use fc_spec::model::{Group, Model, Operation, RangeUse, Text, Types};
-use fc_spec::syntax::{FileId, SourceFile, Sources, Span};
+use fc_spec::source::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{
     Location, OptionalVersionedTextDocumentIdentifier, Position, Range, TextDocumentEdit,
     TextDocumentIdentifier, TextEdit, Uri, WorkspaceEdit,

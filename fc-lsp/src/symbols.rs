@@ -2,7 +2,7 @@
 
 use crate::snapshot::Snapshot;
 use fc_spec::load::{Item, Place};
-use fc_spec::syntax::{FileId, Span};
+use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolKind, WorkspaceSymbol};
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! ```
-//! # use fc_spec::{diagnostic::Faults, load::load, syntax::Sources};
+//! # use fc_spec::{diagnostic::Faults, load::load, source::Sources};
 //! # let files = [
 //! #     ("spec/protocol.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/protocol.yaml"))),
 //! #     ("spec/commands/lamp.yaml", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/small/commands/lamp.yaml"))),

@@ -4,7 +4,8 @@
 use std::process::ExitCode;
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{FileId, Node, NodeKind, Style, parse};
+use fc_spec::source::FileId;
+use fc_spec::syntax::{Node, NodeKind, Style, parse};
 use serde_json::{Map, Value, json};
 
 fn main() -> ExitCode {

@@ -6,7 +6,8 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, Fix};
 use crate::format::edited;
 use crate::model::Text;
-use crate::syntax::{Edits, FileId, SourceFile, Sources, Span, quoted};
+use crate::source::{Edits, FileId, SourceFile, Sources, Span};
+use crate::syntax::quoted;
 use std::collections::BTreeMap;
 
 /// Times that faults are looked for and fixed: one hides another seldom more than twice.

@@ -21,6 +21,7 @@ pub mod retire;
 pub mod revision;
 pub mod scaffold;
 pub mod schema;
+pub mod source;
 pub mod syntax;
 mod vocabulary;
 

@@ -6,7 +6,8 @@ use crate::load::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
 use crate::load::{Item, Place, Trees, Uses, described, entry_at, written};
-use crate::syntax::{Entry, Node, SourceFile, Span};
+use crate::source::{SourceFile, Span};
+use crate::syntax::{Entry, Node};
 
 /// What is replaced by what, so that a thing is called `new`; `None` of what has no name of its own, such as a type that
 /// is named after its operation.

@@ -6,7 +6,8 @@ use crate::format::{Edited, edited};
 use crate::load::Trees;
 use crate::load::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::model::{Kind, Languages, Model, Text};
-use crate::syntax::{Edits, Entry, SourceFile, Sources, Span, Tree, parse, quoted};
+use crate::source::{Edits, SourceFile, Sources, Span};
+use crate::syntax::{Entry, Tree, parse, quoted};
 use crate::text;
 use std::fmt;
 

@@ -4,7 +4,8 @@ use crate::diagnostic::Faults;
 use crate::format::{Edited, edited};
 use crate::load::grammar::{FILE, PROTOCOL};
 use crate::retire::{is_flow, with_comments};
-use crate::syntax::{Edits, SourceFile, Sources, Span, Tree, parse, quoted};
+use crate::source::{Edits, SourceFile, Sources, Span};
+use crate::syntax::{Tree, parse, quoted};
 
 /// A spec in which one thing is written differently.
 #[derive(Clone, Debug)]

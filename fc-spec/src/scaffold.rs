@@ -5,7 +5,8 @@ use crate::format::edited;
 use crate::load::grammar::FILE;
 use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Lang, Languages, Location, Model, Operation, RangeUse, Text};
-use crate::syntax::{Edits, Entry, FileId, Node, SourceFile, Sources, Span, parse};
+use crate::source::{Edits, FileId, SourceFile, Sources, Span};
+use crate::syntax::{Entry, Node, parse};
 use crate::text;
 use std::fmt;
 

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use fc_codegen::output::unified;
 use fc_diff::{Against, Format, Version, diff_for, render, stands_in, waive};
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{Sources, read_dir};
+use fc_spec::source::Sources;
+use fc_spec::syntax::read_dir;
 
 use super::{git, spec_file};
 use crate::help::{Help, Part};

@@ -4,7 +4,7 @@ use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
 use fc_spec::load::{Item, Places};
 use fc_spec::model::Text;
-use fc_spec::syntax::Span;
+use fc_spec::source::Span;
 use fc_spec::text;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};

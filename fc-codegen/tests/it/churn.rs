@@ -7,7 +7,7 @@ use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::{Lang, Model};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A group beside that of the good spec, which has one of everything.

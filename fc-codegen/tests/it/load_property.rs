@@ -8,7 +8,7 @@ use fc_codegen::target::Targets;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Lang;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use proptest::prelude::*;
 
 /// One change to a text.

@@ -11,7 +11,7 @@ use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{load, places};
 use fc_spec::model::Lang;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::fs;
 use std::path::Path;
 

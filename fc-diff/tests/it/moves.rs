@@ -2,7 +2,7 @@
 
 use crate::support::{base, model};
 use fc_diff::diff;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::collections::BTreeSet;
 
 const GROUP: &str = "spec/commands/lamp.yaml";

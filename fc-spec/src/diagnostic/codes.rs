@@ -7,10 +7,36 @@
 //! Ranges: `FC00xx` YAML itself, `FC01xx` shape (unknown key, missing key, wrong kind, bad scalar), `FC02xx`
 //! names and references, `FC03xx` codes, `FC04xx` fields, constraints and examples, `FC05xx` frame,
 //! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fcproto diff`, `FC08xx` those of
-//! the lint. Each lint rule is declared next to its search ([`Rule`]).
+//! the lint. Each lint rule declares its code next to its search ([`LintCode`]).
 
-use crate::lint::Rule;
 use crate::model::Lang;
+
+/// The code of a lint rule. The number identifies it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LintCode {
+    /// Number, such as `FC0801`.
+    pub number: &'static str,
+    /// Title of a few words, in English and in Chinese.
+    pub title: [&'static str; 2],
+    /// Reason and fix, in English and in Chinese.
+    pub text: [&'static str; 2],
+}
+
+impl LintCode {
+    /// Returns the title.
+    #[must_use]
+    pub fn title_in(&self, lang: Lang) -> &'static str {
+        let [en, zh] = self.title;
+        lang.pick(zh, en)
+    }
+
+    /// Returns the reason and the fix.
+    #[must_use]
+    pub fn text_in(&self, lang: Lang) -> &'static str {
+        let [en, zh] = self.text;
+        lang.pick(zh, en)
+    }
+}
 
 macro_rules! fault_codes {
     ($($code:ident $variant:ident $zh:literal $en:literal;)+) => {
@@ -20,7 +46,7 @@ macro_rules! fault_codes {
         pub enum FaultCode {
             $(#[doc = $en] $variant,)+
             /// A finding of a lint rule.
-            Lint(&'static Rule),
+            Lint(&'static LintCode),
         }
 
         impl FaultCode {
@@ -32,7 +58,7 @@ macro_rules! fault_codes {
             pub const fn as_str(self) -> &'static str {
                 match self {
                     $(Self::$variant => stringify!($code),)+
-                    Self::Lint(rule) => rule.code,
+                    Self::Lint(code) => code.number,
                 }
             }
 
@@ -41,7 +67,7 @@ macro_rules! fault_codes {
             pub fn title(self, lang: Lang) -> &'static str {
                 match self {
                     $(Self::$variant => lang.pick($zh, $en),)+
-                    Self::Lint(rule) => rule.title_in(lang),
+                    Self::Lint(code) => code.title_in(lang),
                 }
             }
 
@@ -53,7 +79,7 @@ macro_rules! fault_codes {
                         include_str!(concat!("explain/", stringify!($code), ".zh.md")),
                         include_str!(concat!("explain/", stringify!($code), ".md")),
                     ),)+
-                    Self::Lint(rule) => rule.text_in(lang),
+                    Self::Lint(code) => code.text_in(lang),
                 }
             }
         }

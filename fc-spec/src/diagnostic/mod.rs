@@ -8,12 +8,12 @@ mod codes;
 mod render;
 mod suggest;
 
-pub use codes::FaultCode;
+pub use codes::{FaultCode, LintCode};
 pub use render::{Format, render, summary};
 pub use suggest::nearest;
 
 use crate::model::Text;
-use crate::syntax::Span;
+use crate::source::Span;
 
 /// The severity of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -2,7 +2,8 @@
 
 use super::comments::{Comments, Line, begins_line, column, indentation, line, on_one_line};
 use super::{flow, scalar};
-use crate::syntax::{Node, NodeKind, SourceFile, Span, Style, Tree};
+use crate::source::{SourceFile, Span};
+use crate::syntax::{Node, NodeKind, Style, Tree};
 
 /// A mapping or list that goes over several lines.
 #[derive(Clone, Debug)]

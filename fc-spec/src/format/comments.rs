@@ -1,6 +1,6 @@
 //! The comments of a file in the order in which they stand, until something has taken each.
 
-use crate::syntax::{SourceFile, Span};
+use crate::source::{SourceFile, Span};
 
 /// A comment on a line of its own.
 #[derive(Clone, Debug)]

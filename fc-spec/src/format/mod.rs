@@ -17,7 +17,8 @@ mod scalar;
 
 use crate::diagnostic::Faults;
 use crate::load::inside;
-use crate::syntax::{Edits, FileId, SourceFile, changed_lines, parse};
+use crate::source::{Edits, FileId, SourceFile, changed_lines};
+use crate::syntax::parse;
 
 /// Why a text stays as it is.
 #[derive(Clone, Debug)]

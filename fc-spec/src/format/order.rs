@@ -5,7 +5,8 @@ use super::comments::Line;
 use super::{flow, scalar};
 use crate::diagnostic::Faults;
 use crate::load::Inside;
-use crate::syntax::{Node, SourceFile};
+use crate::source::SourceFile;
+use crate::syntax::Node;
 
 /// Columns of a level.
 pub(super) const LEVEL: usize = 2;

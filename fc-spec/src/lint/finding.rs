@@ -63,7 +63,7 @@ impl Finding {
     pub fn waiver_id(&self) -> String {
         let item = self.item.to_string();
         let house = self.house.as_deref().unwrap_or_default();
-        let fingerprint = fingerprint([self.rule.code, house, &item, &self.about]);
-        format!("{}-{fingerprint}", self.rule.code)
+        let fingerprint = fingerprint([self.rule.code.number, house, &item, &self.about]);
+        format!("{}-{fingerprint}", self.rule.code.number)
     }
 }

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::predicate::Test;
 use super::rule::{Category, Level, Rule};
 use super::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
+use crate::diagnostic::LintCode;
 use crate::load::Item;
 use crate::load::grammar as language;
 use crate::model::{Model, Text, TypeShape};
@@ -11,63 +12,71 @@ use serde_json::Value;
 
 /// What a rule of the project has found.
 pub(super) const HOUSE_RULE: &Rule = &Rule {
-    code: "FC0890",
+    code: LintCode {
+        number: "FC0890",
+        title: ["violation of a rule of this project", "违反本项目的规则"],
+        text: [
+            "A rule under `lint` in `fc.yaml` is violated. The message is the text of the rule, followed by its `id`. Use the `id` in `levels` to \
+         set its level.",
+            "违反了 `fc.yaml` 的 `lint` 中的规则。提示内容是规则的文字，后面是它的 `id`；在 `levels` 中用 `id` 设置级别。",
+        ],
+    },
     category: Category::House,
     name: "house-rule",
     level: Level::Warning,
-    title: ["violation of a rule of this project", "违反本项目的规则"],
-    text: [
-        "A rule under `lint` in `fc.yaml` is violated. The message is the text of the rule, followed by its `id`. Use the `id` in `levels` to \
-         set its level.",
-        "违反了 `fc.yaml` 的 `lint` 中的规则。提示内容是规则的文字，后面是它的 `id`；在 `levels` 中用 `id` 设置级别。",
-    ],
     find: None,
 };
 
 /// A waiver whose time is over.
 pub(super) const WAIVER_OVER: &Rule = &Rule {
-    code: "FC0891",
+    code: LintCode {
+        number: "FC0891",
+        title: [
+            "the waiver of this finding has expired",
+            "该提示的豁免已过期",
+        ],
+        text: [
+            "The waiver of a finding has expired. Fix the finding, or agree on another date.",
+            "提示的豁免已过期。改正提示的问题，或商定新的期限。",
+        ],
+    },
     category: Category::House,
     name: "waiver-over",
     level: Level::Error,
-    title: [
-        "the waiver of this finding has expired",
-        "该提示的豁免已过期",
-    ],
-    text: [
-        "The waiver of a finding has expired. Fix the finding, or agree on another date.",
-        "提示的豁免已过期。改正提示的问题，或商定新的期限。",
-    ],
     find: None,
 };
 
 /// A waiver of nothing.
 pub(super) const WAIVER_UNUSED: &Rule = &Rule {
-    code: "FC0892",
+    code: LintCode {
+        number: "FC0892",
+        title: ["waiver without a finding", "豁免没有对应的提示"],
+        text: [
+            "The lint has no finding for this waiver: the problem was fixed, or the thing was renamed. Remove the waiver. Levels make no difference: \
+         a rule that is off still has findings for its waivers.",
+            "这条豁免没有对应的提示：问题已经改正，或者对象改了名。删除这条豁免。与级别无关：关闭的规则仍会查找，供豁免对应。",
+        ],
+    },
     category: Category::House,
     name: "unused-waiver",
     level: Level::Error,
-    title: ["waiver without a finding", "豁免没有对应的提示"],
-    text: [
-        "The lint has no finding for this waiver: the problem was fixed, or the thing was renamed. Remove the waiver. Levels make no difference: \
-         a rule that is off still has findings for its waivers.",
-        "这条豁免没有对应的提示：问题已经改正，或者对象改了名。删除这条豁免。与级别无关：关闭的规则仍会查找，供豁免对应。",
-    ],
     find: None,
 };
 
 /// A key or value under `lint` that cannot be used.
 pub(super) const SETTINGS: &Rule = &Rule {
-    code: "FC0893",
+    code: LintCode {
+        number: "FC0893",
+        title: ["invalid setting of the lint", "无效的检查设置"],
+        text: [
+            "`lint` in `fc.yaml` has an unknown key, level, path or test. Paths are those of `fcproto inspect`. The lint does not run until you \
+         correct it, because a rule with a typo would silently find nothing.",
+            "`fc.yaml` 的 `lint` 中有未知的键、级别、路径或判断方式。路径与 `fcproto inspect` 的输出一致。改正之前不作检查：写错的规则永远不会有提示。",
+        ],
+    },
     category: Category::House,
     name: "lint-settings",
     level: Level::Error,
-    title: ["invalid setting of the lint", "无效的检查设置"],
-    text: [
-        "`lint` in `fc.yaml` has an unknown key, level, path or test. Paths are those of `fcproto inspect`. The lint does not run until you \
-         correct it, because a rule with a typo would silently find nothing.",
-        "`fc.yaml` 的 `lint` 中有未知的键、级别、路径或判断方式。路径与 `fcproto inspect` 的输出一致。改正之前不作检查：写错的规则永远不会有提示。",
-    ],
     find: None,
 };
 

@@ -5,7 +5,7 @@ use super::rule::Level;
 use super::settings::Settings;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::{Item, Places};
-use crate::syntax::{FileId, Span};
+use crate::source::{FileId, Span};
 use crate::text;
 use std::borrow::Borrow;
 
@@ -33,7 +33,7 @@ pub fn faults<P: Borrow<Places>>(
 }
 
 fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
-    let code = FaultCode::Lint(finding.rule);
+    let code = FaultCode::Lint(&finding.rule.code);
     let message = match &finding.house {
         Some(id) => text!("{text}（{id}）", "{text} ({id})", text = finding.message),
         None => finding.message.clone(),

@@ -1,6 +1,7 @@
 //! What a rule of the lint says of itself.
 
 use super::search::Search;
+use crate::diagnostic::LintCode;
 use crate::model::Lang;
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
@@ -85,18 +86,14 @@ impl Level {
 /// A rule of the lint.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
-    /// Its code, such as `FC0801`.
-    pub code: &'static str,
+    /// Its code, with its title and its explanation.
+    pub code: LintCode,
     /// What it is for.
     pub category: Category,
     /// Its name, such as `similar-keys`.
     pub name: &'static str,
     /// What becomes of its findings unless `fc.yaml` says otherwise.
     pub level: Level,
-    /// What is wrong, in a few words, in English and in Chinese.
-    pub title: [&'static str; 2],
-    /// Why that matters and what to do, in English and in Chinese.
-    pub text: [&'static str; 2],
     /// Looks for it; `None` where that takes more than a model.
     pub(super) find: Option<fn(&mut Search<'_>)>,
 }
@@ -113,28 +110,14 @@ impl Rule {
         let upper = text.trim().to_ascii_uppercase();
         let digits = upper.strip_prefix("FC").unwrap_or(&upper);
         let padded = format!("FC{digits:0>4}");
-        Self::all().find(|rule| rule.code == padded || rule.name == text.trim())
-    }
-
-    /// What is wrong, in a few words.
-    #[must_use]
-    pub fn title_in(&self, lang: Lang) -> &'static str {
-        let [en, zh] = self.title;
-        lang.pick(zh, en)
-    }
-
-    /// Why that matters and what to do.
-    #[must_use]
-    pub fn text_in(&self, lang: Lang) -> &'static str {
-        let [en, zh] = self.text;
-        lang.pick(zh, en)
+        Self::all().find(|rule| rule.code.number == padded || rule.name == text.trim())
     }
 
     /// What it means and how it is set, as Markdown.
     #[must_use]
     pub fn explain(&self, lang: Lang) -> String {
         let [en, zh] = self.setting();
-        format!("{}\n\n{}\n", self.text_in(lang), lang.pick(zh, en))
+        format!("{}\n\n{}\n", self.code.text_in(lang), lang.pick(zh, en))
     }
 
     /// Its category, name and level, in English and in Chinese.
@@ -151,7 +134,7 @@ impl Rule {
 /// Two rules are the same if they have the same code.
 impl PartialEq for Rule {
     fn eq(&self, other: &Self) -> bool {
-        self.code == other.code
+        self.code.number == other.code.number
     }
 }
 
@@ -165,12 +148,12 @@ impl PartialOrd for Rule {
 
 impl Ord for Rule {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.code.cmp(other.code)
+        self.code.number.cmp(other.code.number)
     }
 }
 
 impl Hash for Rule {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.code.hash(state);
+        self.code.number.hash(state);
     }
 }

@@ -17,7 +17,8 @@ use super::house::{HouseRule, SETTINGS};
 use super::rule::{Category, Level, Rule};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::model::Text;
-use crate::syntax::{Node, Sources, Span, parse, read_files};
+use crate::source::{Sources, Span};
+use crate::syntax::{Node, parse, read_files};
 use crate::text;
 use std::collections::HashMap;
 use std::path::Path;
@@ -46,10 +47,12 @@ impl Settings {
     pub fn level(&self, rule: &Rule, house: Option<&str>) -> Level {
         let own = house.and_then(|id| self.levels.get(id));
         let categories = std::iter::successors(Some(rule.category), |it| it.within());
-        let said = own.or_else(|| self.levels.get(rule.code)).or_else(|| {
-            let mut it = categories;
-            it.find_map(|it| self.levels.get(it.name()))
-        });
+        let said = own
+            .or_else(|| self.levels.get(rule.code.number))
+            .or_else(|| {
+                let mut it = categories;
+                it.find_map(|it| self.levels.get(it.name()))
+            });
         let usual = || {
             let house = house.and_then(|id| self.house.iter().find(|rule| rule.id == id));
             house.map_or(rule.level, |house| house.level)
@@ -125,7 +128,7 @@ pub(super) struct Reader<'f> {
 
 impl Reader<'_> {
     pub(super) fn fault(&mut self, span: Span, message: Text, advice: Text) {
-        let code = FaultCode::Lint(SETTINGS);
+        let code = FaultCode::Lint(&SETTINGS.code);
         self.faults
             .push(Diagnostic::error(code, span, message).note(advice));
     }
@@ -139,7 +142,7 @@ impl Reader<'_> {
     ) {
         let word = node.as_str().unwrap_or_default();
         let fault = Diagnostic::error(
-            FaultCode::Lint(SETTINGS),
+            FaultCode::Lint(&SETTINGS.code),
             node.span(),
             text!(
                 "没有{what} `{word}`",
@@ -185,7 +188,7 @@ impl Reader<'_> {
         for entry in node.entries() {
             if let Some(level) = self.level(entry.value) {
                 let name = entry.name();
-                let rule = Rule::parse(name).map(|rule| rule.code);
+                let rule = Rule::parse(name).map(|rule| rule.code.number);
                 self.ids
                     .insert(format!("{LEVELS} {name}"), entry.key.span());
                 let key = rule.unwrap_or(name).to_owned();
@@ -227,14 +230,14 @@ impl Reader<'_> {
         spans.sort();
         for span in spans {
             let name = sources.slice(span).trim_matches(['"', '\'']);
-            let rules = Rule::all().flat_map(|rule| [rule.code, rule.name]);
+            let rules = Rule::all().flat_map(|rule| [rule.code.number, rule.name]);
             let known = categories.clone().chain(rules);
             let known = known.chain(house.iter().map(String::as_str));
             let message = text!(
                 "没有规则或类别 `{name}`",
                 "there is no rule and no category `{name}`"
             );
-            let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
+            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), span, message);
             self.faults.push(match nearest(name, known) {
                 Some(near) => fault.fix(span, near, meant(near)),
                 None => fault.note(text!(
@@ -270,7 +273,7 @@ impl Reader<'_> {
                         "two rules have the id `{id}`",
                         id = rule.id
                     );
-                    let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), span, message);
+                    let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), span, message);
                     self.faults
                         .push(fault.also(first, text!("第一次用在这里", "first used here")));
                 }

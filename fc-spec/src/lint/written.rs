@@ -189,7 +189,7 @@ impl Reader<'_> {
                 "`fcproto inspect` 的输出中没有键 `{part}`",
                 "the output of `fcproto inspect` has no key `{part}` here"
             );
-            let fault = Diagnostic::error(FaultCode::Lint(SETTINGS), key.span(), message);
+            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), key.span(), message);
             let near = nearest(part, keys.keys().copied());
             self.faults.push(if let Some(near) = near {
                 let mut path = path.clone();

@@ -7,7 +7,7 @@
 use super::draft::Draft;
 use super::grammar::{COMMON, SOURCE};
 use crate::diagnostic::{FaultCode, Faults};
-use crate::syntax::{Sources, Span};
+use crate::source::{Sources, Span};
 use std::collections::HashSet;
 
 /// What has been reported, as far as others may follow from it.

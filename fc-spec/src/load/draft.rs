@@ -11,7 +11,8 @@ use crate::model::{
     JsonRule, Languages, Limits, MissingSection, Operation, Protocol, Question, ResultCode,
     RetiredCode, Store, Table, Term, Text, Transport, TypeDef, Waiver,
 };
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Where something stands.

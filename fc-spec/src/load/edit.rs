@@ -10,7 +10,8 @@ use super::misread::misread;
 use crate::model::{
     AnswerKind, BodyState, Confirmation, Fact, Kind, Lang, Languages, Operation, Text,
 };
-use crate::syntax::{Edits, Entry, Node, SourceFile, Sources, Span, quoted};
+use crate::source::{Edits, SourceFile, Sources, Span};
+use crate::syntax::{Entry, Node, quoted};
 
 /// What only the owner can say.
 pub(super) const TO_BE_SAID: &str = "…";

@@ -5,7 +5,8 @@ use super::shape;
 use crate::diagnostic::{Faults, Format, render};
 use crate::model::{Lang, Languages};
 use crate::schema;
-use crate::syntax::{Sources, parse};
+use crate::source::Sources;
+use crate::syntax::parse;
 
 /// Reads a text as a value under a key, as a file of the spec is read.
 fn check(what: &str, kind: &Kind, value: &str) -> Option<String> {

@@ -37,7 +37,7 @@ mod uses;
 
 use crate::diagnostic::Faults;
 use crate::model::Languages;
-use crate::syntax::Sources;
+use crate::source::Sources;
 use draft::Draft;
 
 pub use partial::{Loaded, Partial};

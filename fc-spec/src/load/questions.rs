@@ -8,7 +8,7 @@ use crate::model::{
     self, AnswerKind, BodyState, Direction, Fact, Impact, Operation, Question, Severity, Subject,
     Text,
 };
-use crate::syntax::Sources;
+use crate::source::Sources;
 use crate::vocabulary::Word as _;
 use std::collections::{HashMap, HashSet};
 

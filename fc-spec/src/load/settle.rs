@@ -9,7 +9,8 @@ use crate::model::{
     AnswerKind, BodyState, Confirmation, Fact, Languages, Location, Operation, Question, Subject,
     Text,
 };
-use crate::syntax::{Sources, quoted};
+use crate::source::Sources;
+use crate::syntax::quoted;
 use crate::text;
 use crate::vocabulary::Word as _;
 use std::fmt;

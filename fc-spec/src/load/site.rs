@@ -12,7 +12,8 @@ use super::shape;
 use super::trees::Trees;
 use crate::model::{RangeUse, Text, Type};
 use crate::schema::{self, Word};
-use crate::syntax::{Entry, Node, Span, Style};
+use crate::source::Span;
+use crate::syntax::{Entry, Node, Style};
 
 /// A key or a scalar value of a file.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,8 @@
 use super::places::{Item, Place, Places};
 use super::site::{Sought, sites};
 use super::trees::Trees;
-use crate::syntax::{Sources, Tree};
+use crate::source::Sources;
+use crate::syntax::Tree;
 use std::sync::Arc;
 
 /// Every place at which a thing is named, other than that which says it, in the order of the files.

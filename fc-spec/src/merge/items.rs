@@ -3,7 +3,8 @@
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
 use crate::load::grammar::{CODES, COMMON};
-use crate::syntax::{Node, SourceFile};
+use crate::source::SourceFile;
+use crate::syntax::Node;
 
 /// The lists of which each item stands for itself.
 const FREE: [&str; 4] = [

@@ -15,7 +15,8 @@ mod value;
 use crate::diagnostic::Faults;
 use crate::format::format;
 use crate::load::{Inside, inside};
-use crate::syntax::{Edits, FileId, Node, SourceFile, Span, Tree, parse};
+use crate::source::{Edits, FileId, SourceFile, Span};
+use crate::syntax::{Node, Tree, parse};
 use value::Value;
 
 /// What both branches say, where `base` is what they began with: the text of `ours` with what `theirs` has added, changed

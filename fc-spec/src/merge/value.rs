@@ -1,6 +1,7 @@
 //! What a text says, without where it says it.
 
-use crate::syntax::{Node, NodeKind, Scalar, SourceFile, Tree};
+use crate::source::SourceFile;
+use crate::syntax::{Node, NodeKind, Scalar, Tree};
 
 /// What a node says: of a mapping also in which order.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,8 @@ use crate::load::grammar::unit::UNITS;
 use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
 use crate::load::scalar;
 use crate::model::{Lang, Languages, Number, Type, Value};
-use crate::syntax::{FileId, parse};
+use crate::source::FileId;
+use crate::syntax::parse;
 use crate::vocabulary::Meaning;
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! Comments: what each is about, and those that swallow the rest of a text.
 
 use super::quote::quoted;
-use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
+use crate::source::{FileId, Span};
 use crate::text;
 use std::ops::Range;
 

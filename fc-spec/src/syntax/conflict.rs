@@ -1,7 +1,7 @@
 //! What git leaves in a file where two branches changed the same lines.
 
-use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::source::{FileId, Span};
 use crate::text;
 
 /// The lines that begin, divide and end a conflict.

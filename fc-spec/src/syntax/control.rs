@@ -1,8 +1,8 @@
 //! Characters that do not show.
 
-use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::model::Text;
+use crate::source::{FileId, Span};
 use crate::text;
 
 /// Faults every character that a reader of the file cannot see but that changes what it says:

@@ -11,7 +11,6 @@
 mod comment;
 mod conflict;
 mod control;
-mod edit;
 mod find;
 mod key;
 pub mod limits;
@@ -24,19 +23,14 @@ mod recover;
 mod scan_error;
 mod scan_words;
 mod slip;
-mod source;
-mod span;
 mod tab;
 mod tree;
 pub(crate) mod width;
 
 pub(crate) use control::visible;
-pub(crate) use edit::{Edits, changed_lines};
 pub use find::is_spec_file;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
 pub use parse::parse;
 pub(crate) use parse::parse_parts;
 pub(crate) use quote::quoted;
 pub use read::{read_bytes, read_dir, read_files};
-pub use source::{SourceFile, Sources};
-pub use span::{FileId, LineCol, Span};

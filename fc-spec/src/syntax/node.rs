@@ -1,9 +1,9 @@
 //! The syntax tree: what the YAML says, with the place and the spelling of everything.
 
-use super::span::{FileId, Span};
 use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
 use crate::model::Text;
+use crate::source::{FileId, Span};
 use crate::text;
 use std::borrow::Cow;
 use std::fmt;

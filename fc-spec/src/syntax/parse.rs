@@ -1,10 +1,10 @@
 //! From text to one tree.
 
 use super::node::Tree;
-use super::span::{FileId, Span};
 use super::tree::{Builder, Outcome};
 use super::{conflict, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::source::{FileId, Span};
 use crate::text;
 use std::collections::HashSet;
 

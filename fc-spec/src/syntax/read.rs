@@ -7,10 +7,10 @@ use std::path::Path;
 
 use super::find::{Found, find};
 use super::limits;
-use super::source::{SourceFile, Sources};
-use super::span::Span;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::model::Text;
+use crate::source::Span;
+use crate::source::{SourceFile, Sources};
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.
 ///

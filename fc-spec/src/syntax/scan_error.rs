@@ -4,8 +4,8 @@ use crate::text;
 use granit_parser::ErrorKind;
 
 use super::scan_words;
-use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode};
+use crate::source::{FileId, Span};
 
 /// Where the parser gave up, and what it had understood by then.
 pub(super) struct Place<'a> {

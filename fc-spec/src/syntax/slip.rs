@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use super::comment;
 use super::parser::reaches;
-use super::span::{FileId, Span};
 use super::width::{describe, half_width};
 use crate::diagnostic::{Diagnostic, FaultCode};
+use crate::source::{FileId, Span};
 
 /// Longest stretch that is parsed again to find a cause.
 const BYTES: usize = 256 << 10;

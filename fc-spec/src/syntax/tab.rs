@@ -1,8 +1,8 @@
 //! Tabs that some readers refuse.
 
 use super::node::{NodeKind, Style, Tree};
-use super::span::{FileId, Span};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::source::{FileId, Span};
 use crate::text;
 use std::ops::Range;
 

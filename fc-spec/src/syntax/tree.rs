@@ -9,9 +9,9 @@ use granit_parser::{Event, ScalarStyle, Span as ParserSpan, StructureStyle};
 use super::node::{Style, Tree};
 use super::parser::parser;
 use super::quote::quoted;
-use super::span::{FileId, Span};
 use super::{control, key, limits, scan_error, slip, tab};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::source::{FileId, Span};
 
 /// How a run over a stretch of text ended.
 pub(super) enum Outcome<'s> {

@@ -5,7 +5,7 @@ use fc_spec::load::load;
 use fc_spec::model::{
     Asked, Condition, Dump, Example, Lang, Model, Number, ProjectionError, Scalar, TypeShape, Value,
 };
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::path::Path;
 
 /// Beside the good spec: everything that can be for an audience, and everything that can name it.

@@ -1,7 +1,8 @@
 //! Comments stay in the tree, each with what it is about.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{FileId, Node, Span, parse};
+use fc_spec::source::{FileId, Span};
+use fc_spec::syntax::{Node, parse};
 
 const TEXT: &str = "\
 # Of the file as a whole.

@@ -3,7 +3,8 @@
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults};
 use fc_spec::load::{Role, Site, sites};
 use fc_spec::schema::{Part, reference};
-use fc_spec::syntax::{Sources, parse};
+use fc_spec::source::Sources;
+use fc_spec::syntax::parse;
 use std::collections::BTreeSet;
 
 /// Keys under which a body stands, which are checked alike wherever it is.

@@ -7,7 +7,7 @@
 use fc_spec::diagnostic::{FaultCode, Faults};
 use fc_spec::load::load;
 use fc_spec::model::Lang;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -16,7 +16,7 @@ use crate::declared_faults;
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::Lang;
-use fc_spec::syntax::{Sources, Span};
+use fc_spec::source::{Sources, Span};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,7 @@
 use fc_spec::diagnostic::Faults;
 use fc_spec::fix::{Fixed, certain, fix_all};
 use fc_spec::load::load;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,8 @@
 use fc_spec::diagnostic::Faults;
 use fc_spec::format::{Refused, format};
 use fc_spec::load::load;
-use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
+use fc_spec::source::{FileId, SourceFile, Sources};
+use fc_spec::syntax::parse;
 use std::path::Path;
 
 fn laid_out(text: &str) -> Result<String, Refused> {

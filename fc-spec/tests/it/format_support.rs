@@ -1,7 +1,8 @@
 //! A spec file written in some other layout, comments and all, that says the same.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{FileId, Node, NodeKind, Style, parse};
+use fc_spec::source::FileId;
+use fc_spec::syntax::{Node, NodeKind, Style, parse};
 use std::fmt::Write as _;
 
 /// What a text may have that its layout does away with, or keeps.

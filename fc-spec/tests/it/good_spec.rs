@@ -3,7 +3,7 @@
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::{Lang, Model};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::fs;
 use std::path::Path;
 

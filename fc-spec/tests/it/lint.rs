@@ -8,7 +8,7 @@ use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::lint::{Finding, Rule, Settings, faults, lint, settings, waive};
 use fc_spec::load::{load, places};
 use fc_spec::model::{Lang, Model};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -135,7 +135,7 @@ fn every_rule_finds_what_it_is_for() {
     for change in changes() {
         let (sources, model) = change.made();
         let findings = lint(&model, &Settings::default(), TODAY);
-        seen.extend(findings.iter().map(|finding| finding.rule.code));
+        seen.extend(findings.iter().map(|finding| finding.rule.code.number));
         if !actual.is_empty() {
             actual.push('\n');
         }
@@ -155,7 +155,7 @@ fn every_rule_finds_what_it_is_for() {
         }
     }
     syntax_support::golden(&directory().join("rules.txt"), &actual);
-    let rules = Rule::all().map(|rule| rule.code);
+    let rules = Rule::all().map(|rule| rule.code.number);
     // The last ones are about rules of a project and waivers, which have tests of their own.
     let unseen: Vec<_> = rules
         .filter(|code| *code < "FC0890" && !seen.contains(code))
@@ -165,13 +165,16 @@ fn every_rule_finds_what_it_is_for() {
 
 #[test]
 fn codes_and_names_are_told_apart() {
-    let codes: Vec<_> = Rule::all().map(|rule| rule.code).collect();
+    let codes: Vec<_> = Rule::all().map(|rule| rule.code.number).collect();
     assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
     let names: BTreeSet<_> = Rule::all().map(|rule| rule.name).collect();
     assert_eq!(names.len(), codes.len());
     for rule in Rule::all() {
         assert_eq!(Rule::parse(rule.name), Some(rule));
-        assert_eq!(Rule::parse(rule.code.trim_start_matches("FC0")), Some(rule));
+        assert_eq!(
+            Rule::parse(rule.code.number.trim_start_matches("FC0")),
+            Some(rule)
+        );
     }
 }
 

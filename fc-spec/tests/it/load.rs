@@ -7,7 +7,7 @@ use fc_spec::model::{
     Ack, BodyState, Direction, Example, Exchange, Field, Kind, Model, PortRole, Side, Text,
     TypeShape, Value,
 };
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 fn field<'m>(model: &'m Model, ty: &str, wire: &str) -> &'m Field {
     match &model.types.named(ty).expect(ty).shape {

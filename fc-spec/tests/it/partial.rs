@@ -4,7 +4,7 @@ use crate::good_spec;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Item, Loaded, load, places};
 use fc_spec::model::{Availability, TypeDef, TypeShape};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 /// The good spec with some of its text replaced, and how many errors it has.
 fn loaded(changes: &[(&str, &str)]) -> (Sources, Loaded, usize) {

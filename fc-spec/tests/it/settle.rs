@@ -9,7 +9,7 @@ use crate::syntax_support;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::{Said, SettleError, Settled, load, settle};
 use fc_spec::model::{Confirmation, Lang, Languages, Model};
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use std::path::Path;
 
 const ASKED: &str = "spec/commands/asked.yaml";

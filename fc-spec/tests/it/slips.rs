@@ -12,7 +12,7 @@ use std::path::Path;
 
 use fc_spec::diagnostic::{Diagnostic, Faults, Severity};
 use fc_spec::load::load;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 
 const FILES: [&str; 2] = ["protocol.yaml", "commands/demo.yaml"];
 

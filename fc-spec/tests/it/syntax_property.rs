@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 
 use fc_spec::diagnostic::{Format, render, summary};
 use fc_spec::model::Lang;
-use fc_spec::syntax::{Node, NodeKind, Sources, Span, Style};
+use fc_spec::source::{Sources, Span};
+use fc_spec::syntax::{Node, NodeKind, Style};
 use proptest::prelude::*;
 
 /// The spec's own files and the fixtures.

@@ -2,7 +2,7 @@
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, nearest, render, summary};
 use fc_spec::model::Lang;
-use fc_spec::syntax::{FileId, Sources, Span};
+use fc_spec::source::{FileId, Sources, Span};
 use fc_spec::text;
 
 const FILE: FileId = FileId(0);

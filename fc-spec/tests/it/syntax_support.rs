@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{FileId, Sources, Tree, parse, read_dir};
+use fc_spec::source::{FileId, Sources};
+use fc_spec::syntax::{Tree, parse, read_dir};
 
 /// Directory of the tests' files.
 pub fn fixtures() -> PathBuf {

@@ -4,7 +4,8 @@ use crate::good_spec;
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::{Trees, places, site_at, uses};
 use fc_spec::model::Languages;
-use fc_spec::syntax::{FileId, SourceFile, Sources, parse};
+use fc_spec::source::{FileId, SourceFile, Sources};
+use fc_spec::syntax::parse;
 use std::path::Path;
 
 /// The small spec, and the one that uses every corner of the language.

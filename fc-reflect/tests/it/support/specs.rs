@@ -3,7 +3,8 @@
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
 use fc_spec::model::{Lang, Model};
-use fc_spec::syntax::{Sources, read_dir};
+use fc_spec::source::Sources;
+use fc_spec::syntax::read_dir;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::super::Faults;
 use crate::model::Lang;
-use crate::syntax::Sources;
+use crate::source::Sources;
 
 pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     let mut out = String::new();

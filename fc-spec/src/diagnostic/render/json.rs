@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::{Diagnostic, Faults};
 use crate::model::Lang;
-use crate::syntax::{Sources, Span};
+use crate::source::{Sources, Span};
 
 pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     let mut out = String::new();

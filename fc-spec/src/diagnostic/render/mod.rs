@@ -10,7 +10,7 @@ pub use summary::summary;
 
 use super::{Faults, Severity};
 use crate::model::Lang;
-use crate::syntax::Sources;
+use crate::source::Sources;
 
 /// An output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

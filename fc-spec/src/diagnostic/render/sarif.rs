@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::super::{Diagnostic, FaultCode, Faults};
 use crate::model::Lang;
-use crate::syntax::{Sources, Span};
+use crate::source::{Sources, Span};
 
 const SCHEMA: &str =
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json";

@@ -8,7 +8,7 @@ use annotate_snippets::{
 
 use super::super::{Diagnostic, Faults, Fix, Label, Severity};
 use crate::model::Lang;
-use crate::syntax::{FileId, Sources, Span};
+use crate::source::{FileId, Sources, Span};
 
 /// Longest line to show. For longer lines, the output names only the place.
 const LINE_BYTES: usize = 2000;

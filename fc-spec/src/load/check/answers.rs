@@ -6,7 +6,7 @@ use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
 use crate::load::scalar::small_int;
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
 use crate::names::is_conflict_id;
-use crate::syntax::Span;
+use crate::source::Span;
 use crate::text;
 use crate::vocabulary::Word as _;
 use std::collections::{BTreeMap, HashMap, HashSet};

@@ -6,7 +6,8 @@ use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
 use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::names;
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use std::collections::HashSet;
 

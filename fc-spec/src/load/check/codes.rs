@@ -4,7 +4,8 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
 use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 

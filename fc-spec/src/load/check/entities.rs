@@ -6,7 +6,7 @@ use crate::load::draft::Draft;
 use crate::load::grammar::FIELD;
 use crate::model::{Type, TypeShape};
 use crate::names;
-use crate::syntax::Span;
+use crate::source::Span;
 use crate::text;
 use std::collections::{HashMap, HashSet};
 

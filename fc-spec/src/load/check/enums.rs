@@ -84,7 +84,7 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
         let TypeShape::OneOf(choice) = &ty.def.shape else {
             continue;
         };
-        let mut earlier: Vec<(&str, HashSet<&str>, crate::syntax::Span)> = Vec::new();
+        let mut earlier: Vec<(&str, HashSet<&str>, crate::source::Span)> = Vec::new();
         for (variant, part) in choice.variants.iter().zip(&ty.parts) {
             let Some(required) = draft.type_named(variant.ty.name()).and_then(required_keys) else {
                 continue;

@@ -4,7 +4,7 @@ use super::reach::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::{Text, TypeShape};
-use crate::syntax::Span;
+use crate::source::Span;
 use crate::text;
 
 /// Most fields of a body, all types in it written out.

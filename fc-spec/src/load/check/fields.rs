@@ -11,7 +11,8 @@ use crate::model::{
     BodyState, Example, Field, Lang, Number, Pattern, PatternError, Quirk, Scalar, Text, Type,
     TypeShape, Value, WireForm,
 };
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 
 /// A field in the short form has a named type, whose title describes it.

@@ -9,7 +9,8 @@ use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
 };
 use crate::names;
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use crate::vocabulary::Word;
 use std::collections::HashMap;

@@ -3,7 +3,8 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 

@@ -35,7 +35,7 @@ mod waivers;
 use super::consequence::Earlier;
 use super::draft::Draft;
 use crate::diagnostic::Faults;
-use crate::syntax::Sources;
+use crate::source::Sources;
 use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };

@@ -7,7 +7,7 @@ use crate::load::grammar::unit::is_length;
 use crate::load::grammar::{COMMON, FIELD, FILE};
 use crate::model::{StructType, Text, Type, TypeShape};
 use crate::names;
-use crate::syntax::Span;
+use crate::source::Span;
 use crate::text;
 use std::collections::HashSet;
 

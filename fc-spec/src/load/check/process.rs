@@ -5,7 +5,8 @@ use crate::load::draft::{Draft, Placed};
 use crate::load::grammar::{COMMAND, REPORT, SET_OFF};
 use crate::load::process::{body, path, side, states, way};
 use crate::model::{Direction, Exchange, Operation, Text, Type, TypeShape};
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use std::collections::{HashMap, HashSet};
 

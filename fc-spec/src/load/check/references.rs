@@ -7,7 +7,8 @@ use crate::load::grammar::{
     COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
 };
 use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
-use crate::syntax::{Node, Span, Style};
+use crate::source::Span;
+use crate::syntax::{Node, Style};
 use crate::text;
 use std::collections::{HashMap, HashSet};
 

@@ -8,7 +8,8 @@ use crate::model::{
     Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Text, Type,
     TypeShape, Value, WireForm,
 };
-use crate::syntax::{Node, NodeKind, Span, quoted};
+use crate::source::Span;
+use crate::syntax::{Node, NodeKind, quoted};
 use crate::text;
 
 /// What is wrong with a value.

@@ -23,7 +23,8 @@ use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use super::section::Section;
 use crate::model::{Answer, Confirmation, Governed, Languages, Location, Subject};
 use crate::names::is_conflict_id;
-use crate::syntax::{Entry, Node, Sources, Span};
+use crate::source::{Sources, Span};
+use crate::syntax::{Entry, Node};
 use std::collections::HashMap;
 
 /// Makes the draft of all sections.

@@ -4,7 +4,8 @@ use super::keys::article;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::grammar::Kind;
 use crate::model::Text;
-use crate::syntax::{Node, Span};
+use crate::source::Span;
+use crate::syntax::Node;
 use crate::text;
 use crate::vocabulary::Meaning;
 

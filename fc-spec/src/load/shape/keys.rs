@@ -5,8 +5,9 @@ use crate::load::grammar::{
     Command, Enum, FIELD_FORMS, OneOf, Report, Stream, Struct, TEXT, Table,
 };
 use crate::model::Text;
+use crate::source::Span;
 use crate::syntax::width::half_width_text;
-use crate::syntax::{Entry, Node, Span, visible};
+use crate::syntax::{Entry, Node, visible};
 use crate::text;
 use std::collections::HashSet;
 

@@ -8,8 +8,9 @@ use crate::load::misread::{agreed_number, misread};
 use crate::load::scalar;
 use crate::model::{Text, Type};
 use crate::names;
+use crate::source::Span;
 use crate::syntax::width::{self, half_width, half_width_text};
-use crate::syntax::{Node, Span, Style, quoted};
+use crate::syntax::{Node, Style, quoted};
 use crate::text;
 use crate::vocabulary::Meaning;
 

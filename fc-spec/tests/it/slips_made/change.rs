@@ -1,7 +1,7 @@
 //! What a maker does to a spec, and where the fault of it has to be.
 
 use super::place::{At, Spec};
-use fc_spec::syntax::{Sources, Span};
+use fc_spec::source::{Sources, Span};
 use std::ops::Range;
 
 /// A stretch of a file replaced.

@@ -20,7 +20,7 @@ mod place;
 use change::{Change, Slip, hits};
 use fc_spec::diagnostic::{Diagnostic, Faults};
 use fc_spec::load::load;
-use fc_spec::syntax::Sources;
+use fc_spec::source::Sources;
 use place::Spec;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::{BTreeMap, HashSet};
@@ -171,7 +171,7 @@ fn judge(spec: &Spec, slip: &Slip) -> (Verdict, String) {
     let mut told = format!("{verdict:?}: {} at {}\n", slip.kind, slip.title);
     for (file, at) in &targets {
         if let Some((id, _)) = sources.iter().nth(*file) {
-            let at = sources.line_col(fc_spec::syntax::Span::point(id, at.start));
+            let at = sources.line_col(fc_spec::source::Span::point(id, at.start));
             told += &format!("    should be at {}:{}\n", at.line, at.column);
         }
     }

@@ -1,7 +1,8 @@
 //! A spec as the makers see it: its files as text, and every key and item of them with its place.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::{FileId, Node, NodeKind, Sources, Style, parse};
+use fc_spec::source::{FileId, Sources};
+use fc_spec::syntax::{Node, NodeKind, Style, parse};
 use std::collections::HashMap;
 use std::ops::{Deref, Range};
 use std::path::Path;

@@ -40,10 +40,10 @@ pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
         let pick = |[en, zh]: [&'static str; 2]| desk.lang.pick(zh, en);
         let [en, zh] = rule.setting();
         RuleView {
-            code: rule.code,
-            title: pick(rule.title),
+            code: rule.code.number,
+            title: pick(rule.code.title),
             setting: desk.lang.pick(zh, en),
-            text: pick(rule.text),
+            text: pick(rule.code.text),
         }
     };
     ErrorsView {

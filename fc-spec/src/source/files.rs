@@ -35,7 +35,7 @@ impl SourceFile {
 
     /// A file of which only the start could be read.
     #[must_use]
-    pub(super) fn partial(path: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn partial(path: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
             whole: false,
             ..Self::new(path, text)

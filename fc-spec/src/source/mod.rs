@@ -1,0 +1,9 @@
+//! Source text: files in memory, positions in them, and edits of them. It knows nothing of YAML.
+
+mod edit;
+mod files;
+mod span;
+
+pub(crate) use edit::{Edits, changed_lines};
+pub use files::{SourceFile, Sources};
+pub use span::{FileId, LineCol, Span};
