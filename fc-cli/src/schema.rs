@@ -57,9 +57,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Of::Spec => {
             // Without a project, texts are in both languages.
             let project = Project::find(place).ok();
-            fc_spec::schema::schema(project.map_or(Languages::All, |it| it.targets.texts))
+            fc_spec::language::schema(project.map_or(Languages::All, |it| it.targets.texts))
         }
-        Of::Dump => fc_spec::schema::dump(),
+        Of::Dump => fc_spec::model::Dump::schema(),
     })?;
     Ok(Status::Fine)
 }

@@ -1,8 +1,8 @@
 //! What the spec language says of its keys and words, found by their names.
 
+use fc_spec::language::{Key, Part, reference};
 use fc_spec::model::Lang;
 use fc_spec::model::Text;
-use fc_spec::schema::{Key, Part, reference};
 use std::sync::OnceLock;
 
 /// The key of a part.

@@ -1,8 +1,7 @@
 //! The spec language: from a protocol written in YAML to its model, or to every fault in it.
 //!
-//! Text becomes a spanned syntax tree ([`syntax`]), is compared with the language's grammar, and becomes a
-//! resolved model ([`model`], [`load`]); [`schema`] tells editors of the grammar, [`scaffold`] begins a
-//! new operation, [`retire`] takes one out, [`rename`] gives a thing another name, [`revision`] gives the whole another number, [`mod@format`] lays out the text of a file, and
+//! Source text ([`source`]) becomes a spanned syntax tree ([`syntax`]), is compared with the grammar ([`language`]), and
+//! becomes a resolved model ([`model`], [`load`]). [`scaffold`] begins a new operation, [`retire`] takes one out, [`rename`] gives a thing another name, [`revision`] gives the whole another number, [`mod@format`] lays out the text of a file, and
 //! [`mod@merge`] makes one of three versions of it.
 //!
 //! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
@@ -11,6 +10,7 @@
 pub mod diagnostic;
 pub mod fix;
 pub mod format;
+pub mod language;
 pub mod lint;
 pub mod load;
 pub mod merge;
@@ -20,7 +20,6 @@ pub mod rename;
 pub mod retire;
 pub mod revision;
 pub mod scaffold;
-pub mod schema;
 pub mod source;
 pub mod syntax;
 mod vocabulary;

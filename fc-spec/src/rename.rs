@@ -2,7 +2,7 @@
 //!
 //! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
 
-use crate::load::grammar::{
+use crate::language::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
 use crate::load::{Item, Place, Trees, Uses, described, entry_at, written};

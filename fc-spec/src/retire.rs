@@ -3,8 +3,8 @@
 
 use crate::diagnostic::{FaultCode, Faults, nearest};
 use crate::format::{Edited, edited};
+use crate::language::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::load::Trees;
-use crate::load::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::model::{Kind, Languages, Model, Text};
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Tree, parse, quoted};
@@ -86,7 +86,7 @@ impl std::error::Error for RetireError {}
 
 /// Takes an operation out, with the comments above it; `why` stands beside its code from then on.
 ///
-/// What still names the operation, and whatever else is wrong without it, is for [`load`] to say of the result.
+/// What still names the operation, and whatever else is wrong without it, is for [`load`](crate::load::load) to say of the result.
 ///
 /// # Errors
 /// [`RetireError`].

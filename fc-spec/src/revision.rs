@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Faults;
 use crate::format::{Edited, edited};
-use crate::load::grammar::{FILE, PROTOCOL};
+use crate::language::grammar::{FILE, PROTOCOL};
 use crate::retire::{is_flow, with_comments};
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Tree, parse, quoted};

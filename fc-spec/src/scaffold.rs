@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Faults;
 use crate::format::edited;
-use crate::load::grammar::FILE;
+use crate::language::grammar::FILE;
 use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Lang, Languages, Location, Model, Operation, RangeUse, Text};
 use crate::source::{Edits, FileId, SourceFile, Sources, Span};

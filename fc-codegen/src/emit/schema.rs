@@ -2,8 +2,8 @@
 
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
+use fc_spec::language::schema;
 use fc_spec::model::Model;
-use fc_spec::schema::schema;
 
 /// The schema, which is the same for every spec with the same languages.
 #[must_use]

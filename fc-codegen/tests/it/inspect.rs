@@ -258,7 +258,7 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
 #[test]
 fn a_dump_fits_its_schema() {
     let schema: serde_json::Value =
-        serde_json::from_str(&fc_spec::schema::dump()).expect("a schema");
+        serde_json::from_str(&fc_spec::model::Dump::schema()).expect("a schema");
     let validator = Validator { root: &schema };
     for model in [good_spec::model(), model_in(".")] {
         let mut dump: serde_json::Value =

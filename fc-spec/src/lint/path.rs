@@ -1,7 +1,7 @@
 //! Which paths the dump of a thing has, by the schema of the dump.
 
 use super::house::GROUPS;
-use crate::load::grammar as language;
+use crate::language::grammar as language;
 use crate::model::{EnumValue, Field, Group, Operation, TypeDef, Variant};
 use schemars::{Schema, schema_for};
 use serde_json::Value;

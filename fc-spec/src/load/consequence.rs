@@ -5,8 +5,8 @@
 //! Once the first fault is mended, what is left shows up.
 
 use super::draft::Draft;
-use super::grammar::{COMMON, SOURCE};
 use crate::diagnostic::{FaultCode, Faults};
+use crate::language::grammar::{COMMON, SOURCE};
 use crate::source::{Sources, Span};
 use std::collections::HashSet;
 

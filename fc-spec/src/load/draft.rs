@@ -3,8 +3,8 @@
 //! Names are not looked up yet and texts may be missing; what the syntax got wrong has been reported
 //! and is left out or flagged, so that checks find only what is new.
 
-use super::grammar::{Form, Key};
 use crate::diagnostic::Faults;
+use crate::language::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
     CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,

@@ -2,11 +2,11 @@
 
 use super::draft::{AnswerDraft, Place, Placed};
 use super::govern::{Found, Governed};
-use super::grammar::{
+use crate::language::ambiguous_scalar::misread;
+use crate::language::grammar::{
     ANSWER, Answer, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT,
     TEXT,
 };
-use super::misread::misread;
 use crate::model::{
     AnswerKind, BodyState, Confirmation, Fact, Kind, Lang, Languages, Operation, Text,
 };

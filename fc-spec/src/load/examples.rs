@@ -1,10 +1,10 @@
 //! Whether the examples and defaults of the language are what they are examples of.
 
-use super::grammar::{Kind, STATED, Table};
 use super::shape;
 use crate::diagnostic::{Faults, Format, render};
+use crate::language;
+use crate::language::grammar::{Kind, STATED, Table};
 use crate::model::{Lang, Languages};
-use crate::schema;
 use crate::source::Sources;
 use crate::syntax::parse;
 
@@ -44,9 +44,9 @@ fn is_of_parts(kind: &Kind) -> bool {
     }
 }
 
-fn each_key(mut see: impl FnMut(String, &Kind, &schema::Key)) {
-    let tables = schema::tables();
-    for part in schema::reference() {
+fn each_key(mut see: impl FnMut(String, &Kind, &language::Key)) {
+    let tables = language::tables();
+    for part in language::reference() {
         let table = tables.iter().find(|table| table.name == part.id);
         let keys = table.map(|table| table.keys).unwrap_or_default();
         for (declared, key) in keys.iter().zip(&part.keys) {
@@ -57,7 +57,7 @@ fn each_key(mut see: impl FnMut(String, &Kind, &schema::Key)) {
 
 #[test]
 fn every_example_of_a_part_is_one_of_it() {
-    let tables: Vec<&'static Table> = schema::tables();
+    let tables: Vec<&'static Table> = language::tables();
     let wrong: Vec<String> = tables
         .into_iter()
         .filter_map(|table| check(table.name, &Kind::Map(table), table.example))

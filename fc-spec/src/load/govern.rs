@@ -1,7 +1,7 @@
 //! What an answer governs: the facts that its `about:` names, as the spec says them now.
 
 use super::draft::{AnswerDraft, Draft};
-use super::grammar::{ANSWER, FIELD, ITEMS, OBJECT};
+use crate::language::grammar::{ANSWER, FIELD, ITEMS, OBJECT};
 use crate::model::{BodyState, Fact, Kind, Operation, Subject};
 use crate::syntax::{Entry, Node};
 use crate::vocabulary::Word as _;

@@ -1,8 +1,8 @@
 //! What the grammar says of a place in a file, for those who lay out its text.
 
-use super::grammar::{FIELD_KIND, File, Kind, Table};
 use super::shape;
 use crate::diagnostic::Faults;
+use crate::language::grammar::{FIELD_KIND, File, Kind, Table};
 use crate::model::Languages;
 use crate::syntax::Node;
 

@@ -17,16 +17,13 @@ mod edit;
 #[cfg(test)]
 mod examples;
 mod govern;
-pub(crate) mod grammar;
 mod inside;
 mod lower;
-mod misread;
 mod partial;
 mod places;
 mod process;
 mod questions;
 mod resolve;
-pub(crate) mod scalar;
 mod section;
 mod settle;
 mod shape;

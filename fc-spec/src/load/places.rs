@@ -1,10 +1,10 @@
 //! Where each thing that a spec says is written.
 
 use super::draft::{Draft, Place as Written, Placed};
-use super::grammar::{self as language, TRANSPORT, Table};
 use crate::diagnostic::nearest;
+use crate::language::grammar::{self, TRANSPORT, Table};
+use crate::language::reference;
 use crate::model::{Direction, Kind, Text, TypeShape};
-use crate::schema::reference;
 use crate::source::{FileId, Span};
 use crate::syntax::{Entry, Node};
 use crate::text;
@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 /// A thing that a spec says.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item {
-    /// What the language calls it, which is the id of a [`Part`](crate::schema::Part): `command`, `struct`, `field`.
+    /// What the language calls it, which is the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
     pub kind: &'static str,
     /// What it is part of, where its name alone does not tell it from others: the type of a field.
     pub owner: Option<String>,
@@ -99,7 +99,7 @@ impl Places {
         let answers = files.iter().flat_map(|file| &file.answers);
         let answers = (1_usize..).zip(answers).map(|(at, place)| {
             let item = Item {
-                kind: language::Answer::TABLE.name,
+                kind: grammar::Answer::TABLE.name,
                 owner: None,
                 name: at.to_string(),
             };
@@ -238,69 +238,69 @@ fn written(place: Written<'_>) -> Place {
 /// Of the draft of one file.
 pub(super) fn own(draft: &Draft<'_>) -> Own {
     let mut places = Said::default();
-    places.if_there(language::Protocol::TABLE, draft.protocol.as_ref());
-    places.if_there(language::Transport::TABLE, draft.transport.as_ref());
-    places.if_there(language::Calls::TABLE, draft.calls.as_ref());
-    places.if_there(language::Limits::TABLE, draft.limits.as_ref());
+    places.if_there(grammar::Protocol::TABLE, draft.protocol.as_ref());
+    places.if_there(grammar::Transport::TABLE, draft.transport.as_ref());
+    places.if_there(grammar::Calls::TABLE, draft.calls.as_ref());
+    places.if_there(grammar::Limits::TABLE, draft.limits.as_ref());
     let transport = draft.transport.as_ref().map(|it| it.place.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
     for Entry { key, value: node } in ports.unwrap_or_default() {
         let name = key.as_str().unwrap_or_default();
-        places.add(language::Port::TABLE, None, name, Written { key, node });
+        places.add(grammar::Port::TABLE, None, name, Written { key, node });
     }
     if let Some(frame) = &draft.frame {
-        places.one(language::Frame::TABLE, frame.place);
-        places.keyed(language::HeaderField::TABLE, None, &frame.header);
-        places.named_by(language::FrameKind::TABLE, &frame.kinds, |_, it| {
+        places.one(grammar::Frame::TABLE, frame.place);
+        places.keyed(grammar::HeaderField::TABLE, None, &frame.header);
+        places.named_by(grammar::FrameKind::TABLE, &frame.kinds, |_, it| {
             it.value.to_string()
         });
-        places.named_by(language::Encoding::TABLE, &frame.encodings, |_, it| {
+        places.named_by(grammar::Encoding::TABLE, &frame.encodings, |_, it| {
             it.value.to_string()
         });
     }
     if let Some(envelope) = &draft.envelope {
-        places.one(language::Envelope::TABLE, envelope.place);
+        places.one(grammar::Envelope::TABLE, envelope.place);
         for (side, fields) in [
             (Direction::Request, &envelope.request),
             (Direction::Response, &envelope.response),
         ] {
-            places.keyed(language::EnvelopeField::TABLE, Some(side.name()), fields);
+            places.keyed(grammar::EnvelopeField::TABLE, Some(side.name()), fields);
         }
     }
-    places.named_by(language::ResultCode::TABLE, &draft.results, |_, it| {
+    places.named_by(grammar::ResultCode::TABLE, &draft.results, |_, it| {
         it.code.to_string()
     });
-    places.named_by(language::Range::TABLE, &draft.ranges, |_, it| {
+    places.named_by(grammar::Range::TABLE, &draft.ranges, |_, it| {
         it.first_spelling.clone()
     });
-    places.named_by(language::Retired::TABLE, &draft.retired, |_, it| {
+    places.named_by(grammar::Retired::TABLE, &draft.retired, |_, it| {
         it.spelling.clone()
     });
-    places.named_by(language::Group::TABLE, &draft.groups, |_, it| it.id.clone());
+    places.named_by(grammar::Group::TABLE, &draft.groups, |_, it| it.id.clone());
     for Placed { item, place } in &draft.operations {
         let kind = match item.kind() {
-            Kind::Command => language::Command::TABLE,
-            Kind::Report => language::Report::TABLE,
-            Kind::Stream => language::Stream::TABLE,
+            Kind::Command => grammar::Command::TABLE,
+            Kind::Report => grammar::Report::TABLE,
+            Kind::Stream => grammar::Stream::TABLE,
         };
         places.add(kind, None, &item.name, *place);
     }
     types(&mut places, draft);
-    places.keyed(language::Constants::TABLE, None, &draft.tables);
-    places.keyed(language::Entity::TABLE, None, &draft.entities);
-    places.keyed(language::CoordinateSystem::TABLE, None, &draft.coordinates);
-    places.keyed(language::Store::TABLE, None, &draft.stores);
+    places.keyed(grammar::Constants::TABLE, None, &draft.tables);
+    places.keyed(grammar::Entity::TABLE, None, &draft.entities);
+    places.keyed(grammar::CoordinateSystem::TABLE, None, &draft.coordinates);
+    places.keyed(grammar::Store::TABLE, None, &draft.stores);
     let words = &draft.availability;
-    places.keyed(language::Audience::TABLE, None, &words.audiences);
-    places.keyed(language::Machine::TABLE, None, &words.hardware);
-    places.keyed(language::Series::TABLE, None, &words.releases);
-    places.keyed(language::Term::TABLE, None, &draft.glossary);
-    places.keyed(language::Waiver::TABLE, None, &draft.waivers);
-    places.named_by(language::Section::TABLE, &draft.sections, |_, it| {
+    places.keyed(grammar::Audience::TABLE, None, &words.audiences);
+    places.keyed(grammar::Machine::TABLE, None, &words.hardware);
+    places.keyed(grammar::Series::TABLE, None, &words.releases);
+    places.keyed(grammar::Term::TABLE, None, &draft.glossary);
+    places.keyed(grammar::Waiver::TABLE, None, &draft.waivers);
+    places.named_by(grammar::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()
     });
-    places.keyed(language::Conflict::TABLE, None, &draft.conflicts);
-    places.named_by(language::Change::TABLE, &draft.changes, |at, _| {
+    places.keyed(grammar::Conflict::TABLE, None, &draft.conflicts);
+    places.named_by(grammar::Change::TABLE, &draft.changes, |at, _| {
         at.to_string()
     });
     let answers = draft.answers.iter();
@@ -315,18 +315,18 @@ fn types(places: &mut Said, draft: &Draft<'_>) {
         let name = ty.def.name.as_str();
         let (kind, inside, names): (_, _, Vec<&str>) = match &ty.def.shape {
             TypeShape::Struct(shape) => (
-                language::Struct::TABLE,
-                language::Field::TABLE,
+                grammar::Struct::TABLE,
+                grammar::Field::TABLE,
                 shape.fields.iter().map(|it| it.wire.as_str()).collect(),
             ),
             TypeShape::Enum(shape) => (
-                language::Enum::TABLE,
-                language::EnumValue::TABLE,
+                grammar::Enum::TABLE,
+                grammar::EnumValue::TABLE,
                 shape.values.iter().map(|it| it.name.as_str()).collect(),
             ),
             TypeShape::OneOf(choice) => (
-                language::OneOf::TABLE,
-                language::NamedVariant::TABLE,
+                grammar::OneOf::TABLE,
+                grammar::NamedVariant::TABLE,
                 choice.variants.iter().map(|it| it.name.as_str()).collect(),
             ),
         };

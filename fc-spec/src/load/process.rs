@@ -1,7 +1,7 @@
 //! The keys that tie reports to commands and say how far a process has come, in a draft.
 
 use super::draft::Draft;
-use super::grammar::SET_OFF;
+use crate::language::grammar::SET_OFF;
 use crate::model::{
     self, Direction, Exchange, Field, KeyPath, Operation, SetOff, StructType, Tie, TypeRef,
     TypeShape,

@@ -3,7 +3,7 @@
 use super::draft::{AnswerDraft, Draft, Placed};
 use super::edit::{Silence, Writing};
 use super::govern::{Found, Governed, governed, is_doubt};
-use super::grammar::FILE;
+use crate::language::grammar::FILE;
 use crate::model::{
     self, AnswerKind, BodyState, Direction, Fact, Impact, Operation, Question, Severity, Subject,
     Text,

@@ -2,8 +2,8 @@
 
 use super::draft::Draft;
 use super::govern::{Found, governed};
-use super::grammar::REPORT;
 use super::process;
+use crate::language::grammar::REPORT;
 use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
 
 /// Fills in ports, acknowledgements, states of reports, borrowed texts, the kind of each example and what the owner has confirmed.

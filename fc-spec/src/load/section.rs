@@ -1,9 +1,9 @@
 //! The top keys of all files: which may stand where, and how often.
 
 use super::draft::Place;
-use super::grammar::{self, FILE, File, GROUP};
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{self, FILE, File, GROUP};
 use crate::model::{Languages, Text};
 use crate::source::Span;
 use crate::syntax::{self, Entry, Node};

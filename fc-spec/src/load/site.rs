@@ -1,17 +1,17 @@
 //! Every key and value of a file, and what the language says of it: for editors.
 
-use super::grammar::{
+use super::places::{Item, Place};
+use super::shape;
+use super::trees::Trees;
+use crate::language::grammar::{
     ACCEPTED, ANSWER, AVAILABLE, Answer, Audience, Available, COMMON, Choice, Command, Conflict,
     Constants, CoordinateSystem, DEPRECATED, DeclaredError, ENUM_VALUE, ERROR, Entity, Enum,
     EnumValue, FIELD, FIELD_KIND, FILE, Field, File, Group, Items, Kind, Machine, NamedVariant,
     OPERATION, Object, OneOf, Precondition, RANGE, Range, Report, ResultCode, SET_OFF, STREAM,
     Series, SetOff, Store, Stream, Struct, Table, both_languages,
 };
-use super::places::{Item, Place};
-use super::shape;
-use super::trees::Trees;
+use crate::language::{Word, words};
 use crate::model::{RangeUse, Text, Type};
-use crate::schema::{self, Word};
 use crate::source::Span;
 use crate::syntax::{Entry, Node, Style};
 
@@ -22,7 +22,7 @@ pub struct Site<'t> {
     pub node: Node<'t>,
     /// What it is there.
     pub role: Role,
-    /// The part of the language whose key it is or stands under; the id of a [`Part`](crate::schema::Part).
+    /// The part of the language whose key it is or stands under; the id of a [`Part`](crate::language::Part).
     pub part: &'static str,
     /// That key; `None` of a key that the part does not have.
     pub key: Option<&'static str>,
@@ -283,7 +283,7 @@ impl<'t> Site<'t> {
             return Vec::new();
         }
         let kinds = each(self.kind);
-        kinds.into_iter().flat_map(schema::words).collect()
+        kinds.into_iter().flat_map(words).collect()
     }
 
     /// What things one of which is to be named here; ids of [`Item`](super::Item)s.
@@ -325,7 +325,7 @@ impl<'t> Site<'t> {
         } else if under(DEPRECATED.replaced_by.name) {
             OPERATIONS
         } else if is(SetOff::TABLE, SET_OFF.report.name)
-            || under(super::grammar::COMMAND.sets_off.name)
+            || under(crate::language::grammar::COMMAND.sets_off.name)
         {
             REPORTS
         } else if is(Precondition::TABLE, ACCEPTED.after.name)

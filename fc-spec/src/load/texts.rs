@@ -1,8 +1,8 @@
 //! Whether texts are texts, each in its language. Looked at with the shape, wherever a mapping has them.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::grammar::TEXT;
-use crate::load::misread::misread;
+use crate::language::ambiguous_scalar::misread;
+use crate::language::grammar::TEXT;
 use crate::names;
 use crate::syntax::{Node, Style, quoted};
 use crate::text;

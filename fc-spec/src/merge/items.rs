@@ -2,7 +2,7 @@
 
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
-use crate::load::grammar::{CODES, COMMON};
+use crate::language::grammar::{CODES, COMMON};
 use crate::source::SourceFile;
 use crate::syntax::Node;
 

@@ -169,6 +169,14 @@ impl From<&Model> for Dump {
 }
 
 impl Dump {
+    /// Returns the JSON Schema of a dump, indented, with a newline at its end. It lacks keys that are computed from others.
+    #[must_use]
+    pub fn schema() -> String {
+        // Only keys that are no strings can fail, and a schema has none.
+        let schema = serde_json::to_string_pretty(&schemars::schema_for!(Self));
+        schema.unwrap_or_default() + "\n"
+    }
+
     /// Version of the format that is written and read.
     pub const FORMAT: u32 = 3;
 

@@ -1,4 +1,4 @@
-//! A key of the language is written in its declaration, `load/grammar`; everything else asks for it by its field.
+//! A key of the language is written in its declaration, `language/grammar`; everything else asks for it by its field.
 
 use fc_spec::model::Languages;
 use serde_json::Value;
@@ -10,7 +10,7 @@ use std::path::Path;
 const READERS: [&str; 2] = ["load", "scaffold.rs"];
 
 /// Where keys are declared.
-const HOME: &str = "load/grammar";
+const HOME: &str = "language/grammar";
 
 /// Keys that mean something else as well, and what.
 const ALSO: [(&str, &str); 13] = [
@@ -81,7 +81,7 @@ fn literals(found: &mut Vec<(String, String)>, root: &Path, path: &Path) {
 
 #[test]
 fn no_key_is_spelled_outside_its_declaration() {
-    let schema = serde_json::from_str(&fc_spec::schema::schema(Languages::All)).unwrap();
+    let schema = serde_json::from_str(&fc_spec::language::schema(Languages::All)).unwrap();
     let mut known = BTreeSet::new();
     keys(&schema, &mut known);
     assert!(known.len() > 80, "the keys are not found: {known:?}");

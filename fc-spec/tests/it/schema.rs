@@ -4,8 +4,8 @@
 use crate::good_spec;
 use crate::json_schema::Validator;
 use crate::yaml_as_json;
+use fc_spec::language::schema;
 use fc_spec::model::Languages;
-use fc_spec::schema::schema;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -3,8 +3,8 @@
 
 use crate::json_schema::Validator;
 use crate::yaml_as_json;
+use fc_spec::language::schema;
 use fc_spec::model::Languages;
-use fc_spec::schema::schema;
 use serde_json::Value;
 
 /// A sound file. What a row replaces occurs once in it.

@@ -1,9 +1,9 @@
 //! What the source lacks, and what the spec says about it.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
+use crate::language::scalar::small_int;
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
-use crate::load::scalar::small_int;
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
 use crate::names::is_conflict_id;
 use crate::source::Span;

@@ -2,8 +2,8 @@
 
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
 use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::names;
 use crate::source::Span;

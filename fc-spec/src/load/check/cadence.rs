@@ -1,8 +1,8 @@
 //! When reports are sent.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{CADENCE, REPORT, STEP};
 use crate::load::draft::{Draft, Part, TypeDraft};
-use crate::load::grammar::{CADENCE, REPORT, STEP};
 use crate::model::{Field, Kind, Number, Operation, Text, Type, TypeShape};
 use crate::syntax::Node;
 use crate::text;

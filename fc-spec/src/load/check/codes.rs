@@ -1,8 +1,8 @@
 //! Codes of operations and their ranges.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
 use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
 use crate::source::Span;
 use crate::syntax::Node;

@@ -3,9 +3,9 @@
 use super::each::fields;
 use super::value::{Mismatch, check_field};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::FIELD;
+use crate::language::scalar;
 use crate::load::draft::{Draft, Part};
-use crate::load::grammar::FIELD;
-use crate::load::scalar;
 use crate::model::{Field, Text, Type, TypeShape};
 use crate::syntax::{Entry, Node};
 use crate::text;

@@ -2,8 +2,8 @@
 
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::FIELD;
 use crate::load::draft::Draft;
-use crate::load::grammar::FIELD;
 use crate::model::{Type, TypeShape};
 use crate::names;
 use crate::source::Span;

@@ -2,8 +2,8 @@
 
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{CHOICE, ENUM, ENUM_VALUE};
 use crate::load::draft::{Draft, TypeDraft};
-use crate::load::grammar::{CHOICE, ENUM, ENUM_VALUE};
 use crate::model::{EnumRepr, Number, Scalar, TypeShape};
 use crate::text;
 use std::collections::HashSet;

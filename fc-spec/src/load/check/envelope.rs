@@ -3,8 +3,8 @@
 use super::frame::check_each_once;
 use super::value;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::draft::Draft;
-use crate::load::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::lower::envelope_type_fits;
 use crate::model::EnvelopeRole;
 use crate::names;

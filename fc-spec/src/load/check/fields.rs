@@ -3,10 +3,10 @@
 use super::each::{fields, typed_fields};
 use super::value::{Mismatch, check_constraints, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{FIELD, TEXT};
+use crate::language::scalar;
 use crate::load::draft::Draft;
-use crate::load::grammar::{FIELD, TEXT};
 use crate::load::lower::USUAL_OBJECT;
-use crate::load::scalar;
 use crate::model::{
     BodyState, Example, Field, Lang, Number, Pattern, PatternError, Quirk, Scalar, Text, Type,
     TypeShape, Value, WireForm,

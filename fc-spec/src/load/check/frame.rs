@@ -1,10 +1,10 @@
 //! Ports, header, heads, kinds, encodings.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::draft::{Draft, FrameDraft, Placed};
-use crate::load::grammar::{
+use crate::language::grammar::{
     COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, PORT, TRANSPORT,
 };
+use crate::load::draft::{Draft, FrameDraft, Placed};
 use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
 };

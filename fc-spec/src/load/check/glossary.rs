@@ -1,8 +1,8 @@
 //! Terms.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
 use crate::source::Span;
 use crate::syntax::Node;
 use crate::text;

@@ -1,9 +1,9 @@
 //! What answers govern: an open question keeps its facts as they are, a settled one does not.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::ANSWER;
 use crate::load::draft::Draft;
 use crate::load::govern::{ABSENT, Found, Governed, governed, is_doubt};
-use crate::load::grammar::ANSWER;
 use crate::model::BodyState;
 use crate::text;
 use crate::vocabulary::Word as _;

@@ -2,8 +2,8 @@
 
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
 use crate::load::draft::{Draft, Place};
-use crate::load::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
 use crate::names;
 use crate::text;
 

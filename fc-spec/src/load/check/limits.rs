@@ -2,8 +2,8 @@
 
 use super::frame::header_len;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{FRAME, Form, Key, LIMITS};
 use crate::load::draft::{Draft, Placed, TypeDraft};
-use crate::load::grammar::{FRAME, Form, Key, LIMITS};
 use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
 use crate::text;
 

@@ -1,8 +1,8 @@
 //! Names: each its own, and each usable in code.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{COMMON, FIELD, GROUP};
 use crate::load::draft::{Draft, Place, Placed};
-use crate::load::grammar::{COMMON, FIELD, GROUP};
 use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text, TypeShape};
 use crate::names;
 use crate::source::Span;

@@ -2,9 +2,9 @@
 
 use super::each::{fields, typed_fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::unit::is_length;
+use crate::language::grammar::{COMMON, FIELD, FILE};
 use crate::load::draft::Draft;
-use crate::load::grammar::unit::is_length;
-use crate::load::grammar::{COMMON, FIELD, FILE};
 use crate::model::{StructType, Text, Type, TypeShape};
 use crate::names;
 use crate::source::Span;

@@ -1,8 +1,8 @@
 //! By which keys a report belongs to what has set it off, and which of its keys has the state.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{COMMAND, REPORT, SET_OFF};
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::{COMMAND, REPORT, SET_OFF};
 use crate::load::process::{body, path, side, states, way};
 use crate::model::{Direction, Exchange, Operation, Text, Type, TypeShape};
 use crate::source::Span;

@@ -2,10 +2,10 @@
 
 use super::each::{called, fields};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::load::draft::{Draft, Place};
-use crate::load::grammar::{
+use crate::language::grammar::{
     COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
 };
+use crate::load::draft::{Draft, Place};
 use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};

@@ -3,8 +3,8 @@
 use super::frame::check_each_once;
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{ERROR, OPERATION, RESULT};
 use crate::load::draft::Draft;
-use crate::load::grammar::{ERROR, OPERATION, RESULT};
 use crate::model::ResultRole;
 use crate::syntax::Node;
 use crate::text;

@@ -1,8 +1,8 @@
 //! Enums whose values are the states of a process.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{ENUM, ENUM_VALUE};
 use crate::load::draft::{Draft, Part, TypeDraft};
-use crate::load::grammar::{ENUM, ENUM_VALUE};
 use crate::model::{EnumType, EnumValue, TypeShape};
 use crate::text;
 use std::collections::HashSet;

@@ -2,8 +2,8 @@
 
 use super::each::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::STREAM;
 use crate::load::draft::{Draft, Placed};
-use crate::load::grammar::STREAM;
 use crate::model::{Kind, Operation};
 use crate::syntax::Node;
 use crate::text;

@@ -1,9 +1,9 @@
 //! Whether a value of the spec is one that the wire could carry.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::ambiguous_scalar::misread;
+use crate::language::scalar::{self, value};
 use crate::load::draft::Draft;
-use crate::load::misread::misread;
-use crate::load::scalar::{self, value};
 use crate::model::{
     Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Text, Type,
     TypeShape, Value, WireForm,

@@ -1,8 +1,8 @@
 //! `availability:` and `available:`.
 
 use super::Lowering;
+use crate::language::grammar::{AVAILABILITY, AVAILABLE, COMMON, both_languages as text};
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{AVAILABILITY, AVAILABLE, COMMON, both_languages as text};
 use crate::model::{Available, Declared};
 use crate::syntax::{Entries, Entry, Node};
 use std::collections::BTreeMap;

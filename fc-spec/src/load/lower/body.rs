@@ -3,11 +3,11 @@
 use super::Lowering;
 use super::available::available;
 use super::text::deprecation;
-use crate::load::draft::{Part, Place, TypeDraft};
-use crate::load::grammar::{
+use crate::language::grammar::{
     CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
 };
-use crate::load::scalar;
+use crate::language::scalar;
+use crate::load::draft::{Part, Place, TypeDraft};
 use crate::load::shape::{lacks_form, misread_marker};
 use crate::model::{
     Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, Pattern,

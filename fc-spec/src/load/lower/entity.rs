@@ -1,8 +1,8 @@
 //! `entities:`.
 
 use super::Lowering;
+use crate::language::grammar::both_languages as text;
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::both_languages as text;
 use crate::model::Entity;
 
 impl<'a> Lowering<'a, '_> {

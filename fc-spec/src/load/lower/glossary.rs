@@ -1,8 +1,8 @@
 //! `glossary:`.
 
 use super::Lowering;
+use crate::language::grammar::{OTHER_FORMS, TERM, both_languages as text};
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{OTHER_FORMS, TERM, both_languages as text};
 use crate::model::{Aliases, Term};
 
 impl<'a> Lowering<'a, '_> {

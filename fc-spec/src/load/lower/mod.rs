@@ -19,8 +19,8 @@ pub(super) use body::USUAL_OBJECT;
 pub(super) use wire::envelope_type_fits;
 
 use super::draft::{AnswerDraft, Draft, Place};
-use super::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use super::section::Section;
+use crate::language::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use crate::model::{Answer, Confirmation, Governed, Languages, Location, Subject};
 use crate::names::is_conflict_id;
 use crate::source::{Sources, Span};

@@ -1,7 +1,7 @@
 //! What has to hold before a command is accepted, and when a report is sent.
 
-use crate::load::grammar::{ACCEPTED, CADENCE, STEP};
-use crate::load::scalar;
+use crate::language::grammar::{ACCEPTED, CADENCE, STEP};
+use crate::language::scalar;
 use crate::model::{Accepted, AcceptedIn, Cadence, Scalar, StateSet, Step, TypeRef};
 use crate::syntax::{Entry, Node};
 

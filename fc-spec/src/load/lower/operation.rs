@@ -4,11 +4,11 @@ use super::available::available;
 use super::body::Owner;
 use super::text::{aliases, deprecation, own_changes};
 use super::{Lowering, needs, wire};
-use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{
+use crate::language::grammar::{
     BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
     STATED, STREAM, StateKey, both_languages as text,
 };
+use crate::load::draft::{Place, Placed};
 use crate::load::process;
 use crate::model::{
     Body, BodyField, BodyState, Code, Content, DeclaredError, Direction, Effect, Exchange, Fact,

@@ -1,8 +1,8 @@
 //! `coordinates:` and `stores:`.
 
 use super::Lowering;
+use crate::language::grammar::{COMMON, STORE, both_languages as text};
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{COMMON, STORE, both_languages as text};
 use crate::model::{CoordinateSystem, Store};
 
 impl<'a> Lowering<'a, '_> {

@@ -1,7 +1,9 @@
 //! Texts and history.
 
+use crate::language::grammar::{
+    ALIASES, CHANGE, COMMON, DEPRECATED, FIELD_DEPRECATED, both_languages,
+};
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{ALIASES, CHANGE, COMMON, DEPRECATED, FIELD_DEPRECATED, both_languages};
 use crate::model::{Aliases, Change, Deprecation};
 use crate::syntax::Node;
 

@@ -4,11 +4,11 @@ use super::Lowering;
 use super::available::available;
 use super::body::Owner;
 use super::text::own_changes;
-use crate::load::draft::{Part, Place, Placed};
-use crate::load::grammar::{
+use crate::language::grammar::{
     CHOICE, COMMON, ENUM, ENUM_VALUE, FIELD, OBJECT, TABLE, both_languages as text,
 };
-use crate::load::scalar;
+use crate::language::scalar;
+use crate::load::draft::{Part, Place, Placed};
 use crate::model::{
     BodyState, EnumRepr, EnumType, EnumValue, Number, Scalar, StructRef, StructType, Subject,
     Table, TypeDef, TypeShape,

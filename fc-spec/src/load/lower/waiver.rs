@@ -1,8 +1,8 @@
 //! `waivers:`.
 
 use super::Lowering;
+use crate::language::grammar::{WAIVER, both_languages as text};
 use crate::load::draft::{Place, Placed};
-use crate::load::grammar::{WAIVER, both_languages as text};
 use crate::model::Waiver;
 
 impl<'a> Lowering<'a, '_> {

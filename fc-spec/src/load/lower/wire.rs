@@ -2,13 +2,13 @@
 
 use super::Lowering;
 use super::text::aliases;
-use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
-use crate::load::grammar::{
+use crate::language::grammar::{
     ACK, CALLS, CODES, COMMON, CONFLICT, DIGEST, ENCODING, ENVELOPE, ENVELOPE_FIELD, FRAME,
     FRAME_KIND, HEADER_FIELD, HEADS, LIMITS, PARTY, PORT, PROTOCOL, RANGE, RESULT, RETIRED,
     TRANSPORT, both_languages as text,
 };
-use crate::load::scalar;
+use crate::language::scalar;
+use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
     EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,

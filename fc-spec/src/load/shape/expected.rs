@@ -2,7 +2,7 @@
 
 use super::keys::article;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::grammar::Kind;
+use crate::language::grammar::Kind;
 use crate::model::Text;
 use crate::source::Span;
 use crate::syntax::Node;

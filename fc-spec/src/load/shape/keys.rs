@@ -1,7 +1,7 @@
 //! Keys that a mapping should not have, or should have.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::load::grammar::{
+use crate::language::grammar::{
     Command, Enum, FIELD_FORMS, OneOf, Report, Stream, Struct, TEXT, Table,
 };
 use crate::model::Text;

@@ -8,9 +8,10 @@ mod stray;
 
 pub(super) use keys::unknown_keys;
 
-use super::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
-use super::{scalar, texts};
+use super::texts;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
+use crate::language::scalar;
 use crate::model::{Lang, Languages};
 use crate::source::Span;
 use crate::syntax::{Entry, Items, Node, NodeKind, quoted};

@@ -2,10 +2,10 @@
 
 use super::expected::{describe, list_words, wrong_kind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::load::grammar::unit::{self, UNITS};
-use crate::load::grammar::{FIELD, Kind};
-use crate::load::misread::{agreed_number, misread};
-use crate::load::scalar;
+use crate::language::ambiguous_scalar::{agreed_number, misread};
+use crate::language::grammar::unit::{self, UNITS};
+use crate::language::grammar::{FIELD, Kind};
+use crate::language::scalar;
 use crate::model::{Text, Type};
 use crate::names;
 use crate::source::Span;

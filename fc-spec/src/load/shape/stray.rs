@@ -2,7 +2,7 @@
 
 use super::keys::{article, looks_like};
 use crate::diagnostic::{Diagnostic, FaultCode};
-use crate::load::grammar::{Command, Enum, FILE, Kind, OneOf, Report, Stream, Struct, Table};
+use crate::language::grammar::{Command, Enum, FILE, Kind, OneOf, Report, Stream, Struct, Table};
 use crate::syntax::{Entry, Node};
 use crate::text;
 

@@ -2,7 +2,7 @@
 
 use super::shared::Desk;
 use fc_spec::diagnostic::FaultCode;
-use fc_spec::schema::{self, Key, Part, Takes, Word};
+use fc_spec::language::{self, Key, Part, Takes, Word};
 use serde::Serialize;
 
 /// All that its template shows.
@@ -56,7 +56,7 @@ struct WordView {
 }
 
 pub(in crate::emit::markdown) fn language(desk: Desk<'_, '_>) -> LanguageView {
-    let all = schema::reference();
+    let all = language::reference();
     let words = |words: &[Word]| -> Vec<WordView> {
         let word = |word: &Word| WordView {
             word: word.word,

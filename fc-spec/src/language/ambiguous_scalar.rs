@@ -20,7 +20,7 @@ fn is_ambiguous(word: &str) -> bool {
 }
 
 /// What other YAML readers may take a plain text for that is a text, or a number, here.
-pub(super) fn misread(text: &str) -> Option<Text> {
+pub(crate) fn misread(text: &str) -> Option<Text> {
     if is_ambiguous(text) || matches!(text, "True" | "TRUE" | "False" | "FALSE") {
         return Some(text!("布尔值", "a boolean"));
     }
@@ -50,7 +50,7 @@ pub(super) fn misread(text: &str) -> Option<Text> {
 }
 
 /// A number that all readers take for one, for one that only some do.
-pub(super) fn agreed_number(text: &str) -> Option<String> {
+pub(crate) fn agreed_number(text: &str) -> Option<String> {
     let number = number_text(text)?;
     let Some((mantissa, exponent)) = text.split_once(['e', 'E']).filter(|_| !text.contains('x'))
     else {

@@ -2,8 +2,8 @@
 
 use super::{example, faults};
 use crate::diagnostic::FaultCode;
-use crate::load::grammar::unit::UNITS;
-use crate::load::grammar::{AnyKey, Doc, FIELD_KIND, File, Kind, Table};
+use crate::language::grammar::unit::UNITS;
+use crate::language::grammar::{AnyKey, Doc, FIELD_KIND, File, Kind, Table};
 use crate::model::Text;
 use crate::vocabulary::{FloatKind, IntKind, Meaning};
 

@@ -1,9 +1,9 @@
-//! From grammar tables to schemas.
+//! The JSON Schema (draft 2020-12) of the spec language, made of the grammar's tables.
 
 use crate::diagnostic::Faults;
-use crate::load::grammar::unit::UNITS;
-use crate::load::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
-use crate::load::scalar;
+use crate::language::grammar::unit::UNITS;
+use crate::language::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
+use crate::language::scalar;
 use crate::model::{Lang, Languages, Number, Type, Value};
 use crate::source::FileId;
 use crate::syntax::parse;
@@ -19,8 +19,13 @@ const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
 /// Lists of lists are as deep as anyone would write them.
 const LISTS_IN_TYPE: usize = 4;
 
-/// The whole schema.
-pub(super) fn schema(texts: Languages) -> Value {
+/// Returns the schema for specs whose texts are in these languages, indented, with a newline at its end.
+#[must_use]
+pub fn schema(texts: Languages) -> String {
+    whole(texts).pretty() + "\n"
+}
+
+fn whole(texts: Languages) -> Value {
     let mut definitions = Definitions {
         texts,
         done: BTreeMap::new(),

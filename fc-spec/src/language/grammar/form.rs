@@ -1,7 +1,7 @@
 //! What may stand under a key: each is a type that says what the grammar asks for and what is read of it.
 
 use super::kind::Kind;
-use crate::load::scalar;
+use crate::language::scalar;
 use crate::model::{self, BodyState, Effect, EnumRepr, Fact, HeaderType, WireForm};
 use crate::syntax::{Entries as NodeEntries, Node};
 use crate::vocabulary::{IntKind, Meaning, Word};

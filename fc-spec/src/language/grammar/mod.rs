@@ -1,7 +1,7 @@
 //! The spec language, declared: each key once, with its type and one sentence about it in both languages.
 //!
-//! Shape faults ([`super::shape`]), reading ([`Key::read`]), the JSON Schema and the reference of the language
-//! ([`crate::schema`]) all come out of these declarations, so that an editor, a page and the generator cannot
+//! Shape faults ([`shape`](crate::load)), reading ([`Key::read`]), the JSON Schema and the reference of the language
+//! ([`crate::language`]) all come out of these declarations, so that an editor, a page and the generator cannot
 //! disagree. What a declaration cannot say (names that must exist, codes that must differ) is checked on the
 //! lowered draft.
 
@@ -33,17 +33,17 @@ macro_rules! grammar {
         #[allow(clippy::struct_field_names, reason = "they are the keys of the language")]
         #[derive(Debug)]
         pub(crate) struct $Keys {
-            $(#[doc = $key_en] pub $key: $crate::load::grammar::key::Key<$Form>,)*
+            $(#[doc = $key_en] pub $key: $crate::language::grammar::key::Key<$Form>,)*
         }
 
         #[doc = $en]
         #[allow(clippy::doc_markdown, reason = "the JSON Schema has the same sentences")]
         pub(crate) const $KEYS: $Keys = $Keys {
-            $($key: $crate::load::grammar::key::Key::new(
+            $($key: $crate::language::grammar::key::Key::new(
                 stringify!($key),
                 grammar!(@must $must),
-                $crate::load::grammar::kind::Doc::new($key_en, $key_zh),
-                $crate::load::grammar::kind::Said {
+                $crate::language::grammar::kind::Doc::new($key_en, $key_zh),
+                $crate::language::grammar::kind::Said {
                     default: grammar!(@maybe $($default)?),
                     example: grammar!(@maybe $($example)?),
                     faults: &[$($($crate::diagnostic::FaultCode::$fault),+)?],
@@ -53,17 +53,17 @@ macro_rules! grammar {
 
         impl $Keys {
             /// All of its keys.
-            pub const TABLE: &'static $crate::load::grammar::kind::Table = &$crate::load::grammar::kind::Table {
+            pub const TABLE: &'static $crate::language::grammar::kind::Table = &$crate::language::grammar::kind::Table {
                 name: $name,
                 name_zh: $name_zh,
-                doc: $crate::load::grammar::kind::Doc::new($en, $zh),
+                doc: $crate::language::grammar::kind::Doc::new($en, $zh),
                 example: include_str!(concat!("examples/", stringify!($Keys), ".yaml")),
                 keys: &[$($($first.any(),)+)? $($KEYS.$key.any(), $($($next.any(),)+)?)*],
             };
         }
 
-        impl $crate::load::grammar::form::Form for $Keys {
-            const KIND: $crate::load::grammar::kind::Kind = $crate::load::grammar::kind::Kind::Map(Self::TABLE);
+        impl $crate::language::grammar::form::Form for $Keys {
+            const KIND: $crate::language::grammar::kind::Kind = $crate::language::grammar::kind::Kind::Map(Self::TABLE);
             type Value<'a> = $crate::syntax::Node<'a>;
 
             fn read(node: $crate::syntax::Node<'_>) -> Option<Self::Value<'_>> {

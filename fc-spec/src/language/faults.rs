@@ -2,7 +2,7 @@
 //! declaration adds.
 
 use crate::diagnostic::FaultCode;
-use crate::load::grammar::{
+use crate::language::grammar::{
     AT_MOST_ONCE, AnyKey, Command, FIELD_FORMS, File, GROUPED, Kind, ONCE, Report, Stream, TEXT,
     Table,
 };

@@ -1,6 +1,6 @@
 //! What may stand under a key, as an example.
 
-use crate::load::grammar::{AnyKey, Kind};
+use crate::language::grammar::{AnyKey, Kind};
 
 /// As the key's declaration has it, or any value where one is as good as another.
 pub(super) fn of(key: &AnyKey) -> Option<String> {

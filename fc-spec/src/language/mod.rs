@@ -1,0 +1,18 @@
+//! The spec language: its keys and words, declared once, with a reference for people and a JSON Schema for editors.
+//!
+//! **Architecture invariant.** The loader, the reference and the schema read the same tables, so they cannot disagree.
+//! All of this depends on the language alone, not on any spec.
+
+pub(crate) mod ambiguous_scalar;
+mod example;
+mod faults;
+pub(crate) mod grammar;
+mod reference;
+pub(crate) mod scalar;
+mod schema;
+
+#[cfg(test)]
+pub(crate) use reference::tables;
+pub(crate) use reference::words;
+pub use reference::{Key, Part, Takes, Word, reference};
+pub use schema::schema;
