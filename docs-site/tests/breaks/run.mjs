@@ -22,7 +22,7 @@ const alone = process.argv.includes('--alone')
 const green = process.argv.includes('--green')
 const KEYS = ['name', 'file', 'find', 'replace', 'test', 'pattern', 'says']
 
-/** Whether a pattern fits the title of a test. A title that is made at run time fits every pattern. */
+/** True if a pattern fits the title of a test. Titles made at run time fit every pattern. */
 function fits(pattern, file) {
   const titles = readFileSync(path.join(site, file), 'utf8').matchAll(/\btest\((['`])(.*?)\1,/g)
   return [...titles].some(([, , title]) => title.includes('${') || new RegExp(pattern).test(title))
