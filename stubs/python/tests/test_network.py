@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import logging
 import shutil
+import socket
 import ssl
+import struct
 import tempfile
 import unittest
 from dataclasses import dataclass, field, replace
@@ -232,6 +234,15 @@ class Network(AsyncCase):
         writer.close()
         self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
         await robot.shutdown(0)
+
+    async def test_an_app_that_resets_its_connection_holds_up_no_shutdown(self) -> None:
+        robot = await self.robot({100: echo})
+        with socket.create_connection(self.address) as app:
+            while robot.counters.connections == 0:
+                await asyncio.sleep(0)
+            app.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        # The robot has not been told of the reset yet.
+        await asyncio.wait_for(robot.shutdown(0), PATIENCE)
 
     async def test_a_body_too_deep_is_refused_and_the_connection_stays(self) -> None:
         robot = await self.robot({100: echo})

@@ -230,6 +230,10 @@ fn is_bare(fence: &str) -> bool {
 fn code(source: &str) -> String {
     let source = one_line(source);
     let mut out = String::with_capacity(source.len() + 2);
+    if !source.is_empty() && !has_any(&source, b"{<`") {
+        out.extend(["`", &source, "`"]);
+        return out;
+    }
     let mut rest = source.as_str();
     while let Some(at) = [rest.find("{{"), rest.find("<!--")]
         .into_iter()
@@ -364,6 +368,9 @@ fn pieces(source: &str) -> Vec<Piece<'_>> {
 
 /// Escapes what is outside of code spans.
 fn inline(source: &str) -> String {
+    if !has_any(source, b"{\\<&!`") {
+        return source.to_owned();
+    }
     let mut out = String::with_capacity(source.len());
     for piece in pieces(source) {
         match piece {
@@ -432,6 +439,19 @@ fn push_text(out: &mut String, source: &str) {
             (plain, _) => out.push(plain),
         }
     }
+}
+
+/// True if one of the ASCII marks occurs. Most text has none.
+fn has_any(text: &str, marks: &[u8]) -> bool {
+    let mut bytes = text.as_bytes().chunks(64);
+    bytes.any(|chunk| {
+        let has = |mark: &u8| {
+            chunk
+                .iter()
+                .fold(false, |found, byte| found | (byte == mark))
+        };
+        marks.iter().any(has)
+    })
 }
 
 fn longest_run(source: &str) -> usize {

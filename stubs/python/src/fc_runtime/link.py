@@ -430,7 +430,12 @@ class Link(asyncio.Protocol):
             return
         if not self._is_at_end and transport.can_write_eof():
             # To close with something unread resets the connection, and what was sent may be lost with it.
-            transport.write_eof()
+            try:
+                transport.write_eof()
+            except OSError:
+                # The other side has reset the connection, and the loop has not seen it yet.
+                transport.abort()
+                return
             if not self._is_reading:
                 transport.resume_reading()
             self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
