@@ -2,8 +2,8 @@
 
 use fc_codegen::target::FILE;
 use fc_spec::diagnostic::Faults;
+use fc_spec::index::places;
 use fc_spec::lint::{faults, lint, settings, waive};
-use fc_spec::load::places;
 
 use crate::check::{Denied, Shown};
 use crate::help::{Help, Part};

@@ -1,7 +1,8 @@
 //! `fcproto where`.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Place as Written, load, places};
+use fc_spec::index::{Item, Place as Written, places};
+use fc_spec::load::load;
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 

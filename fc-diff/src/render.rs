@@ -3,7 +3,7 @@
 use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::pick;
 use crate::version::Version;
-use fc_spec::load::{Item, Place};
+use fc_spec::index::{Item, Place};
 use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
 use fc_spec::source::Span;

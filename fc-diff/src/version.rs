@@ -2,7 +2,8 @@
 
 use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Places, Trees};
+use fc_spec::index::{Places, places};
+use fc_spec::load::Trees;
 use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
@@ -191,7 +192,7 @@ impl Version {
             Some(model) => Ok(Self {
                 name,
                 model,
-                places: trees.places(),
+                places: places(&sources),
                 sources,
             }),
             None => Err(VersionError::Faulty {

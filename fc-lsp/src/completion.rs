@@ -6,8 +6,8 @@
 use crate::language::{self, both};
 use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Faults;
+use fc_spec::index::{OtherKey, Site, site_at};
 use fc_spec::language::Word;
-use fc_spec::load::{OtherKey, Site, site_at};
 use fc_spec::source::{FileId, SourceFile, Span};
 use fc_spec::syntax::parse;
 use gen_lsp_types::{CompletionItem, CompletionItemKind, MarkupContent, MarkupKind, TextEdit};

@@ -6,7 +6,7 @@ use crate::language::{self, both};
 use crate::snapshot::Snapshot;
 use fc_codegen::emit::rust;
 use fc_reflect::sample::{Profile, Samples};
-use fc_spec::load::{Item, Role, Site};
+use fc_spec::index::{Item, Role, Site};
 use fc_spec::model::Lang;
 use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
 use fc_spec::source::FileId;
@@ -97,7 +97,7 @@ pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
         of_part(&mut text, snapshot, owner, item)?;
     } else {
         let place = snapshot.places().get(item)?;
-        let (title, about) = fc_spec::load::described(snapshot.trees(), place)?;
+        let (title, about) = fc_spec::index::described(snapshot.trees(), place)?;
         described(&mut text, &title, about.as_ref(), lang);
     }
     Some(text)

@@ -1,7 +1,7 @@
 //! The thing that is meant at a place of a file.
 
 use crate::snapshot::Snapshot;
-use fc_spec::load::{Item, Place, Role, Site};
+use fc_spec::index::{Item, Place, Role, Site};
 use fc_spec::source::{FileId, Span};
 
 /// A thing, and the words at which it is meant.

@@ -2,7 +2,7 @@
 
 use crate::snapshot::Snapshot;
 use fc_diff::Finding;
-use fc_spec::load::{Item, Place, Role, sites};
+use fc_spec::index::{Item, Place, Role, sites};
 use fc_spec::model::{Lang, RangeUse};
 use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{CodeLens, Command, Location};

@@ -19,7 +19,7 @@ pub fn prepare_rename(
     let place = snapshot.places().get(&meant.item)?;
     let item = (&meant.item, place);
     let name = name(snapshot, &meant.item);
-    fc_spec::rename::rename(snapshot.trees(), item, snapshot.uses(), &name)?;
+    fc_spec::rename::rename(snapshot.index(), item, &name)?;
     Some(PrepareRenamePlaceholder {
         range: snapshot.range(meant.span),
         placeholder: name,
@@ -27,7 +27,7 @@ pub fn prepare_rename(
 }
 
 /// What a thing is called in code; of a field not its wire key.
-fn name(snapshot: &Snapshot, item: &fc_spec::load::Item) -> String {
+fn name(snapshot: &Snapshot, item: &fc_spec::index::Item) -> String {
     let owner = item.owner.as_deref();
     let owner = owner.and_then(|owner| snapshot.known().analysis().types().named(owner));
     let field = owner.and_then(|owner| match &owner.shape {
@@ -49,7 +49,7 @@ pub fn rename(
     let lang = snapshot.settings.lang;
     let changes = meant(snapshot, at).and_then(|meant| {
         let place = snapshot.places().get(&meant.item)?;
-        fc_spec::rename::rename(snapshot.trees(), (&meant.item, place), snapshot.uses(), new)
+        fc_spec::rename::rename(snapshot.index(), (&meant.item, place), new)
     });
     let changes = changes.ok_or_else(|| {
         lang.pick("这里没有可以重命名的内容", "nothing here can be renamed")

@@ -5,7 +5,8 @@ use crate::settings::Settings;
 use fc_codegen::check::check_trees;
 use fc_diff::{Against, Finding, diff_since, waive};
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Partial, Place, Places, Site, Trees, Uses, described, site_at};
+use fc_spec::index::{Index, Item, Place, Places, Site, Uses, described, site_at};
+use fc_spec::load::{Partial, Trees};
 use fc_spec::model::{Group, Model, Operation, RangeUse, Text, Types};
 use fc_spec::source::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{
@@ -33,7 +34,7 @@ pub struct Snapshot {
 #[derive(Debug)]
 pub struct State {
     project: Arc<Project>,
-    trees: Trees,
+    index: Index,
     /// What was wrong with files on the disk.
     unread: Faults,
     today: String,
@@ -60,7 +61,7 @@ impl State {
         self.analysis.get_or_init(|| {
             let mut faults = self.unread.clone();
             let requirements = self.project.targets.requirements();
-            let checked = check_trees(&self.trees, &requirements, &mut faults);
+            let checked = check_trees(self.index.trees(), &requirements, &mut faults);
             if let Ok(model) = &checked.read
                 && !faults.has_errors()
             {
@@ -79,7 +80,7 @@ impl State {
 
     /// Where each thing is written.
     pub fn places(&self) -> &Places {
-        self.places.get_or_init(|| self.trees.places())
+        self.places.get_or_init(|| self.index.places())
     }
 
     /// The title of an operation or type; of what else the spec declares, what its file says.
@@ -92,7 +93,7 @@ impl State {
         if item.is_type() {
             return Some(self.analysis().types().named(&item.name)?.title.clone());
         }
-        described(&self.trees, place).map(|(title, _)| title)
+        described(self.index.trees(), place).map(|(title, _)| title)
     }
 
     /// What differs from the last release; nothing where there is none, or while the spec has errors.
@@ -121,14 +122,14 @@ impl Snapshot {
     pub(crate) fn new(
         project: Arc<Project>,
         settings: Arc<Settings>,
-        (trees, unread): (Trees, Faults),
+        (index, unread): (Index, Faults),
         documents: Vec<(Uri, Option<i32>)>,
         today: String,
         before: Option<Arc<State>>,
     ) -> Self {
         let state = State {
             project: Arc::clone(&project),
-            trees,
+            index,
             unread,
             today,
             analysis: OnceLock::new(),
@@ -148,13 +149,19 @@ impl Snapshot {
     /// The files.
     #[must_use]
     pub fn sources(&self) -> &Sources {
-        self.state.trees.sources()
+        self.trees().sources()
     }
 
     /// The files as trees.
     #[must_use]
     pub fn trees(&self) -> &Trees {
-        &self.state.trees
+        self.state.index.trees()
+    }
+
+    /// The files with what has been found in each.
+    #[must_use]
+    pub fn index(&self) -> &Index {
+        &self.state.index
     }
 
     /// What checking it comes to.
@@ -179,7 +186,7 @@ impl Snapshot {
     #[must_use]
     pub fn uses(&self) -> &Uses {
         let uses = &self.state.uses;
-        uses.get_or_init(|| self.state.trees.uses())
+        uses.get_or_init(|| self.state.index.uses())
     }
 
     /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for

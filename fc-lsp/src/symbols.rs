@@ -1,7 +1,7 @@
 //! The things that a file says, as an outline; and those of the spec, to be found by their names.
 
 use crate::snapshot::Snapshot;
-use fc_spec::load::{Item, Place};
+use fc_spec::index::{Item, Place};
 use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolKind, WorkspaceSymbol};
 use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use crate::settings::Settings;
 use crate::snapshot::{Snapshot, State};
 use crate::uri;
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::Trees;
+use fc_spec::index::Index;
 use fc_spec::source::{SourceFile, Sources};
 use fc_spec::syntax::{is_spec_file, read_dir};
 use gen_lsp_types::{TextDocumentContentChangeEvent, Uri};
@@ -24,7 +24,7 @@ pub struct Workspace {
     /// Those that the client has open, by their paths in the project.
     open: BTreeMap<String, Document>,
     /// Of the last snapshot: of the next one, all but what has changed is parsed.
-    trees: Trees,
+    index: Index,
     snapshot: Option<Arc<Snapshot>>,
     before: Option<Arc<State>>,
 }
@@ -47,7 +47,7 @@ impl Workspace {
             today,
             disk: (Sources::new(), Faults::new()),
             open: BTreeMap::new(),
-            trees: Trees::default(),
+            index: Index::default(),
             snapshot: None,
             before: None,
         };
@@ -139,11 +139,11 @@ impl Workspace {
         unread.extend(faults.iter().filter(|fault| !is_open(fault)).cloned());
         let documents = sources.iter().map(|(_, file)| self.document(&file.path));
         let documents = documents.collect();
-        self.trees = self.trees.with(&sources);
+        self.index = self.index.with(self.index.trees().with(&sources));
         let snapshot = Arc::new(Snapshot::new(
             Arc::clone(&self.project),
             Arc::clone(&self.settings),
-            (self.trees.clone(), unread),
+            (self.index.clone(), unread),
             documents,
             self.today.clone(),
             self.before.clone(),

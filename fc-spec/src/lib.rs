@@ -10,6 +10,7 @@
 pub mod diagnostic;
 pub mod fix;
 pub mod format;
+pub mod index;
 pub mod language;
 pub mod lint;
 pub mod load;

@@ -57,8 +57,12 @@ pub const fn is_hidden(character: char) -> bool {
 
 /// True for text with a control or hidden character. Most text is decided by its bytes.
 #[must_use]
+#[allow(
+    clippy::needless_bitwise_bool,
+    reason = "without branches it becomes vector instructions"
+)]
 pub fn has_unprintable(text: &str) -> bool {
-    // First bytes of all such characters, and of some others. A fold without branches becomes vector instructions.
+    // First bytes of all such characters, and of some others.
     let is_suspect = text.bytes().fold(false, |found, byte| {
         let is_ascii = (byte < 0x20) | (byte == 0x7F);
         let is_lead =

@@ -2,10 +2,11 @@
 //!
 //! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
 
+use crate::index::{Index, Item, Place, described, entry_at};
 use crate::language::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
-use crate::load::{Item, Place, Trees, Uses, described, entry_at, written};
+use crate::load::written;
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Entry, Node};
 
@@ -15,21 +16,20 @@ use crate::syntax::{Entry, Node};
 /// Whether the name is free, and one that a thing can have, shows when the result is loaded.
 #[must_use]
 pub fn rename(
-    trees: &Trees,
+    index: &Index,
     (item, place): (&Item, &Place),
-    uses: &Uses,
     new: &str,
 ) -> Option<Vec<(Span, String)>> {
-    let tree = trees.tree(place.key.file)?;
+    let tree = index.trees().tree(place.key.file)?;
     let entry = entry_at(tree.root(), place.key)?;
     let mut changes: Vec<(Span, String)> = Vec::new();
     if let Some(table) = sent(item) {
-        changes.push(code_name(trees, (table, entry), new)?);
+        changes.push(code_name(index, (table, entry), new)?);
     } else if entry.key.as_str() == Some(&item.name) {
         changes.push((entry.key.span(), new.to_owned()));
     }
-    let uses = uses.of(item);
-    changes.extend(uses.map(|sought| (sought.span, new.to_owned())));
+    let uses = index.uses();
+    changes.extend(uses.of(item).map(|sought| (sought.span, new.to_owned())));
     (!changes.is_empty()).then_some(changes)
 }
 
@@ -46,18 +46,18 @@ fn sent(item: &Item) -> Option<&'static Table> {
 
 /// Sets the name in code of what has a wire key.
 fn code_name(
-    trees: &Trees,
+    index: &Index,
     (table, entry): (&'static Table, Entry<'_>),
     new: &str,
 ) -> Option<(Span, String)> {
     let (node, name) = (entry.value, COMMON.name.name);
-    let file = trees.sources().get(entry.key.span().file)?;
+    let file = index.trees().sources().get(entry.key.span().file)?;
     if let Some(old) = COMMON.name.of(node) {
         return Some((old.span(), new.to_owned()));
     }
     let pair = format!("{name}: {new}");
     if node.as_mapping().is_none() {
-        let long = longhand(trees, file, node, &pair)?;
+        let long = longhand(index, file, node, &pair)?;
         return Some((node.span(), long));
     }
     let mut forms = FIELD_FORMS.iter();
@@ -97,14 +97,14 @@ fn code_name(
 }
 
 /// A field in its short form has no room for a name, and takes its text from its type.
-fn longhand(trees: &Trees, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
+fn longhand(index: &Index, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
     let span = node.span();
     let short = file.text.get(span.start..span.end)?;
     let named = short.trim_matches(['[', ']', '?', ' ', '"', '\'']);
-    let places = trees.places();
+    let places = index.places();
     let mut named = places.named(named);
     let (_, place) = named.find(|(item, _)| item.is_type())?;
-    let (title, _) = described(trees, place)?;
+    let (title, _) = described(index.trees(), place)?;
     let in_quotes = short.contains(['?', '[']) && !short.starts_with(['"', '\'', '[']);
     let ty = if in_quotes {
         format!("\"{short}\"")

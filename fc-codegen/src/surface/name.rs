@@ -2,7 +2,7 @@
 
 use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
-use fc_spec::load::{Item, Places};
+use fc_spec::index::{Item, Places};
 use fc_spec::model::Text;
 use fc_spec::source::Span;
 use fc_spec::text;

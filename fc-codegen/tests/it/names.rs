@@ -9,7 +9,8 @@ use fc_codegen::surface::language::{
 };
 use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::load::{load, places};
+use fc_spec::index::places;
+use fc_spec::load::load;
 use fc_spec::model::Lang;
 use fc_spec::source::Sources;
 use std::fs;

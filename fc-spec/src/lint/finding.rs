@@ -1,7 +1,7 @@
 //! What a rule has found.
 
 use super::rule::Rule;
-use crate::load::Item;
+use crate::index::Item;
 use crate::model::{Text, Waiver, fingerprint};
 
 /// Something that a rule objects to.

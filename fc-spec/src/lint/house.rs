@@ -5,8 +5,8 @@ use super::predicate::Test;
 use super::rule::{Category, Level, Rule};
 use super::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
 use crate::diagnostic::LintCode;
+use crate::index::Item;
 use crate::language::grammar as language;
-use crate::load::Item;
 use crate::model::{Model, Text, TypeShape};
 use serde_json::Value;
 

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::rule::Level;
 use super::settings::Settings;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::{Item, Places};
+use crate::index::{Item, Places};
 use crate::source::{FileId, Span};
 use crate::text;
 use std::borrow::Borrow;

@@ -2,8 +2,8 @@
 
 use super::Finding;
 use super::rule::Rule;
+use crate::index::Item;
 use crate::language::grammar as language;
-use crate::load::Item;
 use crate::model::{
     EnumValue, Field, Group, Kind, Model, Operation, StructType, Text, TypeDef, TypeShape, Variant,
 };

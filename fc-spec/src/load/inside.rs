@@ -91,7 +91,7 @@ fn of(kind: &'static Kind, node: Node<'_>) -> Inside {
         Kind::List { of, .. } if node.as_sequence().is_some() => Inside::Items(of),
         Kind::Either(kinds) => {
             let mut kinds = kinds.iter();
-            let fits = kinds.find(|kind| shape::could_be(kind, node));
+            let fits = kinds.find(|kind| kind.could_be(node));
             fits.map_or(Inside::Free, |kind| of(kind, node))
         }
         Kind::ByKey { tables, otherwise } if node.as_mapping().is_some() => {

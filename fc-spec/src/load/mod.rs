@@ -12,7 +12,7 @@
 
 mod check;
 mod consequence;
-mod draft;
+pub(crate) mod draft;
 mod edit;
 #[cfg(test)]
 mod examples;
@@ -20,17 +20,14 @@ mod govern;
 mod inside;
 mod lower;
 mod partial;
-mod places;
 mod process;
 mod questions;
 mod resolve;
 mod section;
 mod settle;
 mod shape;
-mod site;
 pub(crate) mod texts;
 mod trees;
-mod uses;
 
 use crate::diagnostic::Faults;
 use crate::model::Languages;
@@ -38,29 +35,18 @@ use crate::source::Sources;
 use draft::Draft;
 
 pub use partial::{Loaded, Partial};
-pub use places::{Item, Place, Places};
 pub use settle::{Said, SettleError, Settled, settle};
-pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
 pub use trees::Trees;
-pub use uses::{Uses, uses};
 
 pub(crate) use crate::names::is_snake as is_operation_name;
 pub(crate) use edit::text as written;
 pub(crate) use inside::{Inside, inside};
-pub(crate) use site::entry_at;
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// Reads a spec whose texts are in both languages: what it says, as far as it can be read, and all of its faults.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     Trees::new(sources).load(Languages::All, faults)
-}
-
-/// Where each thing is written that [`load`] reads. It is asked for apart: few ask, and to remember every place takes as
-/// much room as the model itself.
-#[must_use]
-pub fn places(sources: &Sources) -> Places {
-    Trees::new(sources).places()
 }
 
 /// Reads a spec as a draft, whose places lie in its trees; and whether all of it could be read.

@@ -1,16 +1,15 @@
 //! The files of a spec as trees, which stay while other files change.
 
-use super::places::{Own, Places};
+use super::draft::Draft;
 use super::section::Parsed;
-use super::uses::{Named, Uses};
-use super::{Loaded, check, lower, partial, places, read, section, uses};
+use super::{Loaded, check, lower, partial, read, section};
 use crate::diagnostic::Faults;
 use crate::model::Languages;
 use crate::source::{FileId, SourceFile, Sources};
 use crate::syntax::{Tree, parse_parts};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// The files of a spec as trees: what reads a spec again and again, such as an editor's server, reads of the files that have
 /// not changed what it has read before.
@@ -27,8 +26,6 @@ struct File {
     tree: Option<Tree<'static>>,
     is_whole: bool,
     faults: Faults,
-    own: OnceLock<Arc<Own>>,
-    named: OnceLock<Arc<Named>>,
 }
 
 impl fmt::Debug for File {
@@ -91,30 +88,23 @@ impl Trees {
         })
     }
 
-    /// Where each thing is written.
-    #[must_use]
-    pub fn places(&self) -> Places {
-        let new: Vec<_> = self
-            .files
-            .iter()
-            .filter(|it| it.own.get().is_none())
-            .collect();
-        together(&new, |file| file.own(&self.sources));
-        let own = self.files.iter().map(|file| file.own(&self.sources));
-        Places::of_files(own.collect())
+    /// Returns `true` if a file of these was not parsed again since `other`.
+    pub(crate) fn shares(&self, other: &Self, id: FileId) -> bool {
+        match (self.file(id), other.file(id)) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            _ => false,
+        }
     }
 
-    /// Every place at which a thing is named.
-    #[must_use]
-    pub fn uses(&self) -> Uses {
-        let new: Vec<_> = self
-            .files
-            .iter()
-            .filter(|it| it.named.get().is_none())
-            .collect();
-        together(&new, |file| file.named());
-        let named = self.files.iter().map(|file| file.named());
-        Uses::of_files(named.collect())
+    /// Hands on the draft of one file alone; `None` if it has no tree.
+    pub(crate) fn draft_of<T>(&self, id: FileId, then: impl FnOnce(&Draft<'_>) -> T) -> Option<T> {
+        let parsed = self.file(id)?.parsed()?;
+        let sections = section::of_file(&parsed);
+        Some(then(&lower::lower(
+            &sections,
+            &self.sources,
+            Languages::Any,
+        )))
     }
 
     /// Those files of which there are trees, and what is wrong with each and with the others; and whether there are no
@@ -156,8 +146,6 @@ impl File {
             tree: tree.map(Tree::bare),
             is_whole,
             faults,
-            own: OnceLock::new(),
-            named: OnceLock::new(),
         }
     }
 
@@ -175,27 +163,5 @@ impl File {
             gaps: self.faults.gaps(),
             is_whole: self.is_whole,
         })
-    }
-
-    fn own(&self, sources: &Sources) -> Arc<Own> {
-        let own = self.own.get_or_init(|| {
-            let parsed = self.parsed();
-            let sections = parsed.as_ref().map(section::of_file).unwrap_or_default();
-            Arc::new(places::own(&lower::lower(
-                &sections,
-                sources,
-                Languages::Any,
-            )))
-        });
-        Arc::clone(own)
-    }
-
-    fn named(&self) -> Arc<Named> {
-        let named = self.named.get_or_init(|| {
-            let tree = self.tree.as_ref().filter(|_| self.is_whole);
-            let tree = tree.map(|tree| tree.over(&self.source.text));
-            Arc::new(tree.as_ref().map(uses::named).unwrap_or_default())
-        });
-        Arc::clone(named)
     }
 }

@@ -1,8 +1,8 @@
 //! At which keys of the language the faults of a spec lie, and whether the keys say so.
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults};
+use fc_spec::index::{Role, Site, sites};
 use fc_spec::language::{Part, reference};
-use fc_spec::load::{Role, Site, sites};
 use fc_spec::source::Sources;
 use fc_spec::syntax::parse;
 use std::collections::BTreeSet;

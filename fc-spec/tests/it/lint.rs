@@ -5,8 +5,9 @@
 
 use crate::syntax_support;
 use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::index::places;
 use fc_spec::lint::{Finding, Rule, Settings, faults, lint, settings, waive};
-use fc_spec::load::{load, places};
+use fc_spec::load::load;
 use fc_spec::model::{Lang, Model};
 use fc_spec::source::Sources;
 use std::collections::BTreeSet;

@@ -2,7 +2,8 @@
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Item, Loaded, load, places};
+use fc_spec::index::{Item, places};
+use fc_spec::load::{Loaded, load};
 use fc_spec::model::{Availability, TypeDef, TypeShape};
 use fc_spec::source::Sources;
 

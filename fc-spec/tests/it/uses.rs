@@ -2,7 +2,8 @@
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
-use fc_spec::load::{Trees, places, site_at, uses};
+use fc_spec::index::{Index, places, site_at, uses};
+use fc_spec::load::Trees;
 use fc_spec::model::Languages;
 use fc_spec::source::{FileId, SourceFile, Sources};
 use fc_spec::syntax::parse;
@@ -67,9 +68,9 @@ fn no_offset_of_a_file_is_too_odd() {
 
 /// A file that has changed, that has become no YAML, and that is as it was again: each time it is as if all were read anew.
 #[test]
-fn trees_that_stay_say_what_new_ones_do() {
+fn index_of_files_that_stay_finds_what_a_new_one_does() {
     for sources in specs() {
-        let mut trees = Trees::new(&sources);
+        let mut index = Index::new(Trees::new(&sources));
         let files: Vec<_> = sources.iter().map(|(_, file)| file.clone()).collect();
         for file in files {
             let broken = file.text.replacen(": ", ": [", 1);
@@ -77,15 +78,15 @@ fn trees_that_stay_say_what_new_ones_do() {
             for text in [moved, broken, file.text.clone()] {
                 let mut changed = sources.clone();
                 changed.replace(SourceFile::new(file.path.as_str(), text));
-                trees = trees.with(&changed);
-                let new = Trees::new(&changed);
-                let faults = [&trees, &new].map(|trees| {
+                index = index.with(index.trees().with(&changed));
+                let new = Index::new(Trees::new(&changed));
+                let faults = [&index, &new].map(|index| {
                     let mut faults = Faults::new();
-                    let _ = trees.load(Languages::All, &mut faults);
+                    let _ = index.trees().load(Languages::All, &mut faults);
                     faults.iter().cloned().collect::<Vec<_>>()
                 });
                 assert_eq!(faults[0], faults[1], "{}", file.path);
-                let (kept, read) = (trees.places(), new.places());
+                let (kept, read) = (index.places(), new.places());
                 assert!(kept.iter().eq(read.iter()), "{}", file.path);
                 for (id, _) in changed.iter() {
                     let own = read.iter().filter(|(_, place)| place.key.file == id);
@@ -95,7 +96,7 @@ fn trees_that_stay_say_what_new_ones_do() {
                     found.sort_by_key(|(item, _)| *item);
                     assert_eq!(found, own);
                 }
-                assert!(trees.uses().iter().eq(new.uses().iter()));
+                assert!(index.uses().iter().eq(new.uses().iter()));
             }
         }
     }

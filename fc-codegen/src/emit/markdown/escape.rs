@@ -442,6 +442,10 @@ fn push_text(out: &mut String, source: &str) {
 }
 
 /// True if one of the ASCII marks occurs. Most text has none.
+#[allow(
+    clippy::needless_bitwise_bool,
+    reason = "without branches it becomes vector instructions"
+)]
 fn has_any(text: &str, marks: &[u8]) -> bool {
     let mut bytes = text.as_bytes().chunks(64);
     bytes.any(|chunk| {

@@ -1,6 +1,7 @@
 //! What a declaration says, as data: what may stand where, and one sentence about it.
 
 use crate::diagnostic::FaultCode;
+use crate::syntax::Node;
 use crate::vocabulary::Meaning;
 
 /// What a value may be.
@@ -74,6 +75,22 @@ pub(crate) enum Kind {
         /// What it is where it has none of them.
         otherwise: &'static Kind,
     },
+}
+
+impl Kind {
+    /// Returns `true` if the node has the outer form of this kind: scalar, list or mapping.
+    pub fn could_be(&self, node: Node<'_>) -> bool {
+        match self {
+            Self::Map(_) | Self::Entries { .. } | Self::ByKey { .. } | Self::Body => {
+                node.as_mapping().is_some()
+            }
+            Self::List { .. } => node.as_sequence().is_some(),
+            Self::Type => node.as_scalar().is_some() || node.as_sequence().is_some(),
+            Self::Either(kinds) => kinds.iter().any(|kind| kind.could_be(node)),
+            Self::Json => true,
+            _ => node.as_scalar().is_some(),
+        }
+    }
 }
 
 /// One sentence in both languages.

@@ -300,7 +300,7 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
 
 /// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
 fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, texts: Languages, faults: &mut Faults) {
-    let candidates: Vec<_> = kinds.iter().filter(|kind| could_be(kind, node)).collect();
+    let candidates: Vec<_> = kinds.iter().filter(|kind| kind.could_be(node)).collect();
     let chosen = candidates
         .iter()
         .find(|kind| fits(kind, node))
@@ -311,20 +311,6 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, texts: Languages, faul
     } else {
         let expected = describe_either(kinds);
         wrong_kind(&expected, node, at, faults);
-    }
-}
-
-/// Whether the node has the outer form (scalar, list or mapping) of the kind.
-pub(super) fn could_be(kind: &Kind, node: Node<'_>) -> bool {
-    match kind {
-        Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => {
-            node.as_mapping().is_some()
-        }
-        Kind::List { .. } => node.as_sequence().is_some(),
-        Kind::Type => node.as_scalar().is_some() || node.as_sequence().is_some(),
-        Kind::Either(kinds) => kinds.iter().any(|kind| could_be(kind, node)),
-        Kind::Json => true,
-        _ => node.as_scalar().is_some(),
     }
 }
 

@@ -1,8 +1,6 @@
 //! Every key and value of a file, and what the language says of it: for editors.
 
 use super::places::{Item, Place};
-use super::shape;
-use super::trees::Trees;
 use crate::language::grammar::{
     ACCEPTED, ANSWER, AVAILABLE, Answer, Audience, Available, COMMON, Choice, Command, Conflict,
     Constants, CoordinateSystem, DEPRECATED, DeclaredError, ENUM_VALUE, ERROR, Entity, Enum,
@@ -11,6 +9,7 @@ use crate::language::grammar::{
     Series, SetOff, Store, Stream, Struct, Table, both_languages,
 };
 use crate::language::{Word, words};
+use crate::load::Trees;
 use crate::model::{RangeUse, Text, Type};
 use crate::source::Span;
 use crate::syntax::{Entry, Node, Style};
@@ -154,7 +153,7 @@ impl<'t> Walk<'t> {
             Kind::Body => self.chosen(asked, (&WIRE_KEY, &FIELD_KIND), node, see),
             Kind::Either(kinds) => {
                 let mut kinds = kinds.iter();
-                if let Some(kind) = kinds.find(|kind| shape::could_be(kind, node)) {
+                if let Some(kind) = kinds.find(|kind| kind.could_be(node)) {
                     self.mapping(asked, kind, node, see);
                 }
             }
@@ -235,7 +234,7 @@ fn items(kind: &'static Kind, node: Node<'_>) -> Option<&'static Kind> {
         Kind::Type => Some(kind),
         Kind::Either(kinds) => {
             let mut kinds = kinds.iter();
-            let fits = kinds.find(|kind| shape::could_be(kind, node))?;
+            let fits = kinds.find(|kind| kind.could_be(node))?;
             items(fits, node)
         }
         _ => None,
@@ -443,7 +442,7 @@ fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table
     match kind {
         Kind::Map(table) => tables.push(table),
         Kind::Either(kinds) => {
-            let kinds = kinds.iter().filter(|kind| shape::could_be(kind, node));
+            let kinds = kinds.iter().filter(|kind| kind.could_be(node));
             kinds.for_each(|kind| possible(kind, node, tables));
         }
         Kind::ByKey { tables: each, .. } => {

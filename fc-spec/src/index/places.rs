@@ -1,9 +1,9 @@
 //! Where each thing that a spec says is written.
 
-use super::draft::{Draft, Place as Written, Placed};
 use crate::diagnostic::nearest;
 use crate::language::grammar::{self, TRANSPORT, Table};
 use crate::language::reference;
+use crate::load::draft::{Draft, Place as Written, Placed};
 use crate::model::{Direction, Kind, Text, TypeShape};
 use crate::source::{FileId, Span};
 use crate::syntax::{Entry, Node};

@@ -2,8 +2,6 @@
 
 use super::places::{Item, Place, Places};
 use super::site::{Sought, sites};
-use super::trees::Trees;
-use crate::source::Sources;
 use crate::syntax::Tree;
 use std::sync::Arc;
 
@@ -18,12 +16,6 @@ pub(super) struct Named {
     all: Vec<Sought>,
     /// The same by their names.
     by_name: Vec<usize>,
-}
-
-/// Of a whole spec, as far as its files can be read as YAML.
-#[must_use]
-pub fn uses(sources: &Sources) -> Uses {
-    Trees::new(sources).uses()
 }
 
 /// Of one file.

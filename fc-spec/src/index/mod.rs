@@ -1,0 +1,107 @@
+//! Where a spec says and names each thing: for editors, for renames, and for messages about a model.
+//!
+//! It reads files on their own, whether the spec is sound or not, and keeps what it has found of files that stay.
+
+mod places;
+mod site;
+mod uses;
+
+use crate::load::Trees;
+use crate::source::{FileId, Sources};
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use std::sync::{Arc, OnceLock};
+
+pub use places::{Item, Place, Places};
+pub(crate) use site::entry_at;
+pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
+pub use uses::Uses;
+
+/// The files of a spec as trees, with the places and names found in each.
+#[derive(Clone, Debug, Default)]
+pub struct Index {
+    trees: Trees,
+    files: Vec<Arc<FileIndex>>,
+}
+
+/// What has been found in one file.
+#[derive(Debug, Default)]
+struct FileIndex {
+    own: OnceLock<Arc<places::Own>>,
+    named: OnceLock<Arc<uses::Named>>,
+}
+
+/// Where each thing of a spec is written.
+#[must_use]
+pub fn places(sources: &Sources) -> Places {
+    Index::new(Trees::new(sources)).places()
+}
+
+/// Every place at which a thing of a spec is named, as far as its files can be read as YAML.
+#[must_use]
+pub fn uses(sources: &Sources) -> Uses {
+    Index::new(Trees::new(sources)).uses()
+}
+
+impl Index {
+    /// Of these files.
+    #[must_use]
+    pub fn new(trees: Trees) -> Self {
+        Self::default().with(trees)
+    }
+
+    /// Of these files. What has been found in those that are the same as here stays.
+    #[must_use]
+    pub fn with(&self, trees: Trees) -> Self {
+        let kept = |id: FileId| {
+            let file = self.files.get(usize::try_from(id.0).ok()?)?;
+            trees.shares(&self.trees, id).then(|| Arc::clone(file))
+        };
+        let files = trees.sources().iter();
+        Self {
+            files: files.map(|(id, _)| kept(id).unwrap_or_default()).collect(),
+            trees,
+        }
+    }
+
+    /// The files as trees.
+    #[must_use]
+    pub fn trees(&self) -> &Trees {
+        &self.trees
+    }
+
+    /// Where each thing is written.
+    #[must_use]
+    pub fn places(&self) -> Places {
+        Places::of_files(self.each(|file| &file.own, |id| self.trees.draft_of(id, places::own)))
+    }
+
+    /// Every place at which a thing is named.
+    #[must_use]
+    pub fn uses(&self) -> Uses {
+        Uses::of_files(self.each(
+            |file| &file.named,
+            |id| self.trees.tree(id).as_ref().map(uses::named),
+        ))
+    }
+
+    /// One part of what is found in each file. On all processors, unless a single file is new: that is not handed to
+    /// other threads, which may be busy with something longer.
+    fn each<T: Default + Send + Sync>(
+        &self,
+        part: impl Fn(&FileIndex) -> &OnceLock<Arc<T>> + Sync,
+        find: impl Fn(FileId) -> Option<T> + Sync,
+    ) -> Vec<Arc<T>> {
+        let ids = self.trees.sources().iter().map(|(id, _)| id);
+        let files: Vec<_> = ids.zip(&self.files).collect();
+        let found = |(id, file): &(FileId, &Arc<FileIndex>)| {
+            let made = || Arc::new(find(*id).unwrap_or_default());
+            Arc::clone(part(file).get_or_init(made))
+        };
+        let is_new = |(_, file): &&(FileId, &Arc<FileIndex>)| part(file).get().is_none();
+        if files.iter().filter(is_new).nth(1).is_some() {
+            files.par_iter().map(found).collect()
+        } else {
+            files.iter().map(found).collect()
+        }
+    }
+}
