@@ -158,7 +158,7 @@ impl Snapshot {
         self.state.index.trees()
     }
 
-    /// The files with what has been found in each.
+    /// The index of the files.
     #[must_use]
     pub fn index(&self) -> &Index {
         &self.state.index

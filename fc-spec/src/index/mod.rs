@@ -1,6 +1,6 @@
-//! Where a spec says and names each thing: for editors, for renames, and for messages about a model.
+//! The places where a spec declares and names each thing: for editors, for renames, and for messages about a model.
 //!
-//! It reads files on their own, whether the spec is sound or not, and keeps what it has found of files that stay.
+//! It reads each file alone, in sound and unsound specs, and keeps its results for unchanged files.
 
 mod places;
 mod site;
@@ -23,7 +23,7 @@ pub struct Index {
     files: Vec<Arc<FileIndex>>,
 }
 
-/// What has been found in one file.
+/// The places and names in one file.
 #[derive(Debug, Default)]
 struct FileIndex {
     own: OnceLock<Arc<places::Own>>,
@@ -43,13 +43,13 @@ pub fn uses(sources: &Sources) -> Uses {
 }
 
 impl Index {
-    /// Of these files.
+    /// Returns the index of these files.
     #[must_use]
     pub fn new(trees: Trees) -> Self {
         Self::default().with(trees)
     }
 
-    /// Of these files. What has been found in those that are the same as here stays.
+    /// Returns the index of other files. The parts of unchanged files stay.
     #[must_use]
     pub fn with(&self, trees: Trees) -> Self {
         let kept = |id: FileId| {
@@ -84,7 +84,7 @@ impl Index {
         ))
     }
 
-    /// One part of what is found in each file. On all processors, unless a single file is new: that is not handed to
+    /// Finds one part of the index in each file. On all processors, unless a single file is new: that is not handed to
     /// other threads, which may be busy with something longer.
     fn each<T: Default + Send + Sync>(
         &self,

@@ -88,7 +88,10 @@ impl<'t> Docs<'t> {
             }
             match block {
                 Block::Prose(text) => prose(text.trim(), comment, width, &mut line),
-                Block::Raw(text) => text.lines().for_each(&mut line),
+                // Names and keys of the spec in it must not end the comment either.
+                Block::Raw(text) => (text.lines()).for_each(|text| {
+                    line(&(comment.code)(&clean(text)));
+                }),
             }
         }
     }
