@@ -5,7 +5,7 @@ use super::digest::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 #[cfg(feature = "server")]
-use super::kept::Kept;
+use super::prepared_response::PreparedBody;
 use crate::digest::{Compute as _, Sum};
 use crate::message::{Message, write_enveloped};
 use crate::protocol::{DigestOf, Header, Protocol};
@@ -211,12 +211,12 @@ impl<P: Protocol> Encoder<P> {
     ///
     /// [`FrameError::FrameTooLong`]; `out` is as before.
     #[cfg(feature = "server")]
-    pub(crate) fn kept<E: Message>(
+    pub(crate) fn prepared_response<E: Message>(
         &mut self,
         out: &mut Vec<u8>,
         id: FrameId,
         envelope: &E,
-        body: &Kept<DigestOf<P>>,
+        body: &PreparedBody<DigestOf<P>>,
     ) -> Result<(), FrameError> {
         let tail = body.tail(envelope);
         let data = body.text().len() + tail.text.len();

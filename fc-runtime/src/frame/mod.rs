@@ -16,7 +16,7 @@ mod encoder;
 mod error;
 mod gzip;
 #[cfg(feature = "server")]
-mod kept;
+mod prepared_response;
 
 pub use buffer::Body;
 pub use decoder::Decoder;
@@ -34,9 +34,9 @@ pub use error::{FrameError, FrameId};
 #[doc(hidden)]
 pub use gzip::{Deflater, InflateError, Inflater};
 #[cfg(feature = "server")]
-pub(crate) use kept::Kept;
+pub(crate) use prepared_response::PreparedBody;
 #[cfg(feature = "server")]
-pub use kept::PreparedResponse;
+pub use prepared_response::PreparedResponse;
 
 use crate::protocol::Protocol;
 use buffer::Buffer;

@@ -5,7 +5,7 @@ use super::counters::Answered;
 use super::output::Output;
 use super::peer::Peer;
 use crate::clock;
-use crate::frame::{FrameError, FrameId, Kept};
+use crate::frame::{FrameError, FrameId, PreparedBody};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
@@ -34,10 +34,10 @@ impl<P: Protocol> Peer<P> {
     }
 
     /// Answers with success and a response that has been checked and encoded before.
-    pub(super) fn answer_kept(&self, request: FrameId, response: &Kept<DigestOf<P>>) {
+    pub(super) fn answer_prepared(&self, request: FrameId, response: &PreparedBody<DigestOf<P>>) {
         self.succeed(request, |output, envelope| {
             let (encoder, out) = (&mut output.encoder, &mut output.out);
-            encoder.kept(out, request.answer(), envelope, response)
+            encoder.prepared_response(out, request.answer(), envelope, response)
         });
     }
 

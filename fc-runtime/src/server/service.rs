@@ -141,7 +141,7 @@ impl<P: Protocol> Request<'_, P> {
             + 'static,
     {
         self.typed(handler, |peer, frame, output| match output {
-            Ok(response) => peer.answer_kept(frame, response.kept()),
+            Ok(response) => peer.answer_prepared(frame, response.body()),
             Err(refusal) => peer.refuse(frame, refusal),
         })
     }

@@ -1,4 +1,4 @@
-//! Bodies that are kept, to be sent often with envelopes of their own.
+//! Bodies that are encoded once and sent with many envelopes.
 
 use crate::digest::{DigestAlgorithm, Md5, Sum};
 use crate::json::{BodyError, to_vec};
@@ -16,12 +16,12 @@ use std::sync::Arc;
 ///
 /// [`Request::handle_prepared`](crate::Request::handle_prepared) sends it.
 pub struct PreparedResponse<M, A: DigestAlgorithm = Md5> {
-    kept: Arc<Kept<A>>,
+    body: Arc<PreparedBody<A>>,
     message: PhantomData<fn() -> M>,
 }
 
 /// A JSON object without its closing brace.
-pub(crate) struct Kept<A: DigestAlgorithm> {
+pub(crate) struct PreparedBody<A: DigestAlgorithm> {
     text: Vec<u8>,
     midstate: A::Midstate,
 }
@@ -44,20 +44,20 @@ impl<M: Message, A: DigestAlgorithm> PreparedResponse<M, A> {
         text.pop();
         let midstate = A::after(&text);
         Ok(Self {
-            kept: Arc::new(Kept { text, midstate }),
+            body: Arc::new(PreparedBody { text, midstate }),
             message: PhantomData,
         })
     }
 
-    pub(crate) fn kept(&self) -> &Kept<A> {
-        &self.kept
+    pub(crate) fn body(&self) -> &PreparedBody<A> {
+        &self.body
     }
 }
 
 impl<M, A: DigestAlgorithm> Clone for PreparedResponse<M, A> {
     fn clone(&self) -> Self {
         Self {
-            kept: Arc::clone(&self.kept),
+            body: Arc::clone(&self.body),
             message: PhantomData,
         }
     }
@@ -66,11 +66,11 @@ impl<M, A: DigestAlgorithm> Clone for PreparedResponse<M, A> {
 /// Shows the length alone: bodies may hold what must not be logged.
 impl<M, A: DigestAlgorithm> fmt::Debug for PreparedResponse<M, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "PreparedResponse({} bytes)", self.kept.text.len())
+        write!(f, "PreparedResponse({} bytes)", self.body.text.len())
     }
 }
 
-impl<A: DigestAlgorithm> Kept<A> {
+impl<A: DigestAlgorithm> PreparedBody<A> {
     pub(super) fn text(&self) -> &[u8] {
         &self.text
     }
