@@ -86,7 +86,7 @@ impl std::error::Error for RetireError {}
 
 /// Takes an operation out, with the comments above it; `why` stands beside its code from then on.
 ///
-/// What still names the operation, and whatever else is wrong without it, is for [`load`](crate::load::load) to say of the result.
+/// [`load`](crate::load::load) reports the errors of the result, such as uses of the operation that are left.
 ///
 /// # Errors
 /// [`RetireError`].

@@ -101,7 +101,7 @@ fn too_small(
         .also(body.place.name(), which)
 }
 
-/// What the JSON of a type needs at least, with each key that its example has.
+/// A lower bound for the JSON of a type, with the keys of its example.
 #[derive(Clone, Copy, Default)]
 struct Extent {
     /// Levels of nesting: objects, lists, and those in examples of `json`. A number has none.
@@ -120,21 +120,23 @@ fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Exte
     };
     let extent = match draft.types.get(index).map(|ty| &ty.def.shape) {
         Some(TypeShape::Struct(shape)) => {
+            // Two braces, and one comma less than there are keys.
             let mut whole = Extent {
                 levels: 1,
-                bytes: 2,
+                bytes: 1,
             };
-            for (index, field) in shape.fields.iter().enumerate() {
+            for field in &shape.fields {
                 let inner = extent_of_field(field, &mut named);
                 whole.levels = whole.levels.max(inner.levels.saturating_add(1));
                 // A key under a condition may exclude another one.
                 if field.details().condition.is_none() && field.example != Example::Absent {
-                    let marks = if index == 0 { 3 } else { 4 };
+                    // Two quotation marks, a colon and a comma.
                     let key = u64::try_from(field.wire.len()).unwrap_or(u64::MAX);
-                    let entry = key.saturating_add(marks).saturating_add(inner.bytes);
+                    let entry = key.saturating_add(4).saturating_add(inner.bytes);
                     whole.bytes = whole.bytes.saturating_add(entry);
                 }
             }
+            whole.bytes = whole.bytes.max(2);
             whole
         }
         // The object of a choice is that of its variant.
