@@ -3,10 +3,13 @@
 
 use crate::common::net::{Raw, Robot, loopback, nowhere, service};
 use crate::common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
+use fc_derive::{Command, Message};
+use fc_runtime::json::{Reader, Writer};
 use fc_runtime::{
-    ClientConfig, Command, Connection, Decoder, Encoder, Gzip, Protocol, Report, Request,
-    read_enveloped,
+    BodyError, ClientConfig, Command, Connection, Decoder, Encoder, FrameId, FromJson, Gzip,
+    Protocol, Report, Request, ToJson, read_enveloped,
 };
+use std::collections::BTreeMap;
 use std::io;
 use std::pin::Pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,17 +26,15 @@ fn echo(text: &str) -> Echo {
     }
 }
 
-/// A request that is no more than some bytes, and much work all the same.
-fn packed(id: u32) -> Vec<u8> {
+/// A frame of a few bytes that inflate to a large `body`.
+fn packed(id: FrameId, body: &[u8]) -> Vec<u8> {
     let gzip = Gzip {
         from_bytes: 0,
         level: 9,
     };
-    let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(1 << 20));
     let mut bytes = Vec::new();
     let mut encoder = Encoder::<Toy>::new().gzip(gzip);
-    let id = command(Echo::CODE, id);
-    encoder.bytes(&mut bytes, id, text.as_bytes()).unwrap();
+    encoder.bytes(&mut bytes, id, body).unwrap();
     bytes
 }
 
@@ -90,41 +91,77 @@ async fn a_handler_is_not_within_the_gate() {
     })
     .await;
     let (mut one, mut two) = (robot.raw(), robot.raw());
-    one.send(&packed(1)).await;
+    one.send(&packed(command(Echo::CODE, 1), &large('x'))).await;
     begun.recv().await.unwrap();
-    two.send(&packed(2)).await;
+    two.send(&packed(command(Echo::CODE, 2), &large('x'))).await;
     assert_eq!(one.result().await.1, Toy::RESULTS.success.code);
     assert_eq!(two.result().await.1, Toy::RESULTS.success.code);
+}
+
+/// Texts whose reading takes as long as a test wants, by their first letter.
+static WORKS: Mutex<BTreeMap<char, Arc<Work>>> = Mutex::new(BTreeMap::new());
+
+/// The readings that have begun, and the leave to end them.
+struct Work {
+    begun: AtomicUsize,
+    released: Mutex<mpsc::Receiver<()>>,
+}
+
+/// A text that takes long to read.
+#[derive(Clone, Debug, PartialEq)]
+struct Text(String);
+
+impl FromJson for Text {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
+        let text = String::read(reader)?;
+        let letter = text.chars().next().unwrap();
+        let work = Arc::clone(&WORKS.lock().unwrap()[&letter]);
+        work.begun.fetch_add(1, Ordering::SeqCst);
+        work.released.lock().unwrap().recv().unwrap();
+        Ok(Self(text))
+    }
+}
+
+impl ToJson for Text {
+    fn write(&self, writer: &mut Writer<'_>) {
+        self.0.write(writer);
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Message, Command)]
+#[fc(code = 0x0107, name = "large", effect = "read", response = Done)]
+struct Large {
+    text: Text,
+}
+
+fn large(letter: char) -> Vec<u8> {
+    format!(r#"{{"text":"{}"}}"#, letter.to_string().repeat(1 << 20)).into_bytes()
 }
 
 /// With one worker thread, the other connection could not be served if the large frame kept it.
 #[fc_test::test(flavor = "multi_thread", worker_threads = 1)]
 async fn a_large_frame_does_not_keep_the_thread() {
-    one_after_the_other(packed).await;
+    one_after_the_other('a', |id| packed(command(Large::CODE, id), &large('a'))).await;
 }
 
 /// Those that are not packed take their turn as well; here a thread would be free for the second one.
 #[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
 async fn large_frames_go_one_at_a_time() {
-    one_after_the_other(|id| {
-        let text = format!(r#"{{"text":"{}"}}"#, "x".repeat(1 << 20));
-        frame(command(Echo::CODE, id), text.as_bytes())
-    })
-    .await;
+    one_after_the_other('b', |id| frame(command(Large::CODE, id), &large('b'))).await;
 }
 
-/// Two apps send a `large` frame each. While the first is dealt with the second is not, and a third app
-/// notices nothing.
-async fn one_after_the_other(large: fn(u32) -> Vec<u8>) {
+/// Two apps send a `large` frame each. While the first is read the second is not, and a third app notices
+/// nothing.
+async fn one_after_the_other(letter: char, large: fn(u32) -> Vec<u8>) {
     let (release, released) = mpsc::channel();
-    let released = Mutex::new(released);
-    let begun = Arc::new(AtomicUsize::new(0));
-    let count = Arc::clone(&begun);
-    let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
-        if request.code() == Echo::CODE && request.body().len() > 1000 {
-            count.fetch_add(1, Ordering::SeqCst);
-            // Stands for work: to read what is in the body.
-            released.lock().unwrap().recv().unwrap();
+    let work = Arc::new(Work {
+        begun: AtomicUsize::new(0),
+        released: Mutex::new(released),
+    });
+    WORKS.lock().unwrap().insert(letter, Arc::clone(&work));
+    let robot = Robot::start(loopback(), |request: Request<'_, Toy>| {
+        if request.code() == Large::CODE {
+            return request.handle(|_, _: Large| async { Ok(Done {}) });
         }
         service(request)
     })
@@ -132,15 +169,15 @@ async fn one_after_the_other(large: fn(u32) -> Vec<u8>) {
     let (mut one, mut two) = (robot.raw(), robot.raw());
     one.send(&large(1)).await;
     two.send(&large(2)).await;
-    until(|| begun.load(Ordering::SeqCst) != 0).await;
+    until(|| work.begun.load(Ordering::SeqCst) != 0).await;
     let other = robot.pipe(ClientConfig::new());
     for _ in 0..100 {
         assert!(other.call(&echo("x")).await.is_ok());
     }
     // One after the other.
-    assert_eq!(begun.load(Ordering::SeqCst), 1);
+    assert_eq!(work.begun.load(Ordering::SeqCst), 1);
     release.send(()).unwrap();
-    until(|| begun.load(Ordering::SeqCst) != 1).await;
+    until(|| work.begun.load(Ordering::SeqCst) != 1).await;
     release.send(()).unwrap();
     assert!(one.recv().await.is_some());
     assert!(two.recv().await.is_some());
@@ -153,7 +190,7 @@ async fn a_flood_of_streams_takes_turns_with_the_others() {
     let (stream, end) = tokio::io::duplex(8 << 20);
     robot.handle.serve_data(end, nowhere()).unwrap();
     let mut flood = Raw::new(stream);
-    let stream = fc_runtime::FrameId {
+    let stream = FrameId {
         kind: <Toy as fc_runtime::Protocol>::STREAM,
         ..command(9, 9)
     };
