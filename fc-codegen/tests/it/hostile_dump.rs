@@ -9,6 +9,7 @@ use fc_spec::model::Dump;
 use proc_macro2::{TokenStream, TokenTree};
 use serde_json::Value;
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 /// A word that no spec has. Outside comments and literals it is code.
 const MARK: &str = "PWNED";
@@ -223,11 +224,13 @@ fn fault(path: &str, text: &str) -> Option<String> {
     Some(format!("it has the text as code behind {line:?}"))
 }
 
-/// One of so many mutations is tried; `FC_EVERY=1` tries them all.
+/// One of so many mutations is tried; `FC_EVERY=1` tries them all. `FC_DUMPS` is a folder for the dumps that are not refused
+/// and change a file.
 const EVERY: usize = 97;
 
 #[test]
 fn no_text_of_a_dump_becomes_code() {
+    let keep = std::env::var_os("FC_DUMPS").map(PathBuf::from);
     let every = std::env::var("FC_EVERY").map_or(EVERY, |every| every.parse().unwrap());
     let targets = Targets::of([
         Product::Rust,
@@ -265,10 +268,13 @@ fn no_text_of_a_dump_becomes_code() {
             continue;
         };
         made += 1;
-        for artifact in artifacts {
-            if before.get(&artifact.path) != Some(&artifact.contents)
-                && let Some(fault) = fault(&artifact.path, &artifact.contents)
-            {
+        let mut changed = artifacts;
+        changed.retain(|it| before.get(&it.path) != Some(&it.contents));
+        if let Some(folder) = keep.as_ref().filter(|_| !changed.is_empty()) {
+            std::fs::write(folder.join(format!("{made:05}.json")), dump.to_string()).unwrap();
+        }
+        for artifact in changed {
+            if let Some(fault) = fault(&artifact.path, &artifact.contents) {
                 faults.push(format!("{place} = {text:?}: {}: {fault}", artifact.path));
             }
         }
