@@ -1,4 +1,4 @@
-//! Changes that fix a fault.
+//! Code actions that fix errors.
 
 use crate::diagnostics::diagnostic;
 use crate::snapshot::Snapshot;
@@ -8,8 +8,8 @@ use fc_spec::model::Lang;
 use fc_spec::source::Span;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, Uri};
 
-/// The changes that fix the faults in a range of a file. A fault of several places can be fixed at each of them, there or
-/// at all at once.
+/// Returns the changes that fix the errors in a range of a file. An error with several places gets one change for the
+/// place in the range, and one for all places.
 #[must_use]
 pub fn actions(snapshot: &Snapshot, uri: &Uri, range: Range) -> Vec<CodeAction> {
     let Some((file, start)) = snapshot.offset(uri, range.start) else {
@@ -52,8 +52,8 @@ pub fn actions(snapshot: &Snapshot, uri: &Uri, range: Range) -> Vec<CodeAction> 
     actions
 }
 
-/// All fixes of a file that leave no choice, as one change; `None` where there are none. Others may show behind them, for the
-/// next time.
+/// Returns one change with all fixes of a file that need no choice, or `None` without such a fix. Applying it can
+/// reveal further errors.
 #[must_use]
 pub fn fix_all(snapshot: &Snapshot, uri: &Uri) -> Option<CodeAction> {
     let file = snapshot.file(uri)?;
@@ -70,7 +70,6 @@ pub fn fix_all(snapshot: &Snapshot, uri: &Uri) -> Option<CodeAction> {
     })
 }
 
-/// The title of a change at all places of a fault.
 fn everywhere(snapshot: &Snapshot, title: &str, places: usize) -> String {
     match snapshot.settings.lang {
         Lang::En => format!("at all {places} places: {title}"),
@@ -78,7 +77,7 @@ fn everywhere(snapshot: &Snapshot, title: &str, places: usize) -> String {
     }
 }
 
-/// Most of a text that a title shows.
+/// The maximum number of characters of a text that a title shows.
 const SHOWN: usize = 40;
 
 fn title(snapshot: &Snapshot, fix: &Fix) -> String {
@@ -96,7 +95,7 @@ fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     format!("{what}{}{}", lang.pick("：", ": "), lang.text(&fix.message))
 }
 
-/// On one line, and not too long.
+/// Returns the text on one line, cut to [`SHOWN`] characters.
 fn shown(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     if line.chars().count() <= SHOWN {

@@ -1,7 +1,7 @@
-//! What may be written at a place: keys, words, names of things, the next code.
+//! Completion of keys, words, names and the next free code.
 //!
-//! What is being written is not yet what the language wants, mostly not even YAML. So the text is read as it would be with
-//! a word in the place of what has been typed, as a key or as a value, and with its brackets closed.
+//! A half-typed line breaks the grammar of the spec language, and usually YAML as well. So completion parses the file
+//! with a placeholder word at the cursor. It tries the placeholder as a key and as a value, and closes open brackets.
 
 use crate::language::{self, both};
 use crate::snapshot::Snapshot;
@@ -12,10 +12,10 @@ use fc_spec::source::{FileId, SourceFile, Span};
 use fc_spec::syntax::parse;
 use gen_lsp_types::{CompletionItem, CompletionItemKind, MarkupContent, MarkupKind, TextEdit};
 
-/// A word that no spec has.
+/// The placeholder. No spec contains this word.
 const WORD: &str = "zzz_here_zzz";
 
-/// What may be written at an offset.
+/// Returns the completion items at an offset.
 #[must_use]
 pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<CompletionItem> {
     let Some(source) = snapshot.source(file).filter(|source| source.whole) else {
@@ -45,7 +45,7 @@ pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<C
     Vec::new()
 }
 
-/// The word in which the cursor is, and the line around it.
+/// The word at the cursor, and the line around it.
 struct Typed<'s> {
     start: usize,
     end: usize,
@@ -72,7 +72,7 @@ impl<'s> Typed<'s> {
         })
     }
 
-    /// The file's text with a word in place of what has been typed, as the most likely thing first.
+    /// Returns the text of the file with the placeholder instead of the typed word, the more likely reading first.
     fn readings(&self, source: &SourceFile) -> Vec<String> {
         let Self { before, after, .. } = self;
         let in_key = {
@@ -95,7 +95,7 @@ impl<'s> Typed<'s> {
     }
 }
 
-/// The brackets that a line leaves open.
+/// Returns the brackets that close the open brackets of a line.
 fn closing(before: &str, after: &str) -> String {
     let mut open = Vec::new();
     for c in before.chars().chain(after.chars()) {
@@ -171,7 +171,7 @@ impl Found<'_> {
         let after = if key.opens_lines { ":" } else { ": " };
         let new_text = key.name.to_owned() + after;
         let range = self.snapshot.range(self.replaced);
-        // What has to be there comes first.
+        // Required keys come first.
         let rank = if known.required { '0' } else { '1' };
         let rank = format!("{rank}{:03}", self.items.len());
         if let Some(item) = self.items.last_mut() {
@@ -192,7 +192,7 @@ impl Found<'_> {
         );
     }
 
-    /// The things of a kind that the spec has; of enum values those of the enum in which the place is.
+    /// Adds the definitions of a kind. Enum values come from the enum at the cursor only.
     fn things(&mut self, kind: &str, site: &Site<'_>) {
         let lang = self.snapshot.settings.lang;
         let known = self.snapshot.known();

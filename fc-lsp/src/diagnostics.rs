@@ -1,4 +1,4 @@
-//! What is wrong, as an editor shows it.
+//! Diagnostics in the form of the protocol.
 
 use crate::snapshot::Snapshot;
 use crate::uri;
@@ -8,11 +8,11 @@ use fc_spec::source::Span;
 use gen_lsp_types as lsp;
 use std::collections::BTreeMap;
 
-/// Who says so.
+/// The source that diagnostics name.
 const SOURCE: &str = "fcproto";
 
-/// What is wrong in each file of which anything is, by what the client calls it: in those of the spec, and where the project says
-/// what the lint is to look for.
+/// Returns the diagnostics of each file that has any, by the file's URI. The files are those of the spec and those with
+/// lint settings.
 #[must_use]
 pub fn diagnostics(snapshot: &Snapshot) -> BTreeMap<String, Vec<lsp::Diagnostic>> {
     let mut files: BTreeMap<String, Vec<lsp::Diagnostic>> = BTreeMap::new();
@@ -40,14 +40,13 @@ pub fn diagnostics(snapshot: &Snapshot) -> BTreeMap<String, Vec<lsp::Diagnostic>
     files
 }
 
-/// A fault of the spec.
 pub fn diagnostic(snapshot: &Snapshot, fault: &Diagnostic) -> lsp::Diagnostic {
     shown(fault, snapshot.settings.lang, |span| {
         snapshot.location(span)
     })
 }
 
-/// A fault whose places are in the files that `locate` knows.
+/// Converts a diagnostic. `locate` maps each of its spans to a location.
 fn shown(
     fault: &Diagnostic,
     lang: Lang,
@@ -74,7 +73,7 @@ fn shown(
     }
 }
 
-/// What a fault says in a language, with what to do about it on lines of its own.
+/// Returns the message of a diagnostic in a language, followed by its notes on separate lines.
 #[must_use]
 pub fn text(fault: &Diagnostic, lang: Lang) -> String {
     let mut text = lang.text(&fault.message).to_owned();

@@ -1,4 +1,4 @@
-//! Which request is answered by what.
+//! The table of requests and their handlers.
 
 use crate::snapshot::Snapshot;
 use crate::{
@@ -10,7 +10,7 @@ use lsp::Request as _;
 use lsp_server::{ErrorCode, Request, RequestId, Response, ResponseError};
 use serde_json::Value;
 
-/// What the server can do, for the answer to `initialize`.
+/// Returns the capabilities of the server for the response to `initialize`.
 pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
     lsp::ServerCapabilities {
         position_encoding: Some(match encoding {
@@ -57,8 +57,8 @@ pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
     }
 }
 
-/// Whether a request can only be answered when the snapshot has been checked, or takes a check of its own: it is then
-/// answered beside the loop.
+/// Returns `true` if a request needs a checked snapshot or a separate check. The worker then answers it instead of the
+/// loop.
 pub fn waits(method: &str, snapshot: &Snapshot) -> bool {
     let is_one = |others: &[lsp::LspRequestMethod<'_>]| {
         let mut others = others.iter();
@@ -79,12 +79,12 @@ pub fn waits(method: &str, snapshot: &Snapshot) -> bool {
     }
 }
 
-/// The response to a request that is not answered.
+/// Returns an error response.
 pub fn refusal(id: RequestId, code: ErrorCode, message: &str) -> Response {
     Response::new_err(id, code as i32, message.to_owned())
 }
 
-/// Makes the response to a request; without a snapshot, there being no project, with nothing.
+/// Answers a request. Without a project there is no snapshot, and the result is empty.
 pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
     let Request { id, method, params } = request;
     let ask = Ask {
@@ -140,7 +140,7 @@ pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
                 if wants(lsp::CodeActionKind::QuickFix) {
                     found.extend(actions(snapshot, uri, params.range));
                 }
-                // Only who asks for all gets all: it is about the file and not about the place.
+                // Fix-all covers the whole file, so the client gets it only on request.
                 if only.is_some() && wants(lsp::CodeActionKind::SourceFixAll) {
                     found.extend(fix_all(snapshot, uri));
                 }
@@ -178,7 +178,7 @@ pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
     }
 }
 
-/// Whether a kind of action is one of these, or below one: `source.fixAll` is below `source`.
+/// Returns `true` if a kind of action equals one of `asked`, or is below one: `source.fixAll` is below `source`.
 fn is_among(kind: lsp::CodeActionKind, asked: &[lsp::CodeActionKind]) -> bool {
     let kind = String::from(kind);
     asked.iter().any(|asked| {
@@ -188,7 +188,7 @@ fn is_among(kind: lsp::CodeActionKind, asked: &[lsp::CodeActionKind]) -> bool {
     })
 }
 
-/// A request on its way to its answer.
+/// A request, and the snapshot that answers it.
 struct Ask<'s> {
     id: RequestId,
     params: Value,
@@ -203,7 +203,7 @@ impl Ask<'_> {
         self.trying::<R>(|snapshot, params| Ok(answer(snapshot, params)))
     }
 
-    /// The same where the answer may be why there is none, in a sentence for the user.
+    /// Like [`Self::of`], for a handler that can fail with a sentence for the user.
     fn trying<R: lsp::Request>(
         self,
         answer: impl FnOnce(&Snapshot, R::Params) -> Result<R::Result, String>,

@@ -1,11 +1,11 @@
-//! A file laid out as `fcproto fmt` does it.
+//! Formatting of a file with the rules of `fcproto fmt`.
 
 use crate::snapshot::Snapshot;
 use fc_spec::format::format;
 use gen_lsp_types::{TextEdit, Uri};
 
-/// What changes: the lines from the first that differs to the last. `None` for a file that stays as it is because it
-/// cannot be read, which its faults say.
+/// Returns one edit from the first to the last line that changes, or no edit for a formatted file. Returns `None` for a
+/// file that cannot be parsed; its diagnostics give the reason.
 #[must_use]
 pub fn formatting(snapshot: &Snapshot, uri: &Uri) -> Option<Vec<TextEdit>> {
     let file = snapshot.file(uri)?;
@@ -28,7 +28,7 @@ pub fn formatting(snapshot: &Snapshot, uri: &Uri) -> Option<Vec<TextEdit>> {
     }])
 }
 
-/// Bytes of the lines that are the same.
+/// Returns the total length in bytes of the common leading lines.
 fn common<'t>(old: impl Iterator<Item = &'t str>, new: impl Iterator<Item = &'t str>) -> usize {
     let same = old.zip(new).take_while(|(old, new)| old == new);
     same.map(|(line, _)| line.len()).sum()

@@ -1,5 +1,5 @@
-//! What is to be said of a key, a word or a thing, in both languages; of types and messages also what they are in Rust
-//! and an example of them in JSON.
+//! Hover texts of keys, words and definitions, in both languages. Types and messages also show their Rust code and a
+//! JSON example.
 
 use crate::item::of_site;
 use crate::language::{self, both};
@@ -13,10 +13,10 @@ use fc_spec::source::FileId;
 use gen_lsp_types::{Hover, MarkupContent, MarkupKind};
 use std::fmt::Write as _;
 
-/// Most lines of an example or of Rust that are shown.
+/// The maximum number of lines of Rust or JSON that a hover shows.
 const LINES: usize = 60;
 
-/// What is to be said of what is at an offset.
+/// Returns the hover text at an offset.
 #[must_use]
 pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
     let (text, span) = snapshot.at(at, |site| {
@@ -67,12 +67,12 @@ fn of_word(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
     if let Some(word) = words.find(|word| word.word == written) {
         return Some(format!("`{}`\n\n{}", word.word, both(&word.text, lang)));
     }
-    // What its key is about is better than nothing.
+    // For an unknown word, the description of its key.
     let key = language::key(site.part, site.key?)?;
     Some(format!("`{}`\n\n{}", key.name, both(&key.text, lang)))
 }
 
-/// What is to be said of a thing.
+/// Returns the hover text of a definition.
 pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
     let known = snapshot.known().analysis();
     let lang = snapshot.settings.lang;
@@ -134,7 +134,7 @@ fn of_operation(text: &mut String, operation: &Operation, lang: Lang) {
     }
 }
 
-/// Both bodies in Rust, and both messages.
+/// Adds the Rust types and the example messages of both directions.
 fn messages(text: &mut String, snapshot: &Snapshot, model: &Model, operation: &Operation) {
     let bodies: Vec<&str> = operation.bodies().map(|body| body.ty.name()).collect();
     let shown = rust::items(model, &snapshot.project.targets, &bodies);
@@ -148,7 +148,7 @@ fn messages(text: &mut String, snapshot: &Snapshot, model: &Model, operation: &O
     }
 }
 
-/// A field, an enum value or a variant.
+/// Adds a field, an enum value or a variant.
 fn of_part(text: &mut String, snapshot: &Snapshot, owner: &TypeDef, item: &Item) -> Option<()> {
     let lang = snapshot.settings.lang;
     match &owner.shape {
@@ -199,7 +199,7 @@ fn json(text: &mut String, value: &Value) {
     }
 }
 
-/// Rust without its comments, which say again what stands above them.
+/// Returns Rust without doc comments. The hover shows their text already.
 fn without_docs(rust: &str) -> String {
     let is_kept = |line: &&str| !line.trim_start().starts_with("///");
     let lines = rust.lines().filter(is_kept);

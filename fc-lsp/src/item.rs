@@ -1,24 +1,24 @@
-//! The thing that is meant at a place of a file.
+//! The definition that a position refers to.
 
 use crate::snapshot::Snapshot;
 use fc_spec::index::{Item, Place, Role, Site};
 use fc_spec::source::{FileId, Span};
 
-/// A thing, and the words at which it is meant.
+/// A definition, and the words that refer to it.
 #[derive(Clone, Debug)]
 pub struct Meant {
-    /// The thing.
+    /// The definition.
     pub item: Item,
-    /// The words.
+    /// The span of the words.
     pub span: Span,
 }
 
-/// The thing that is named or said at an offset.
+/// Returns the definition that the word at an offset names or defines.
 pub fn meant(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Meant> {
     snapshot.at(at, |site| of_site(snapshot, site))
 }
 
-/// The same of a key or scalar.
+/// Returns the definition that a key or scalar names or defines.
 pub fn of_site(snapshot: &Snapshot, site: &Site<'_>) -> Option<Meant> {
     if let Some(sought) = site.sought() {
         let (item, _) = sought.found(snapshot.places())?;
@@ -39,7 +39,7 @@ pub fn of_site(snapshot: &Snapshot, site: &Site<'_>) -> Option<Meant> {
     Some(Meant { item, span })
 }
 
-/// The thing that this key says: the operation or field rather than the type that is made of it.
+/// Returns the definition with this key. If a type is made from an operation or field, returns the operation or field.
 fn said(snapshot: &Snapshot, key: Span, name: &str) -> Option<Item> {
     let places = snapshot.places().in_file(key.file);
     let here = places.filter(|(_, place)| place.key == key);
@@ -47,7 +47,7 @@ fn said(snapshot: &Snapshot, key: Span, name: &str) -> Option<Item> {
     Some(item.clone())
 }
 
-/// Whether a thing is written around a place.
+/// Returns `true` if the definition at `place` contains the span.
 pub fn holds(place: &Place, span: Span) -> bool {
     let whole = place.whole;
     whole.file == span.file && whole.start <= span.start && span.end <= whole.end

@@ -1,24 +1,24 @@
-//! What the spec language says of its keys and words, found by their names.
+//! Descriptions of the keys and words of the spec language, by name.
 
 use fc_spec::language::{Key, Part, reference};
 use fc_spec::model::Lang;
 use fc_spec::model::Text;
 use std::sync::OnceLock;
 
-/// The key of a part.
+/// Returns a key of a part.
 pub fn key(part: &str, name: &str) -> Option<&'static Key> {
     let part = self::part(part)?;
     part.keys.iter().find(|key| key.name == name)
 }
 
-/// A part by its id.
+/// Returns a part by its id.
 pub fn part(id: &str) -> Option<&'static Part> {
     static LANGUAGE: OnceLock<Vec<Part>> = OnceLock::new();
     let parts = LANGUAGE.get_or_init(reference);
     parts.iter().find(|part| part.id == id)
 }
 
-/// A text in both languages as paragraphs, the client's first.
+/// Returns a text in both languages as paragraphs, the client's language first.
 pub fn both(text: &Text, lang: Lang) -> String {
     let other = match lang {
         Lang::Zh => &text.en,

@@ -1,4 +1,4 @@
-//! What stands above a thing in an editor: the next free code, who uses it, and what breaks since the last release.
+//! Code lenses: free codes, numbers of users, and breaks since the last release.
 
 use crate::snapshot::Snapshot;
 use fc_diff::Finding;
@@ -7,19 +7,20 @@ use fc_spec::model::{Lang, RangeUse};
 use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{CodeLens, Command, Location};
 
-/// The command of clients that show references: the file, the position of the thing, and the places that name it.
+/// The client command that shows references. Its arguments are the file, the position of the definition, and the places
+/// that name it.
 pub const SHOW_REFERENCES: &str = "fc.showReferences";
 
-/// What lenses say that only a check tells.
+/// The contents of lenses that depend on a check.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Checked {
-    /// The next code of each use, by group.
+    /// The next free code of each group and use.
     codes: Vec<Option<u16>>,
-    /// What breaks, and where.
+    /// The breaks: the names they affect, and the message.
     breaks: Vec<(Vec<String>, String)>,
 }
 
-/// The same of what is known with a snapshot.
+/// Returns the contents of lenses for the state that [`Snapshot::known`] returns.
 pub fn checked(snapshot: &Snapshot) -> Checked {
     let known = snapshot.known();
     let uses = [RangeUse::Commands, RangeUse::Reports];
@@ -37,7 +38,7 @@ pub fn checked(snapshot: &Snapshot) -> Checked {
     }
 }
 
-/// All of a file.
+/// Returns all lenses of a file.
 #[must_use]
 pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let mut lenses = free_codes(snapshot, file);
@@ -51,7 +52,7 @@ pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     lenses
 }
 
-/// The code that the next operation gets, above the section that it would stand in.
+/// Returns the next free code, above the section for the next operation.
 fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let mut lenses = Vec::new();
     let Some(tree) = snapshot.trees().tree(file) else {
@@ -77,13 +78,14 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     lenses
 }
 
-/// Whether it is there for others to name it, and not made of an operation or field.
+/// Returns `true` for an item with its own declaration. A type that an operation or field defines inline is not
+/// declared.
 fn is_declared(snapshot: &Snapshot, item: &Item, place: &Place) -> bool {
     let key = snapshot.sources().slice(place.key);
     item.owner.is_none() && key == item.name
 }
 
-/// How many places name a thing; nothing of a thing that no place has to name, such as most commands.
+/// Returns a lens with the number of places that name an item. An item without users gets a lens only if it is a type.
 fn users(snapshot: &Snapshot, item: &Item, place: &Place) -> Option<CodeLens> {
     let uses = snapshot.uses().of(item).map(|sought| sought.span);
     let places: Vec<Location> = uses.filter_map(|span| snapshot.location(span)).collect();
@@ -113,7 +115,7 @@ fn users(snapshot: &Snapshot, item: &Item, place: &Place) -> Option<CodeLens> {
     Some(lens)
 }
 
-/// What breaks since the last release and is not waived, above the operation or type in which it does.
+/// Returns the breaks since the last release that are not waived, each above its operation or type.
 fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let Some(release) = snapshot.project.release() else {
         return Vec::new();
@@ -143,7 +145,7 @@ fn breaking(findings: &[Finding]) -> impl Iterator<Item = &Finding> {
     findings.filter(|finding| finding.is_break() && finding.waived.is_none())
 }
 
-/// The key of the operation or declared type in which a finding shows.
+/// Returns the key of the operation or declared type that contains a finding.
 fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
     let places = snapshot.places();
     let spot = finding.new.iter().find_map(|spot| {
@@ -164,7 +166,7 @@ fn said(snapshot: &Snapshot, span: Span, title: String, tooltip: Option<String>)
         command: Some(Command {
             title,
             tooltip,
-            // A command without a name is a text.
+            // Clients show a command without a name as plain text.
             command: String::new(),
             arguments: None,
         }),

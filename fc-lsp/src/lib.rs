@@ -1,15 +1,15 @@
-//! A language server for protocol specs: what an editor asks while one types, answered by what `fcproto` knows anyway.
+//! A language server for protocol specs.
 //!
 //! ```text
-//! editor ──messages──► serve ──► Workspace: the project's files, those that are open as the editor has them
-//!                        │            └──► Snapshot: one state of them, and what has been found out about it
-//!                        ├──► one file per request: pure functions from a snapshot to an answer
-//!                        └──► Worker: a thread that checks the newest snapshot, and answers what waits for that
+//! editor ──messages──► serve ──► Workspace: the project's files; open files have the editor's text
+//!            │      └──► Snapshot: one state of the files, and the results computed for it
+//!            ├──► one file per request: pure functions from a snapshot to an answer
+//!            └──► Worker: a thread that checks the newest snapshot, and answers the requests that need it
 //! ```
 //!
-//! **Architecture invariant.** Nothing here reads YAML or judges a spec: texts are read, checked, laid out and renamed in by
-//! `fc-spec`, compared by `fc-diff`, spelled in Rust by `fc-codegen`, and shown as JSON by `fc-reflect`. A file that is
-//! open is never read from the disk.
+//! **Architecture invariant.** This crate neither reads YAML nor checks a spec. `fc-spec` parses, checks, formats and
+//! renames, and `fc-diff` compares. `fc-codegen` generates Rust, and `fc-reflect` generates JSON. The server never
+//! reads an open file from the disk.
 
 mod actions;
 mod completion;

@@ -1,20 +1,21 @@
-//! Places as clients count them: lines from 0, columns in units of UTF-16 or in bytes.
+//! Positions in the units of clients: lines from 0, columns in UTF-16 units or bytes.
 
 use fc_spec::source::{SourceFile, Span};
 use gen_lsp_types::{Position, Range, TextDocumentContentChangeEvent};
 
-/// How columns are counted.
+/// The unit of columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// In bytes of UTF-8.
+    /// Bytes of UTF-8.
     Utf8,
-    /// In units of UTF-16, as every client can.
+    /// Units of UTF-16. Every client supports them.
     Utf16,
 }
 
 impl Encoding {
-    /// The byte offset of a position: the end of the line for a column beyond it, the end of the file for a line beyond
-    /// it, and the start of a character for a column inside it.
+    /// Returns the byte offset of a position. A column beyond the end of its line gives the end of the line. A line
+    /// beyond the end of the file gives the end of the file. A column inside a character gives the start of the
+    /// character.
     #[must_use]
     pub fn offset(self, file: &SourceFile, position: Position) -> usize {
         let line = usize::try_from(position.line).unwrap_or(usize::MAX);
@@ -34,7 +35,7 @@ impl Encoding {
         end
     }
 
-    /// The position of a byte offset.
+    /// Returns the position of a byte offset.
     #[must_use]
     pub fn position(self, file: &SourceFile, offset: usize) -> Position {
         let line = file.line(offset);
@@ -50,7 +51,7 @@ impl Encoding {
         }
     }
 
-    /// The range of a span.
+    /// Returns the range of a span.
     #[must_use]
     pub fn range(self, file: &SourceFile, span: Span) -> Range {
         Range {
@@ -59,7 +60,7 @@ impl Encoding {
         }
     }
 
-    /// A file after a change.
+    /// Returns the file after a change.
     #[must_use]
     pub fn changed(self, file: &SourceFile, change: TextDocumentContentChangeEvent) -> SourceFile {
         let (range, new) = match change {
@@ -93,7 +94,7 @@ fn narrow(number: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// A line with characters of one, three and four bytes, and an end of each kind.
+    /// Lines with characters of one, three and four bytes, and both kinds of line ends.
     const TEXT: &str = "a: 中文😀b\r\n第二\n";
 
     #[test]

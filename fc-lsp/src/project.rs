@@ -1,4 +1,4 @@
-//! The project whose spec is edited, and who finds it.
+//! The project of the edited spec, and the interface of the program that finds it.
 
 use fc_codegen::target::{FILE, Targets};
 use fc_diff::release::{DIRECTORY, Releases};
@@ -11,52 +11,52 @@ use fc_spec::source::Sources;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// What the server asks of the program it is part of.
+/// The functions that the server needs from its host program.
 pub trait Host {
-    /// The project at a directory or above it.
+    /// Returns the project at a directory or above it.
     ///
     /// # Errors
-    /// Why there is none: a sentence for the user.
+    /// A sentence for the user if there is no project.
     fn find(&self, directory: &Path) -> Result<Project, String>;
 
-    /// The day for which waivers are looked at, `YYYY-MM-DD`.
+    /// Returns the day that decides whether waivers are expired, `YYYY-MM-DD`.
     fn today(&self) -> String;
 }
 
 /// A project.
 #[derive(Debug)]
 pub struct Project {
-    /// Its directory.
+    /// The project's directory.
     pub root: PathBuf,
-    /// The directory of its spec, from there.
+    /// The directory of the spec, relative to `root`.
     pub spec: PathBuf,
-    /// What is made of the spec.
+    /// The targets that the project generates.
     pub targets: Targets,
     lint: Lint,
     releases: OnceLock<Vec<Release>>,
 }
 
-/// What the project says of the lint, and where.
+/// The lint settings of the project.
 #[derive(Debug)]
 pub struct Lint {
     settings: lint::Settings,
-    /// `fc.yaml` and the files of rules that it names.
+    /// `fc.yaml` and the rule files that it names.
     pub files: Sources,
-    /// What is wrong in them.
+    /// The diagnostics of these files.
     pub faults: Faults,
 }
 
-/// A version of the spec that is out.
+/// A released version of the spec.
 #[derive(Debug)]
 pub struct Release {
-    /// Its number, such as `2024.09`.
+    /// The number, such as `2024.09`.
     pub number: String,
-    /// What it means.
+    /// The model.
     pub model: Model,
 }
 
 impl Project {
-    /// A project that has been found.
+    /// Creates a project and reads its lint settings.
     #[must_use]
     pub fn new(root: PathBuf, spec: PathBuf, targets: Targets) -> Self {
         let mut faults = Faults::new();
@@ -75,14 +75,13 @@ impl Project {
         }
     }
 
-    /// What it says of the lint.
+    /// Returns the lint settings.
     #[must_use]
     pub fn lint(&self) -> &Lint {
         &self.lint
     }
 
-    /// What the lint finds in a model on a day, `YYYY-MM-DD`: nothing while something is wrong with its settings, as then nobody knows
-    /// what it is to look for.
+    /// Returns the lint findings of a model on a day, `YYYY-MM-DD`. Returns none while the lint settings have errors.
     pub fn linted<'p>(
         &self,
         model: &Model,
@@ -98,7 +97,7 @@ impl Project {
         faults(&findings, settings, places)
     }
 
-    /// The last release, if there is one that can be read. It is read when it is asked for first.
+    /// Returns the last release if it is readable. The first call reads the releases.
     #[must_use]
     pub fn release(&self) -> Option<&Release> {
         self.releases().first()
@@ -112,7 +111,7 @@ impl Project {
             .get_or_init(|| self.read_releases().unwrap_or_default())
     }
 
-    /// Whether it is known that there is none.
+    /// Returns `true` if the releases have been read and there are none.
     #[must_use]
     pub fn is_unreleased(&self) -> bool {
         self.releases.get().is_some_and(Vec::is_empty)
@@ -141,7 +140,7 @@ impl Project {
         Some(std::iter::once(last).chain(earlier).collect())
     }
 
-    /// Whether a file says something of the project beside its spec: what is made of it, what the lint looks for, what is released.
+    /// Returns `true` for a file that configures the project: `fc.yaml`, a rule file or a release.
     #[must_use]
     pub fn is_about(&self, file: &Path) -> bool {
         let releases = self.root.join(&self.spec).join(DIRECTORY);

@@ -1,24 +1,24 @@
-//! What waits for the thread that checks: the newest snapshot, and what needs it to be checked.
+//! The queue of the worker: the newest snapshot to check, and the requests behind it.
 
 use lsp_server::RequestId;
 use std::collections::VecDeque;
 
-/// Most requests that wait.
+/// The maximum number of waiting requests.
 const REQUESTS: usize = 64;
 
-/// What waits. An older snapshot than the newest waits for nothing.
+/// The queue. A newer snapshot replaces a waiting one.
 #[derive(Debug)]
 pub struct Queue<S, R> {
     newest: Option<S>,
     requests: VecDeque<(RequestId, R)>,
 }
 
-/// What is done next.
+/// The next job of the worker.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Work<S, R> {
-    /// A snapshot is checked.
+    /// Check a snapshot.
     Check(S),
-    /// A request is answered.
+    /// Answer a request.
     Answer(RequestId, R),
 }
 
@@ -32,12 +32,12 @@ impl<S, R> Default for Queue<S, R> {
 }
 
 impl<S, R> Queue<S, R> {
-    /// Has a snapshot checked, and not the one that has waited for it.
+    /// Queues a snapshot in place of the waiting one.
     pub fn check(&mut self, snapshot: S) {
         self.newest = Some(snapshot);
     }
 
-    /// Has a request answered behind the check; `Err` where too many wait.
+    /// Queues a request behind the check. Returns `Err` if the queue is full.
     pub fn ask(&mut self, id: RequestId, request: R) -> Result<(), RequestId> {
         if self.requests.len() >= REQUESTS {
             return Err(id);
@@ -46,20 +46,20 @@ impl<S, R> Queue<S, R> {
         Ok(())
     }
 
-    /// Takes a request back. Whether it has waited.
+    /// Removes a request. Returns `true` if it was waiting.
     pub fn cancel(&mut self, id: &RequestId) -> bool {
         let before = self.requests.len();
         self.requests.retain(|(known, _)| known != id);
         self.requests.len() < before
     }
 
-    /// Takes everything back; the requests that have waited.
+    /// Empties the queue and returns the requests that were waiting.
     pub fn clear(&mut self) -> Vec<RequestId> {
         self.newest = None;
         self.requests.drain(..).map(|(id, _)| id).collect()
     }
 
-    /// What is done next: the check first, which requests wait for.
+    /// Returns the next job. The check comes first, because requests depend on it.
     pub fn next(&mut self) -> Option<Work<S, R>> {
         if let Some(newest) = self.newest.take() {
             return Some(Work::Check(newest));

@@ -1,11 +1,11 @@
-//! Where a thing is named.
+//! Find references.
 
 use crate::item::meant;
 use crate::snapshot::Snapshot;
 use fc_spec::source::FileId;
 use gen_lsp_types::Location;
 
-/// All places at which the thing at an offset is named, in all files; with its own if that is asked for.
+/// Returns all places that name the item at an offset, in all files. `with_own` adds the place of its definition.
 #[must_use]
 pub fn references(
     snapshot: &Snapshot,

@@ -1,4 +1,4 @@
-//! Giving a thing another name.
+//! Rename.
 
 use crate::item::meant;
 use crate::snapshot::Snapshot;
@@ -9,7 +9,7 @@ use fc_spec::source::{FileId, SourceFile, Span};
 use gen_lsp_types::{PrepareRenamePlaceholder, WorkspaceEdit};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The words at an offset that can be another name, and the name there is.
+/// Returns the renamable words at an offset, and their current name.
 #[must_use]
 pub fn prepare_rename(
     snapshot: &Snapshot,
@@ -26,7 +26,7 @@ pub fn prepare_rename(
     })
 }
 
-/// What a thing is called in code; of a field not its wire key.
+/// Returns the name of an item in code. For a field this is not the wire key.
 fn name(snapshot: &Snapshot, item: &fc_spec::index::Item) -> String {
     let owner = item.owner.as_deref();
     let owner = owner.and_then(|owner| snapshot.known().analysis().types().named(owner));
@@ -37,10 +37,10 @@ fn name(snapshot: &Snapshot, item: &fc_spec::index::Item) -> String {
     field.map_or(&item.name, |field| &field.name).clone()
 }
 
-/// What changes so that the thing at an offset is called otherwise.
+/// Returns the edits that rename the item at an offset.
 ///
 /// # Errors
-/// Why that cannot be, in the client's language: it has no name of its own, or the spec would have errors.
+/// A sentence in the client's language, if the item cannot be renamed or the new name would cause errors.
 pub fn rename(
     snapshot: &Snapshot,
     at: (FileId, usize),
@@ -66,7 +66,7 @@ pub fn rename(
     })
 }
 
-/// What would be wrong after a change that is not wrong now.
+/// Returns the errors that a change would add.
 fn worse(snapshot: &Snapshot, changes: &[(Span, String)]) -> BTreeSet<String> {
     let mut sources = snapshot.sources().clone();
     for (id, file) in snapshot.sources().iter() {
@@ -88,7 +88,7 @@ fn worse(snapshot: &Snapshot, changes: &[(Span, String)]) -> BTreeSet<String> {
         &snapshot.project.targets.requirements(),
         &mut faults,
     );
-    // By code: a fault that is there already may only call the thing by its new name.
+    // Compares the number of errors per code, because a rename can change the messages of existing errors.
     let errors = |faults: &Faults| {
         let lang = snapshot.settings.lang;
         let mut errors: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The loop: messages in, answers and faults out.
+//! The main loop of the server.
 
 use crate::diagnostics::diagnostics;
 use crate::dispatch::{answer, capabilities, refusal, waits};
@@ -19,13 +19,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-/// Most messages that wait here; the client's further ones wait in its pipe.
+/// The maximum number of waiting messages. Further messages wait in the client's pipe.
 const WAITING: usize = 256;
 
-/// How often in a row what is wrong is not told because the client has typed on in the meantime.
+/// The maximum number of results in a row that newer edits may replace before the loop publishes one.
 const SUPERSEDED: usize = 3;
 
-/// Why serving ended before the client said so.
+/// The reason why serving ended early.
 #[derive(Debug)]
 pub struct ServeError(String);
 
@@ -41,13 +41,13 @@ impl fmt::Display for ServeError {
 
 impl std::error::Error for ServeError {}
 
-/// Serves a client until it says that it is done. Whether it has asked for that before, as it should.
+/// Serves a client until it exits. Returns `true` if the client asked for a shutdown first, as the protocol requires.
 ///
-/// The loop takes all messages that wait at once, and waits for nothing but messages: what is wrong is found out by a
-/// thread of its own, which always works on the newest state of the files, and what can only be answered then is answered there.
+/// The loop takes all waiting messages at once and never blocks on a check. A worker thread checks the newest state of
+/// the files and answers the requests that need a check.
 ///
 /// # Errors
-/// [`ServeError`], where there is no beginning.
+/// [`ServeError`] if the initialization fails.
 pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeError> {
     let (id, params) = connection
         .initialize_start()
@@ -82,7 +82,7 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
         is_shut_down: false,
     };
     let receiver = connection.receiver.clone();
-    // It ends with the client's last message, or when it has one for a loop that has ended.
+    // This thread ends after the client's last message, or when the loop no longer receives.
     std::thread::spawn(move || {
         let messages = receiver.iter().map(Event::Message);
         messages
@@ -90,23 +90,23 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
             .try_for_each(|event| sender.send(event))
     });
     let was_asked_to_end = server.run(&events);
-    // What the worker still has to say nobody hears.
+    // The loop has ended, so the worker's remaining events are dropped.
     drop(events);
     server.worker.end();
     Ok(was_asked_to_end)
 }
 
-/// What comes to the loop.
+/// An event of the loop.
 pub(crate) enum Event {
-    /// From the client.
+    /// A message of the client.
     Message(Message),
-    /// What is wrong with a snapshot has been found out.
+    /// The worker has checked a snapshot.
     Checked(Arc<Snapshot>),
-    /// Also how what is known with it differs from the last release.
+    /// The worker has also compared the snapshot with the last release.
     Compared(Arc<Snapshot>),
-    /// A request has been answered beside the loop.
+    /// The worker has answered a request.
     Answered(Response),
-    /// The client is gone, or the thread that checks.
+    /// The client is gone, or the worker thread has ended.
     End,
 }
 
@@ -116,21 +116,21 @@ struct Server<'h> {
     worker: Worker,
     workspace: Option<Workspace>,
     settings: Arc<Settings>,
-    /// What the client was told last of each file of which it was told something.
+    /// The diagnostics that were last sent, by file.
     published: BTreeMap<String, Vec<lsp::Diagnostic>>,
-    /// Files that have changed since.
+    /// The files that have changed since the last current publication.
     touched: BTreeSet<String>,
-    /// How often in a row it was not told.
+    /// The number of results in a row that were not published.
     superseded: usize,
-    /// What it can have seen last in lenses of what a check tells, and how often it was asked to look again.
+    /// The lens contents that the client may have seen, and the number of refreshes requested.
     lenses: lens::Checked,
     refreshes: usize,
-    /// Whether anything has changed that is not being checked.
+    /// `true` if there are changes that the worker does not have yet.
     is_dirty: bool,
     is_shut_down: bool,
 }
 
-/// Whether the loop goes on.
+/// The way the loop continues.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Next {
     GoOn,
@@ -177,7 +177,7 @@ impl Server<'_> {
         Next::GoOn
     }
 
-    /// Has what has changed checked.
+    /// Sends changes to the worker.
     fn check(&mut self) {
         if let Some(workspace) = self.workspace.as_mut().filter(|_| self.is_dirty) {
             self.worker.check(workspace.snapshot());
@@ -214,7 +214,7 @@ impl Server<'_> {
         self.send(answer(request, snapshot.as_deref()));
     }
 
-    /// Has a request answered when its snapshot has been checked, which that waits for first.
+    /// Queues a request for the worker, behind the check of its snapshot.
     fn later(&mut self, request: Request, snapshot: Arc<Snapshot>) {
         self.check();
         if let Err(id) = self.worker.ask(request, snapshot) {
@@ -253,13 +253,13 @@ impl Server<'_> {
                     self.files_changed(&params.changes);
                 }
             }
-            // Others need no answer.
+            // Other notifications need no action.
             _ => {}
         }
         Next::GoOn
     }
 
-    /// Looks for the project in the client's directories, and tells what is wrong with it.
+    /// Looks for the project in the client's directories. Logs the reason if there is none.
     fn begin(&mut self) {
         if self.settings.can_watch {
             self.watch();
@@ -273,7 +273,7 @@ impl Server<'_> {
             }
         }
         if let Some(why) = why {
-            // The first file that is opened may be in one.
+            // The first opened file may still belong to a project.
             self.notify::<lsp::LogMessageNotification>(&lsp::LogMessageParams {
                 kind: lsp::MessageType::Info,
                 message: why,
@@ -294,7 +294,7 @@ impl Server<'_> {
             && let Some(file) = uri::to_path(document.uri.as_ref())
             && let Some(directory) = file.parent()
         {
-            // Where there is no project, nothing is said of the file.
+            // A file outside any project gets no diagnostics.
             let _ = self.find(directory);
         }
         let lsp::TextDocumentItem {
@@ -322,7 +322,7 @@ impl Server<'_> {
             .iter()
             .filter_map(|it| uri::to_path(it.uri.as_ref()));
         if files.any(|file| workspace.project().is_about(&file)) {
-            // While `fc.yaml` cannot be read, the project stays as it was.
+            // The project stays unchanged while `fc.yaml` cannot be read.
             if let Ok(project) = self.host.find(&workspace.project().root.clone()) {
                 workspace.set_project(project);
             }
@@ -332,8 +332,8 @@ impl Server<'_> {
         self.is_dirty = true;
     }
 
-    /// Tells what is wrong, unless the client has typed on in the meantime: then it is told of the newer text, or, where
-    /// that goes on and on, of this.
+    /// Publishes the diagnostics of a snapshot if it is the newest. An outdated snapshot is published only after
+    /// [`SUPERSEDED`] others in a row were skipped.
     fn checked(&mut self, snapshot: &Arc<Snapshot>) {
         let Some(workspace) = &mut self.workspace else {
             return;
@@ -350,7 +350,7 @@ impl Server<'_> {
         self.publish(snapshot, is_newest);
     }
 
-    /// Asks the client to ask for lenses again, where those that it has can be old.
+    /// Asks the client to request lenses again if their contents have changed.
     fn compared(&mut self, snapshot: &Snapshot) {
         if !self.settings.refreshes_lenses {
             return;
@@ -365,10 +365,10 @@ impl Server<'_> {
         }
     }
 
-    /// Tells the client what is wrong in each file, and of which nothing is any more.
+    /// Publishes the diagnostics of each file that changed, including files that have none any more.
     fn publish(&mut self, snapshot: &Snapshot, is_newest: bool) {
         let found = diagnostics(snapshot);
-        // What has changed since is told of once more.
+        // Changed files are published again even if their diagnostics are the same.
         let touched = if is_newest {
             std::mem::take(&mut self.touched)
         } else {
@@ -392,7 +392,7 @@ impl Server<'_> {
         self.published = found;
     }
 
-    /// Asks the client to say when files change beside it.
+    /// Asks the client to report changes of files on the disk.
     fn watch(&mut self) {
         let watchers = ["**/*.yaml", "**/releases/*.json"]
             .map(|pattern| serde_json::json!({ "globPattern": pattern }));
@@ -412,18 +412,18 @@ impl Server<'_> {
         }
     }
 
-    /// To a client that is gone nothing can be said; that it is gone shows where its next message would be.
+    /// Sends a message. Ignores that the client is gone, because the loop notices it on its next receive.
     fn send(&self, message: impl Into<Message>) {
         let _ = self.connection.sender.send(message.into());
     }
 }
 
-/// The parameters of a notification; `None` where they are not as they should be, which nobody can be told.
+/// Returns the parameters of a notification, or `None` if they are invalid. A notification has no error response.
 fn read<P: DeserializeOwned>(params: serde_json::Value) -> Option<P> {
     serde_json::from_value(params).ok()
 }
 
-/// The request that a message takes back.
+/// Returns the request that a message cancels.
 fn cancelled(event: &Event) -> Option<RequestId> {
     let Event::Message(Message::Notification(notification)) = event else {
         return None;

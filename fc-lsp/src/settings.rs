@@ -1,30 +1,29 @@
-//! What a client says of itself when it begins.
+//! The settings that the client sends at the start.
 
 use crate::position::Encoding;
 use fc_spec::model::Lang;
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// How a client wants its answers.
+/// The client's settings and capabilities.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// How it counts columns.
+    /// The unit of columns.
     pub encoding: Encoding,
-    /// In which language it is told what is wrong; where both are shown, which comes first.
+    /// The language of messages. Where both languages are shown, it comes first.
     pub lang: Lang,
-    /// Whether it has the command by which a lens shows references.
+    /// `true` if the client has the command that shows references from a lens.
     pub shows_references: bool,
-    /// Whether it can be told that lenses have changed, so that it asks for them again.
+    /// `true` if the client supports requests to refresh lenses.
     pub refreshes_lenses: bool,
-    /// Whether it can be asked to watch files.
+    /// `true` if the client can watch files.
     pub can_watch: bool,
-    /// The directories in which it works, the first of which is where the project is looked for.
+    /// The client's directories. The search for the project starts with the first.
     pub folders: Vec<PathBuf>,
 }
 
 impl Settings {
-    /// From the parameters of `initialize`. What is not as it should be is passed over, so that an odd client gets
-    /// answers, too.
+    /// Reads the parameters of `initialize`. Ignores invalid values, so that an unusual client still gets answers.
     #[must_use]
     pub fn read(params: &Value) -> Self {
         let text = |pointer: &str| params.pointer(pointer).and_then(Value::as_str);

@@ -1,4 +1,4 @@
-//! One state of a project's files, and what has been found out about it.
+//! One state of a project's files, and the results computed for it.
 
 use crate::project::Project;
 use crate::settings::Settings;
@@ -16,26 +16,26 @@ use gen_lsp_types::{
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// One state of a project's files. What is asked of it is found out once, when it is asked first.
+/// One state of a project's files. Each result is computed on first use.
 #[derive(Debug)]
 pub struct Snapshot {
     /// The project.
     pub project: Arc<Project>,
-    /// How the client wants its answers.
+    /// The settings of the client.
     pub settings: Arc<Settings>,
-    /// What the client calls each file, and the version of its text if the client has it open.
+    /// The URI of each file, and its version if the client has the file open.
     documents: Vec<(Uri, Option<i32>)>,
     state: Arc<State>,
-    /// The last state before in which all files could be read.
+    /// The last earlier state whose files could all be parsed.
     before: Option<Arc<State>>,
 }
 
-/// What can be found out about some files.
+/// The results for one state of the files.
 #[derive(Debug)]
 pub struct State {
     project: Arc<Project>,
     index: Index,
-    /// What was wrong with files on the disk.
+    /// The errors from reading files on the disk.
     unread: Faults,
     today: String,
     analysis: OnceLock<Analysis>,
@@ -44,19 +44,19 @@ pub struct State {
     findings: OnceLock<Vec<Finding>>,
 }
 
-/// What checking a spec comes to.
+/// The result of a check.
 #[derive(Debug)]
 pub struct Analysis {
-    /// Its faults in the order of their places, and, where it has no errors, what the lint finds.
+    /// The diagnostics in file order. They include the lint findings if the spec has no errors.
     pub faults: Faults,
-    /// What it means, or what could be read of it.
+    /// The model, or the readable parts of a spec with errors.
     pub read: Result<Model, Box<Partial>>,
-    /// Whether all files could be read.
+    /// `true` if all files could be parsed.
     is_whole: bool,
 }
 
 impl State {
-    /// What checking the files comes to.
+    /// Checks the files.
     pub fn analysis(&self) -> &Analysis {
         self.analysis.get_or_init(|| {
             let mut faults = self.unread.clone();
@@ -78,12 +78,12 @@ impl State {
         })
     }
 
-    /// Where each thing is written.
+    /// Returns the place of each definition.
     pub fn places(&self) -> &Places {
         self.places.get_or_init(|| self.index.places())
     }
 
-    /// The title of an operation or type; of what else the spec declares, what its file says.
+    /// Returns the title of a definition. Operations and types take it from the model, other kinds from the file.
     pub fn title(&self, item: &Item, place: &Place) -> Option<Text> {
         if item.is_operation() {
             let mut operations = self.analysis().operations().iter();
@@ -96,7 +96,7 @@ impl State {
         described(self.index.trees(), place).map(|(title, _)| title)
     }
 
-    /// What differs from the last release; nothing where there is none, or while the spec has errors.
+    /// Returns the differences from the last release. Returns none without a release, or while the spec has errors.
     pub fn findings(&self) -> &[Finding] {
         self.findings.get_or_init(|| {
             let (Some(model), [release, earlier @ ..]) =
@@ -112,7 +112,7 @@ impl State {
         })
     }
 
-    /// Whether all files could be read; `None` while it has not been checked.
+    /// Returns whether all files could be parsed, or `None` before the check.
     fn is_whole(&self) -> Option<bool> {
         Some(self.analysis.get()?.is_whole)
     }
@@ -146,51 +146,52 @@ impl Snapshot {
         }
     }
 
-    /// The files.
+    /// Returns the files.
     #[must_use]
     pub fn sources(&self) -> &Sources {
         self.trees().sources()
     }
 
-    /// The files as trees.
+    /// Returns the parsed files.
     #[must_use]
     pub fn trees(&self) -> &Trees {
         self.state.index.trees()
     }
 
-    /// The index of the files.
+    /// Returns the index of the files.
     #[must_use]
     pub fn index(&self) -> &Index {
         &self.state.index
     }
 
-    /// What checking it comes to.
+    /// Checks the files and returns the result.
     #[must_use]
     pub fn analysis(&self) -> &Analysis {
         self.state.analysis()
     }
 
-    /// Whether that has been found out.
+    /// Returns `true` if the files have been checked.
     #[must_use]
     pub fn is_checked(&self) -> bool {
         self.state.is_whole().is_some()
     }
 
-    /// Where each thing is written.
+    /// Returns the place of each definition.
     #[must_use]
     pub fn places(&self) -> &Places {
         self.state.places()
     }
 
-    /// Where each thing is named.
+    /// Returns the places that name each definition.
     #[must_use]
     pub fn uses(&self) -> &Uses {
         let uses = &self.state.uses;
         uses.get_or_init(|| self.state.index.uses())
     }
 
-    /// This state or the last one before in which all files could be read: for names and texts to offer and to show, for
-    /// which nobody waits until all is checked, and which do not go while a file is half written.
+    /// Returns this state if it is checked and all its files could be parsed, otherwise the last earlier state of that
+    /// kind. Without an earlier state, returns this state. Completion and hover use it: they need not wait for a check,
+    /// and names stay available while a file is half typed.
     #[must_use]
     pub fn known(&self) -> &State {
         match &self.before {
@@ -199,14 +200,14 @@ impl Snapshot {
         }
     }
 
-    /// Whether that has been checked, so that nobody waits who asks for it.
+    /// Returns `true` if [`Self::known`] is checked and needs no wait.
     #[must_use]
     pub fn is_known(&self) -> bool {
         self.known().is_whole().is_some()
     }
 
-    /// Whether lenses can be shown without a check: with what is known, where there is nothing to compare with, or the
-    /// client will ask again.
+    /// Returns `true` if lenses can be shown without a check. The known state must be checked, and compared if there is
+    /// a release. If this snapshot is not checked, either the client supports refreshes or there is no release.
     #[must_use]
     pub fn has_lenses(&self) -> bool {
         let may_be_old = self.settings.refreshes_lenses || self.project.is_unreleased();
@@ -214,32 +215,32 @@ impl Snapshot {
         self.is_known() && is_compared && (may_be_old || self.is_checked())
     }
 
-    /// What later snapshots may know of it: nothing while it has not been checked, or where a file could not be read.
+    /// Returns the state for later snapshots. Returns `None` before the check, or if a file could not be parsed.
     pub(crate) fn whole(&self) -> Option<Arc<State>> {
         let is_whole = self.state.is_whole() == Some(true);
         is_whole.then(|| Arc::clone(&self.state))
     }
 
-    /// The file that the client calls so.
+    /// Returns the file with a URI.
     #[must_use]
     pub fn file(&self, uri: &Uri) -> Option<FileId> {
         let at = self.documents.iter().position(|(known, _)| known == uri)?;
         Some(FileId(u32::try_from(at).ok()?))
     }
 
-    /// The text of a file.
+    /// Returns the source of a file.
     #[must_use]
     pub fn source(&self, file: FileId) -> Option<&SourceFile> {
         self.sources().get(file)
     }
 
-    /// What the client calls a file.
+    /// Returns the URI of a file.
     #[must_use]
     pub fn uri(&self, file: FileId) -> Option<&Uri> {
         self.document(file).map(|(uri, _)| uri)
     }
 
-    /// The version of the text of a file that the client has open.
+    /// Returns the version of a file, if the client has it open.
     #[must_use]
     pub fn version(&self, file: FileId) -> Option<i32> {
         self.document(file)?.1
@@ -249,7 +250,7 @@ impl Snapshot {
         self.documents.get(usize::try_from(file.0).ok()?)
     }
 
-    /// A span as the client counts it.
+    /// Returns the range of a span.
     #[must_use]
     pub fn range(&self, span: Span) -> Range {
         match self.source(span.file) {
@@ -258,7 +259,7 @@ impl Snapshot {
         }
     }
 
-    /// A span in its file.
+    /// Returns the location of a span.
     #[must_use]
     pub fn location(&self, span: Span) -> Option<Location> {
         Some(Location {
@@ -267,7 +268,7 @@ impl Snapshot {
         })
     }
 
-    /// The file and byte offset of a position.
+    /// Returns the file and byte offset of a position.
     #[must_use]
     pub fn offset(&self, uri: &Uri, position: Position) -> Option<(FileId, usize)> {
         let file = self.file(uri)?;
@@ -275,7 +276,8 @@ impl Snapshot {
         Some((file, self.settings.encoding.offset(source, position)))
     }
 
-    /// Hands the key or scalar at an offset to `then`; `None` where there is none, or where the file is no YAML.
+    /// Passes the key or scalar at an offset to `then`. Returns `None` if there is neither, or if the file is invalid
+    /// YAML.
     pub fn at<T>(
         &self,
         (file, offset): (FileId, usize),
@@ -285,8 +287,8 @@ impl Snapshot {
         then(&site_at(tree.root(), offset)?)
     }
 
-    /// Replacements as a client makes them. Of files that it has open the version is named, so that nothing is
-    /// replaced in a text that has changed since.
+    /// Returns replacements as a workspace edit. The edit names the version of each open file, so that the client
+    /// rejects it if the text has changed.
     pub fn edit(&self, changes: impl IntoIterator<Item = (Span, String)>) -> WorkspaceEdit {
         let mut files: BTreeMap<FileId, Vec<TextEdit>> = BTreeMap::new();
         for (span, new_text) in changes {
@@ -318,12 +320,12 @@ impl Snapshot {
 }
 
 impl Analysis {
-    /// The model; `None` if there is an error in the spec.
+    /// Returns the model, or `None` if the spec has errors.
     pub fn model(&self) -> Option<&Model> {
         self.read.as_ref().ok()
     }
 
-    /// Operations, those of a spec with errors too.
+    /// Returns the operations, including those of a spec with errors.
     pub fn operations(&self) -> &[Operation] {
         match &self.read {
             Ok(model) => &model.operations,
@@ -331,7 +333,7 @@ impl Analysis {
         }
     }
 
-    /// Types.
+    /// Returns the types.
     pub fn types(&self) -> &Types {
         match &self.read {
             Ok(model) => &model.types,
@@ -339,7 +341,7 @@ impl Analysis {
         }
     }
 
-    /// Groups.
+    /// Returns the groups.
     pub fn groups(&self) -> &[Group] {
         match &self.read {
             Ok(model) => &model.groups,

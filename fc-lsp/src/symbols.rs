@@ -1,4 +1,4 @@
-//! The things that a file says, as an outline; and those of the spec, to be found by their names.
+//! Symbols: the outline of a file, and search by name in the spec.
 
 use crate::snapshot::Snapshot;
 use fc_spec::index::{Item, Place};
@@ -6,16 +6,16 @@ use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolKind, WorkspaceSymbol};
 use std::collections::BTreeMap;
 
-/// Most things that one search finds.
+/// The maximum number of results of a search.
 const FOUND: usize = 200;
 
-/// The things that a file says, each within that which it is part of.
+/// Returns the definitions of a file as a tree.
 #[must_use]
 pub fn document_symbols(snapshot: &Snapshot, file: FileId) -> Vec<DocumentSymbol> {
-    // Of the things that one key says, the operation or field rather than the type that is made of it.
+    // If one key defines an operation or field and a type made from it, the operation or field wins.
     let mut own: BTreeMap<(usize, usize), (&Item, &Place)> = BTreeMap::new();
     for (item, place) in snapshot.places().in_file(file) {
-        // Around what is in it.
+        // At the same key, the longer definition comes first and contains the shorter one.
         let key = (place.key.start, usize::MAX - place.whole.end);
         let known = own.entry(key).or_insert((item, place));
         if known.0.is_type() && !item.is_type() {
@@ -32,7 +32,7 @@ pub fn document_symbols(snapshot: &Snapshot, file: FileId) -> Vec<DocumentSymbol
     top
 }
 
-/// Puts what ends before `at` into that which it is part of.
+/// Moves the symbols that end before `at` into their parents.
 fn close(open: &mut Vec<(usize, DocumentSymbol)>, top: &mut Vec<DocumentSymbol>, at: usize) {
     while open.last().is_some_and(|(end, _)| *end <= at) {
         let Some((_, symbol)) = open.pop() else {
@@ -59,7 +59,7 @@ fn symbol(snapshot: &Snapshot, item: &Item, place: &Place) -> DocumentSymbol {
     }
 }
 
-/// What names it; of a list item, which has no key, its first line.
+/// Returns the key of a definition. A list item has no key, so the first line represents it.
 fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
     let key = place.key;
     let text = snapshot.sources().slice(key);
@@ -67,7 +67,7 @@ fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
     Span::new(key.file, key.start, key.start + line)
 }
 
-/// The things of the spec whose names hold a text, capitals or not.
+/// Returns the definitions whose names contain a text, in any case.
 #[must_use]
 pub fn workspace_symbols(snapshot: &Snapshot, query: &str) -> Vec<WorkspaceSymbol> {
     let query = query.to_lowercase();

@@ -1,9 +1,9 @@
-//! Files as `file:` URIs.
+//! Conversion between paths and `file:` URIs.
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use std::path::{Path, PathBuf};
 
-/// What is escaped in a path; everything that a part of a URI may have stays as it is.
+/// The characters that are escaped in a path.
 const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'/')
     .remove(b'-')
@@ -11,7 +11,7 @@ const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'_')
     .remove(b'~');
 
-/// The file of a URI; `None` where it is not a file on this machine.
+/// Returns the path of a URI, or `None` if it is not a file on this machine.
 pub fn to_path(uri: &str) -> Option<PathBuf> {
     let rest = uri.strip_prefix("file://")?;
     let path = rest.strip_prefix("localhost").unwrap_or(rest);
@@ -29,7 +29,7 @@ pub fn to_path(uri: &str) -> Option<PathBuf> {
     }))
 }
 
-/// The URI of a file.
+/// Returns the URI of a path.
 pub fn of_path(path: &Path) -> String {
     let text = path.to_string_lossy();
     let text = if cfg!(windows) {

@@ -1,4 +1,4 @@
-//! The thread that checks, and answers what can only be answered then.
+//! The thread that checks snapshots, and answers the requests that need a check.
 
 use crate::dispatch::{answer, refusal};
 use crate::queue::{Queue, Work};
@@ -10,23 +10,22 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-/// The thread.
 pub struct Worker {
     shared: Arc<Shared>,
     thread: JoinHandle<()>,
 }
 
-/// Tells the loop when the thread ends, should it panic, too.
+/// Tells the loop that the thread has ended, even after a panic.
 struct Leaving(SyncSender<Event>);
 
 impl Drop for Leaving {
     fn drop(&mut self) {
-        // To a loop that has ended itself nothing need be said.
+        // If the loop has ended, the event is not needed.
         let _ = self.0.send(Event::End);
     }
 }
 
-/// A request and the snapshot that it is about.
+/// A request and its snapshot.
 type Asked = (Request, Arc<Snapshot>);
 
 #[derive(Default)]
@@ -42,12 +41,12 @@ struct State {
 }
 
 impl Shared {
-    /// Nothing is left half done under the lock, so it may be taken after any fault of who had it.
+    /// Locks the state. Every change under the lock is complete, so a poisoned lock is safe to use.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for what is to be done next; `None` when it is over.
+    /// Waits for the next job. Returns `None` after [`Worker::end`].
     fn next(&self) -> Option<Work<Arc<Snapshot>, Asked>> {
         let mut state = self.state();
         loop {
@@ -64,7 +63,7 @@ impl Shared {
 }
 
 impl Worker {
-    /// Starts it; `events` is where it says what it has done.
+    /// Starts the thread. It sends its results to `events`.
     pub fn start(events: SyncSender<Event>) -> Self {
         let shared = Arc::new(Shared::default());
         let own = Arc::clone(&shared);
@@ -79,13 +78,13 @@ impl Worker {
         Self { shared, thread }
     }
 
-    /// Has a snapshot checked, in place of the one that waits for it.
+    /// Queues a snapshot in place of the waiting one.
     pub fn check(&self, snapshot: Arc<Snapshot>) {
         self.shared.state().queue.check(snapshot);
         self.shared.changed.notify_one();
     }
 
-    /// Has a request answered when its snapshot has been checked; `Err` where too many wait.
+    /// Queues a request behind the check of its snapshot. Returns `Err` if the queue is full.
     pub fn ask(&self, request: Request, snapshot: Arc<Snapshot>) -> Result<(), RequestId> {
         let id = request.id.clone();
         self.shared.state().queue.ask(id, (request, snapshot))?;
@@ -93,17 +92,17 @@ impl Worker {
         Ok(())
     }
 
-    /// Takes a request back. Whether it has waited, so that it has no answer.
+    /// Removes a request. Returns `true` if it was waiting, so that the caller must answer it.
     pub fn cancel(&self, id: &RequestId) -> bool {
         self.shared.state().queue.cancel(id)
     }
 
-    /// Takes everything back; the requests that have waited.
+    /// Empties the queue and returns the requests that were waiting.
     pub fn clear(&self) -> Vec<RequestId> {
         self.shared.state().queue.clear()
     }
 
-    /// Ends the thread and waits for it. A panic there is one here.
+    /// Ends the thread and waits for it. Resumes a panic of the thread here.
     pub fn end(self) {
         self.shared.state().is_over = true;
         self.shared.changed.notify_one();
@@ -113,7 +112,7 @@ impl Worker {
     }
 }
 
-/// Whether there is still a loop that hears of it.
+/// Does one job. Returns `false` if the loop no longer receives.
 fn work_on(work: Work<Arc<Snapshot>, Asked>, events: &SyncSender<Event>) -> bool {
     let event = match work {
         Work::Check(snapshot) => {
@@ -121,14 +120,14 @@ fn work_on(work: Work<Arc<Snapshot>, Asked>, events: &SyncSender<Event>) -> bool
             if events.send(Event::Checked(Arc::clone(&snapshot))).is_err() {
                 return false;
             }
-            // Lenses show what differs from the last release; the loop need not wait for that either.
+            // Lenses show the differences from the last release. The loop does not wait for this comparison.
             let _ = snapshot.known().findings();
             Event::Compared(snapshot)
         }
         Work::Answer(_, (request, snapshot)) if snapshot.is_checked() => {
             Event::Answered(answer(request, Some(&snapshot)))
         }
-        // A later snapshot was checked in place of its own.
+        // A newer snapshot was checked instead.
         Work::Answer(id, _) => {
             let code = ErrorCode::ContentModified;
             Event::Answered(refusal(id, code, "the text has changed since"))

@@ -1,4 +1,4 @@
-//! The files of a project: those that the client has open as it has them, the others from the disk.
+//! The files of a project. Open files come from the client, the others from the disk.
 
 use crate::project::Project;
 use crate::settings::Settings;
@@ -19,17 +19,17 @@ pub struct Workspace {
     project: Arc<Project>,
     settings: Arc<Settings>,
     today: String,
-    /// As they are on the disk, and what is wrong with them there.
+    /// The files on the disk, and the errors from reading them.
     disk: (Sources, Faults),
-    /// Those that the client has open, by their paths in the project.
+    /// The open files, by path in the project.
     open: BTreeMap<String, Document>,
-    /// Of the last snapshot: of the next one, all but what has changed is parsed.
+    /// The index of the last snapshot. The next snapshot parses only changed files.
     index: Index,
     snapshot: Option<Arc<Snapshot>>,
     before: Option<Arc<State>>,
 }
 
-/// A file that the client has open.
+/// A file that is open in the client.
 #[derive(Debug)]
 struct Document {
     uri: Uri,
@@ -38,7 +38,7 @@ struct Document {
 }
 
 impl Workspace {
-    /// Reads the files of a project; `today` is the day for which waivers are looked at.
+    /// Reads the files of a project. `today` is the day that decides whether waivers are expired.
     #[must_use]
     pub fn new(project: Project, settings: Arc<Settings>, today: String) -> Self {
         let mut workspace = Self {
@@ -55,19 +55,19 @@ impl Workspace {
         workspace
     }
 
-    /// The project.
+    /// Returns the project.
     #[must_use]
     pub fn project(&self) -> &Project {
         &self.project
     }
 
-    /// The project as it is now, after a change of what is said of it.
+    /// Replaces the project after a change of its configuration.
     pub fn set_project(&mut self, project: Project) {
         self.project = Arc::new(project);
         self.read();
     }
 
-    /// Reads what is on the disk again, after a change there.
+    /// Reads the files on the disk again.
     pub fn read(&mut self) {
         let mut faults = Faults::new();
         let sources = read_dir(&self.project.root, &self.project.spec, &mut faults);
@@ -75,7 +75,7 @@ impl Workspace {
         self.forget();
     }
 
-    /// Takes the text of a file from the client from now on. Whether it is one of the spec.
+    /// Takes the text of a file from the client. Returns `true` if the file belongs to the spec.
     pub fn open(&mut self, uri: Uri, version: i32, text: String) -> bool {
         let Some(path) = self.path(&uri) else {
             return false;
@@ -87,7 +87,7 @@ impl Workspace {
         true
     }
 
-    /// Changes the text of a file that is open.
+    /// Changes the text of an open file. Returns `true` if the file is open.
     pub fn change(
         &mut self,
         uri: &Uri,
@@ -105,7 +105,7 @@ impl Workspace {
         true
     }
 
-    /// Takes the text of a file from the disk again.
+    /// Takes the text of a file from the disk again. Returns `true` if the file was open.
     pub fn close(&mut self, uri: &Uri) -> bool {
         let before = self.open.len();
         self.open.retain(|_, document| document.uri != *uri);
@@ -116,7 +116,7 @@ impl Workspace {
         true
     }
 
-    /// The files as they are now.
+    /// Returns a snapshot of the current files.
     pub fn snapshot(&mut self) -> Arc<Snapshot> {
         if let Some(snapshot) = &self.snapshot {
             return Arc::clone(snapshot);
@@ -130,7 +130,7 @@ impl Workspace {
                 sources.push(Arc::clone(&document.file));
             }
         }
-        // What cannot be read on the disk is no matter where the client has it.
+        // Errors from reading a file on the disk are dropped if the client has the file open.
         let is_open = |fault: &&_| {
             let fault: &fc_spec::diagnostic::Diagnostic = fault;
             self.open.contains_key(sources.path(fault.primary.span))
@@ -152,7 +152,7 @@ impl Workspace {
         snapshot
     }
 
-    /// What the client calls a file, and the version of its text if it has it open.
+    /// Returns the URI of a file, and its version if the client has it open.
     fn document(&self, path: &str) -> (Uri, Option<i32>) {
         match self.open.get(path) {
             Some(document) => (document.uri.clone(), Some(document.version)),
@@ -160,12 +160,13 @@ impl Workspace {
         }
     }
 
-    /// The path in the project of a file that can be one of its spec: directly in its directory, or in `commands`.
+    /// Returns the path in the project of a file that can belong to the spec: directly in its directory, or in
+    /// `commands`.
     fn path(&self, uri: &Uri) -> Option<String> {
         let file = uri::to_path(uri.as_ref())?;
         let root = &self.project.root;
         let below = below(&file, root).or_else(|| {
-            // Through links: the client may see the project from another side.
+            // The client may see the project through a symbolic link.
             let directory = file.parent()?.canonicalize().ok()?;
             below(
                 &directory.join(file.file_name()?),
@@ -180,7 +181,7 @@ impl Workspace {
         Some(parts.join("/"))
     }
 
-    /// Takes what checking a snapshot has come to for what is known from now on, although the files have changed since.
+    /// Keeps the results of a checked snapshot for later ones, even if the files have changed since.
     pub(crate) fn learn(&mut self, checked: &Snapshot) {
         if let Some(whole) = checked.whole() {
             self.before = Some(whole);
