@@ -1,4 +1,4 @@
-//! What changed, as a section of a changelog.
+//! Formats findings as a section of a changelog.
 
 use crate::finding::{Deployment, Finding};
 use crate::release::VERSION;
@@ -7,8 +7,8 @@ use fc_spec::model::Lang;
 use fc_spec::model::Model;
 use std::fmt::Write as _;
 
-/// The changes up to a version, for those who write apps and robots: what breaks, what is new, what else they notice. Texts and
-/// examples are counted only. `title` heads the section.
+/// Returns the section of a version for authors of apps and robots. It lists breaks, new operations and other changes,
+/// and only counts changes of texts and examples. `title` is its heading.
 #[must_use]
 pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> String {
     let is_change = |it: &&Finding| !it.is_fault() && it.subject != VERSION;
@@ -58,7 +58,7 @@ pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> St
     out
 }
 
-/// The section of a first release, which has nothing to be compared with.
+/// Returns the section of the first release, which has no version to compare with.
 #[must_use]
 pub fn first_section(title: &str, model: &Model, lang: Lang) -> String {
     let count = model.operations.len();
@@ -69,7 +69,7 @@ pub fn first_section(title: &str, model: &Model, lang: Lang) -> String {
     }
 }
 
-/// A changelog with one more section above the others; a new one where there is none yet.
+/// Returns a changelog with a new section above the others. Without a changelog, returns a new one.
 #[must_use]
 pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> String {
     let Some(changelog) = changelog else {
@@ -95,7 +95,7 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
     }
 }
 
-/// A break, and for whom.
+/// Returns the line of a break, with the deployments that it breaks.
 fn broken(finding: &Finding, lang: Lang) -> String {
     let who = finding.wire.iter().map(|deployment| {
         pick(
@@ -118,7 +118,7 @@ fn broken(finding: &Finding, lang: Lang) -> String {
     line
 }
 
-/// A new operation by its name, code and title.
+/// Returns the line of a new operation: its name, code and title.
 fn operation(finding: &Finding, new: &Model, lang: Lang) -> String {
     let Some(operation) = new.operation(&finding.subject) else {
         return lang.text(&finding.message).to_owned();

@@ -1,11 +1,11 @@
-//! What was found: a change, the rule that judges it, and for whom it breaks.
+//! Findings: a change, the rule that judges it, and the deployments that it breaks.
 
 use crate::rule::{About, Language, Rule, Wire};
 use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
 use fc_spec::model::{Side, Text, Waiver, fingerprint};
 use serde::{Serialize, Serializer, ser::SerializeStruct as _};
 
-/// Versions that meet: one end has the old one, the other the new one.
+/// A combination of versions in the field: one end has the old version, the other the new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Deployment {
@@ -15,23 +15,23 @@ pub enum Deployment {
     NewAppOldRobot,
 }
 
-/// Who sends the messages in which a part of a spec occurs.
+/// The senders of the messages that contain a part of a spec.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Senders {
-    /// Apps.
+    /// `true` if apps send it.
     pub app: bool,
-    /// Robots.
+    /// `true` if robots send it.
     pub robot: bool,
 }
 
 impl Senders {
-    /// Both ends.
+    /// Apps and robots.
     pub const BOTH: Self = Self {
         app: true,
         robot: true,
     };
 
-    /// One end.
+    /// Returns one end as the sender.
     #[must_use]
     pub fn of(side: Side) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl Senders {
         }
     }
 
-    /// Adds others, and whether that made a difference.
+    /// Adds other senders. Returns `true` if the value changed.
     pub(crate) fn add(&mut self, other: Self) -> bool {
         let before = *self;
         self.app |= other.app;
@@ -48,7 +48,7 @@ impl Senders {
         before != *self
     }
 
-    /// Where their messages break.
+    /// Returns the deployments that a change breaks for messages of these senders.
     pub(crate) fn broken(self, wire: Wire) -> Vec<Deployment> {
         let (old, new) = (wire.breaks_old_sender(), wire.breaks_new_sender());
         let old_app = (self.app && old) || (self.robot && new);
@@ -62,47 +62,47 @@ impl Senders {
     }
 }
 
-/// What a place of a spec is called there: the kind that the language calls it by, and its name with that of its owner.
+/// The name of a place in a spec.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spot {
-    /// Its kind, such as `field`; empty for any.
+    /// The kind, such as `field`; empty for any kind.
     pub kind: &'static str,
-    /// Its name, such as `Station.name`.
+    /// The name with its owner, such as `Station.name`.
     pub name: String,
 }
 
-/// A change and whom it breaks.
+/// A change and its effects.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The rule that judges it.
+    /// The rule that judges the change.
     pub rule: &'static Rule,
-    /// What changed, such as `get_thing.request.id`.
+    /// The part of the spec that changed, such as `get_thing.request.id`.
     pub subject: String,
-    /// Where versions that meet do not understand each other.
+    /// The deployments whose messages break.
     pub wire: Vec<Deployment>,
-    /// In which languages programs stop compiling.
+    /// The languages whose programs stop compiling.
     pub source: Vec<Language>,
-    /// Whether programs behave differently although messages are read.
+    /// `true` if programs behave differently although they read all messages.
     pub behaviour: bool,
-    /// Whether nothing fails although a value is wrong.
+    /// `true` if a value is wrong without an error.
     pub silent: bool,
-    /// What happened, in one sentence.
+    /// One sentence about the change.
     pub message: Text,
-    /// From what to what, as the message has it; empty where it has no such thing.
+    /// The old and the new value in the message; empty if the change has none.
     pub(crate) values: [String; 2],
-    /// Twelve hex digits: the same for the same change, whatever lines it is on.
+    /// Twelve hex digits. They identify the change and do not depend on line numbers.
     pub fingerprint: String,
-    /// Places of the old version that show it, the best first.
+    /// Places of the old version that show the change, the best first.
     pub old: Vec<Spot>,
-    /// Places of the new version.
+    /// Places of the new version that show the change, the best first.
     pub new: Vec<Spot>,
-    /// The waiver that accepts it, after [`waive`](crate::waive).
+    /// The waiver that accepts the change. [`waive`](crate::waive) sets it.
     pub waived: Option<Waiver>,
 }
 
 impl Finding {
-    /// A change of `subject` from one value to another, with the most that the rule can break but on the wire, which
-    /// [`on`](Self::on) says.
+    /// Returns a finding that `subject` changed from one value to another. Its effects are those of the rule, without
+    /// effects on messages. [`on`](Self::on) sets these.
     pub(crate) fn new(
         rule: &'static Rule,
         subject: impl Into<String>,
@@ -128,77 +128,78 @@ impl Finding {
         }
     }
 
-    /// What a waiver calls it: `FC0725-1a2b3c4d5e6f`.
+    /// Returns the id for a waiver, such as `FC0725-1a2b3c4d5e6f`.
     #[must_use]
     pub fn waiver_id(&self) -> String {
         format!("{}-{}", self.rule.code(), self.fingerprint)
     }
 
-    /// Whether what old and new peers say to each other today no longer works between them, and nobody has accepted that. An
-    /// operation that old robots do not know yet is none: nobody has used it before.
+    /// Returns `true` if messages that work today no longer work between old and new peers, and no waiver accepts this.
+    /// A new operation is not a break, because no program uses it yet.
     #[must_use]
     pub fn is_break(&self) -> bool {
         !self.wire.is_empty() && self.waived.is_none() && !self.is_new_operation()
     }
 
-    /// Whether it says that an operation is new, or has its code now.
+    /// Returns `true` if an operation is new, or has a code for the first time.
     pub(crate) fn is_new_operation(&self) -> bool {
         let new = [&COMMAND_ADDED, &REPORT_ADDED, &CODE_ASSIGNED];
         new.iter().any(|rule| rule.number == self.rule.number)
     }
 
-    /// Whether it is about a waiver and not about a change: such a one fails whatever is asked for.
+    /// Returns `true` if the finding is about a waiver and not about a change. Such a finding always fails the
+    /// comparison.
     #[must_use]
     pub fn is_fault(&self) -> bool {
         self.rule.about == About::Waiver
     }
 
-    /// Which messages of whom break.
+    /// Sets the deployments that break.
     pub(crate) fn on(mut self, senders: Senders, wire: Wire) -> Self {
         self.wire = senders.broken(wire);
         self
     }
 
-    /// In which languages, where these are not all that the rule names.
+    /// Sets the languages, if they differ from those of the rule.
     pub(crate) fn source(mut self, source: impl Into<Vec<Language>>) -> Self {
         self.source = source.into();
         self
     }
 
-    /// Whether the behaviour changes, where the rule leaves that open.
+    /// Sets `behaviour`, if it differs from that of the rule.
     pub(crate) fn behaviour(mut self, behaviour: bool) -> Self {
         self.behaviour = behaviour;
         self
     }
 
-    /// Whether nothing fails, where the rule leaves that open.
+    /// Sets `silent`, if it differs from that of the rule.
     pub(crate) fn silent(mut self, silent: bool) -> Self {
         self.silent = silent;
         self
     }
 
-    /// A place of the old version.
+    /// Adds a place of the old version.
     pub(crate) fn was(mut self, kind: &'static str, name: impl Into<String>) -> Self {
         let name = name.into();
         self.old.push(Spot { kind, name });
         self
     }
 
-    /// A place of the new version.
+    /// Adds a place of the new version.
     pub(crate) fn is(mut self, kind: &'static str, name: impl Into<String>) -> Self {
         let name = name.into();
         self.new.push(Spot { kind, name });
         self
     }
 
-    /// A place of both versions.
+    /// Adds a place of both versions.
     pub(crate) fn at(self, kind: &'static str, name: impl Into<String>) -> Self {
         let name = name.into();
         self.was(kind, name.clone()).is(kind, name)
     }
 }
 
-/// What happened to what, and from what to what where that can be said.
+/// Returns the message of a finding, with its values if there are any.
 fn message(title: &str, subject: &str, from: &str, to: &str, signs: [&str; 3]) -> String {
     let [colon, open, close] = signs;
     let values = match (from, to) {
@@ -210,7 +211,7 @@ fn message(title: &str, subject: &str, from: &str, to: &str, signs: [&str; 3]) -
     format!("{subject}{colon}{title}{open}{values}{close}")
 }
 
-/// With the keys that other programs read; the message is English.
+/// Serializes with stable keys for other programs and an English message.
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.shown(&self.message.en, serializer)
@@ -218,7 +219,7 @@ impl Serialize for Finding {
 }
 
 impl Finding {
-    /// As other programs read it, with this message.
+    /// Serializes with this message.
     pub(crate) fn shown<S: Serializer>(
         &self,
         message: &str,

@@ -1,17 +1,18 @@
-//! What changed between two versions of a protocol, and for whom it breaks.
+//! Compares two versions of a protocol and reports the effects of each change.
 //!
 //! ```text
-//! old Model ─┐               ┌─ matching: operations, types and fields that are the same thing in both
-//!            ├──► diff ──────┼─ judge: the rules, by section; each claims the paths that it has judged
-//! new Model ─┘               └─ rest: whatever else differs between the two dumps, so that nothing goes unsaid
+//! old Model ─┐         ┌─ matching: pairs of operations, types and fields
+//!            ├──► diff ┼─ judge: the rules, by section; each claims the paths that it has judged
+//! new Model ─┘         └─ rest: all other differences between the two dumps
 //! ```
 //!
-//! A message has a sender and a receiver: of a command's request the sender is the app, of its response and of a report the
-//! robot, of an acknowledgement the app. A rule says whether messages from old senders break at new receivers, or the
-//! reverse; a finding says it of the [deployments](Deployment): old apps with new robots, new apps with old robots.
+//! Each message has a sender and a receiver. The app sends the request of a command and the acknowledgement of a
+//! report. The robot sends the response and the report. A rule defines whether messages from old senders break at new
+//! receivers, or the reverse. A finding translates this into [deployments](Deployment): old apps with new robots, new
+//! apps with old robots.
 //!
-//! **Architecture invariant.** No finding means that the two dumps are equal, but for the places of things in files and for
-//! waivers, which are about a comparison and not about the protocol.
+//! **Architecture invariant.** No finding means that the two dumps are equal, except for places in files and for
+//! waivers. Waivers belong to a comparison and not to the protocol.
 
 mod changelog;
 mod finding;
@@ -41,11 +42,11 @@ use fc_spec::model::Model;
 /// Settings of a project that change its generated packages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Packages {
-    /// Rust and Python have a type for the IDs of each entity: `newtypes: true` in `fc.yaml`.
+    /// `true` if Rust and Python have an ID type for each entity: `newtypes: true` in `fc.yaml`.
     pub id_types: bool,
 }
 
-/// Everything that differs between two models, judged, in the order of the rules.
+/// Returns all differences between two models, judged, in the order of the rules.
 #[must_use]
 pub fn diff(old: &Model, new: &Model) -> Vec<Finding> {
     diff_for(old, new, Packages::default())
@@ -57,8 +58,8 @@ pub fn diff_for(old: &Model, new: &Model, packages: Packages) -> Vec<Finding> {
     diff_since([], old, new, packages)
 }
 
-/// Compares two models as [`diff_for`] does, and the new one with earlier releases, by name and the last one first. A key
-/// that was removed before `old` and has another meaning in `new` is a finding.
+/// Compares two models as [`diff_for`] does, and the new one with earlier releases. `earlier` has their names and
+/// models, the last release first. A key that was removed before `old` and has another meaning in `new` is a finding.
 #[must_use]
 pub fn diff_since<'m>(
     earlier: impl IntoIterator<Item = (&'m str, &'m Model)>,
@@ -75,7 +76,7 @@ pub fn diff_since<'m>(
     found
 }
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

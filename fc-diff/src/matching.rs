@@ -1,7 +1,7 @@
-//! Which operations, types and fields of two models are the same thing.
+//! Pairs the operations, types and fields of two models.
 //!
-//! Operations are the same by name, else by kind and code. Types are the same where they are at the same place of the same
-//! message, so that an inline object and the named type that replaced it meet; types in no message are the same by name.
+//! Operations match by name, otherwise by kind and code. Types match by their place in a message, so that a named type
+//! matches the inline object that it replaced. Types outside messages match by name.
 
 use crate::finding::Senders;
 use fc_spec::model::{Direction, WireForm};
@@ -11,14 +11,14 @@ use fc_spec::model::{
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// An old and a new thing that are the same, or one without a counterpart.
+/// An old item and its new version, or an item without a counterpart.
 pub(crate) enum Pair<'m, T> {
     Both(&'m T, &'m T),
     Removed(&'m T),
     Added(&'m T),
 }
 
-/// The old and the new operations.
+/// Pairs the operations.
 pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Operation>> {
     let by_name: HashMap<&str, &Operation> = new
         .operations
@@ -71,7 +71,7 @@ pub(crate) fn fields<'m>(old: &'m [Field], new: &'m [Field]) -> Vec<Pair<'m, Fie
     )
 }
 
-/// The old and the new variants of a choice: the same by name.
+/// Pairs the variants of a choice by name.
 pub(crate) fn variants<'m>(old: &'m OneOf, new: &'m OneOf) -> Vec<Pair<'m, Variant>> {
     align(
         &old.variants,
@@ -91,10 +91,10 @@ pub(crate) fn results<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Result
     )
 }
 
-/// Decides by one property if two things are the same.
+/// Decides by one property whether two items match.
 pub(crate) type Same<'s, T> = &'s dyn Fn(&T, &T) -> bool;
 
-/// Pairs things in several passes, one for each way to be the same.
+/// Pairs items in several passes. Each pass uses one way to match.
 pub(crate) fn align<'m, T>(old: &'m [T], new: &'m [T], ways: &[Same<'_, T>]) -> Vec<Pair<'m, T>> {
     let mut taken = vec![false; new.len()];
     let mut found: Vec<Option<&T>> = vec![None; old.len()];
@@ -121,7 +121,7 @@ pub(crate) fn align<'m, T>(old: &'m [T], new: &'m [T], ways: &[Same<'_, T>]) -> 
         .collect()
 }
 
-/// The keys of an envelope as fields of an object.
+/// Returns the keys of an envelope as fields of an object.
 pub(crate) fn envelope(keys: &[EnvelopeField]) -> Vec<Field> {
     let field = |key: &EnvelopeField| Field {
         wire: key.wire.clone(),
@@ -137,22 +137,22 @@ pub(crate) fn envelope(keys: &[EnvelopeField]) -> Vec<Field> {
     keys.iter().map(field).collect()
 }
 
-/// Two types that are the same thing.
+/// A type of the old version and its counterpart.
 pub(crate) struct TypePair<'m> {
     pub(crate) old: &'m TypeDef,
     pub(crate) new: &'m TypeDef,
-    /// Who sends messages that hold it.
+    /// The senders of messages that contain it.
     pub(crate) senders: Senders,
 }
 
-/// The types of two models.
+/// The types of two models, paired.
 pub(crate) struct TypePairs<'m> {
     pub(crate) both: Vec<TypePair<'m>>,
     pub(crate) removed: Vec<&'m TypeDef>,
     pub(crate) added: Vec<&'m TypeDef>,
 }
 
-/// The other side.
+/// Returns the other side.
 pub(crate) fn receiver(sender: Side) -> Side {
     match sender {
         Side::App => Side::Robot,
@@ -160,7 +160,7 @@ pub(crate) fn receiver(sender: Side) -> Side {
     }
 }
 
-/// Who sends the messages of a direction of an operation.
+/// Returns the sender of a direction of an operation.
 pub(crate) fn sender(operation: &Operation, direction: Direction) -> Side {
     match direction {
         Direction::Request => operation.sender,
@@ -168,7 +168,7 @@ pub(crate) fn sender(operation: &Operation, direction: Direction) -> Side {
     }
 }
 
-/// The old and the new types.
+/// Pairs the types.
 pub(crate) fn types<'m>(
     old: &'m Model,
     new: &'m Model,
@@ -214,7 +214,7 @@ pub(crate) fn types<'m>(
     for (index, ty) in new.types.iter().enumerate() {
         by_name.insert(&ty.name, index);
     }
-    // What is in no message: by name.
+    // Types outside messages match by name.
     let met: HashSet<usize> = walk.found.keys().map(|(old, _)| *old).collect();
     for (index, ty) in old.types.iter().enumerate() {
         if let Some(other) = by_name.get(ty.name.as_str())
@@ -248,7 +248,7 @@ pub(crate) fn types<'m>(
     }
 }
 
-/// A type by its index.
+/// Looks a type up by its index.
 trait At {
     fn get_at(&self, index: usize) -> Option<&TypeDef>;
 }
@@ -260,7 +260,7 @@ impl At for fc_spec::model::Types {
     }
 }
 
-/// Follows two models from message to message, at the same pace.
+/// Walks two models in parallel, from message to message.
 struct Walk<'m> {
     old: &'m Model,
     new: &'m Model,
@@ -319,7 +319,7 @@ impl Walk<'_> {
     }
 }
 
-/// The named types of two types, inside the same number of lists.
+/// Returns the named types of two types inside the same number of lists.
 pub(crate) fn named(old: &Type, new: &Type) -> Option<(TypeId, TypeId)> {
     match (old, new) {
         (Type::Array(old), Type::Array(new)) => named(old, new),

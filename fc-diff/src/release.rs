@@ -1,4 +1,4 @@
-//! Releases: versions of a spec that are frozen as dumps beside it, and what the next one has to be called.
+//! Releases: frozen dumps in the spec's directory, and the rules for the number of the next one.
 
 use crate::finding::Finding;
 use crate::rule::About;
@@ -9,23 +9,23 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Directory of the releases, below that of the spec.
+/// The directory of the releases, inside that of the spec.
 pub const DIRECTORY: &str = "releases";
-/// What the name of a frozen dump ends with.
+/// The extension of a frozen dump.
 const EXTENSION: &str = "json";
-/// A first part from here on is a year.
+/// If the first part is at least this, it is a year.
 const FIRST_YEAR: u64 = 1900;
-/// Parts that a number may have.
+/// The maximum number of parts of a number.
 const MOST_PARTS: usize = 4;
 
-/// Number of a release: `2026.12` by the calendar, `2.1.0` by what has changed.
+/// The number of a release. `2026.12` is a calendar number, `2.1.0` reflects the changes.
 #[derive(Clone, Debug)]
 pub struct Number {
     parts: Vec<u64>,
     text: String,
 }
 
-/// Parts that are not written are zero: `2.1` is `2.1.0`.
+/// Missing parts are zero: `2.1` equals `2.1.0`.
 impl Ord for Number {
     fn cmp(&self, other: &Self) -> Ordering {
         let parts = (0..MOST_PARTS).map(|at| self.part(at).cmp(&other.part(at)));
@@ -47,14 +47,14 @@ impl PartialEq for Number {
 
 impl Eq for Number {}
 
-/// As it is written.
+/// Writes the number as in the file name.
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
 }
 
-/// A text is no number of a release.
+/// The error for a string that is not a release number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoNumber;
 
@@ -93,28 +93,28 @@ impl Number {
         self.parts.get(at).copied().unwrap_or(0)
     }
 
-    /// Whether it is by the calendar, and so says nothing of what has changed.
+    /// Returns `true` for a calendar number, which does not reflect the changes.
     #[must_use]
     pub fn is_calendar(&self) -> bool {
         self.part(0) >= FIRST_YEAR
     }
 }
 
-/// The frozen versions of a spec, in the order of their numbers.
+/// The releases of a spec, in the order of their numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Releases(Vec<(Number, PathBuf)>);
 
 impl Releases {
-    /// Those beside the spec in this directory; none where there is no directory of releases.
+    /// Reads the releases of the spec in this directory. Returns none without a directory of releases.
     ///
     /// # Errors
     ///
-    /// If that cannot be read.
+    /// If the directory cannot be read.
     pub fn beside(spec: &Path) -> std::io::Result<Self> {
         let mut found = Vec::new();
         let directory = match std::fs::read_dir(spec.join(DIRECTORY)) {
             Ok(directory) => directory,
-            // A link to nothing is an error.
+            // A dangling link is an error.
             Err(error)
                 if error.kind() == std::io::ErrorKind::NotFound
                     && !spec.join(DIRECTORY).is_symlink() =>
@@ -135,14 +135,14 @@ impl Releases {
         Ok(Self(found))
     }
 
-    /// The last one, and the file with its dump.
+    /// Returns the last release and the file with its dump.
     #[must_use]
     pub fn last(&self) -> Option<(&Number, &Path)> {
         let (number, path) = self.0.last()?;
         Some((number, path))
     }
 
-    /// The file with the dump of the release that is written like this.
+    /// Returns the dump of the release with exactly this name.
     #[must_use]
     pub fn named(&self, name: &str) -> Option<&Path> {
         let mut all = self.0.iter();
@@ -150,7 +150,7 @@ impl Releases {
         found.map(|(_, path)| path.as_path())
     }
 
-    /// That there is none which is written like this.
+    /// Returns the error for a release that does not exist.
     #[must_use]
     pub fn without(&self, name: &str) -> NoRelease {
         NoRelease {
@@ -159,23 +159,23 @@ impl Releases {
         }
     }
 
-    /// The numbers, from the first to the last.
+    /// Returns the numbers, from the first to the last.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
         self.0.iter().map(|(number, _)| number)
     }
 }
 
-/// There is no such release.
+/// The error for a release that does not exist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoRelease {
-    /// What was asked for.
+    /// The name that was looked up.
     pub name: String,
-    /// The numbers of those that there are, from the first to the last.
+    /// The numbers of the existing releases, from the first to the last.
     pub known: Vec<String>,
 }
 
 impl NoRelease {
-    /// The sentence for the user.
+    /// Returns a sentence for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         let known = match self.known.as_slice() {
@@ -203,48 +203,48 @@ impl fmt::Display for NoRelease {
 
 impl std::error::Error for NoRelease {}
 
-/// The file of a release, from the spec's directory: `releases/2026.12.json`.
+/// Returns the file of a release, relative to the spec's directory: `releases/2026.12.json`.
 #[must_use]
 pub fn file(number: &Number) -> String {
     format!("{DIRECTORY}/{number}.{EXTENSION}")
 }
 
-/// Why a version cannot be released under a number.
+/// A reason against a release number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Objection {
     /// The number does not come after that of the last release.
     NotLater {
-        /// That of the last release.
+        /// The number of the last release.
         last: String,
     },
-    /// The spec calls itself by a later one already.
+    /// The spec already has a later version.
     GoesBack {
-        /// Its version.
+        /// The version of the spec.
         version: String,
     },
-    /// Nothing differs from the last release.
+    /// The spec equals the last release.
     Unchanged,
-    /// Messages break, and the number says less than that.
+    /// The number must rise further for these changes.
     TooSmall {
-        /// What must rise: the place of the part, from 0.
+        /// The index of the part that must rise, from 0.
         part: usize,
-        /// Number of changes that demand it.
+        /// The number of changes that require it.
         changes: usize,
     },
-    /// Messages break, the number is by the calendar and so does not say it, and nobody has accepted it.
+    /// Messages break under a calendar number, and no waiver accepts it.
     NotWaived {
-        /// Ids that waivers of these would have.
+        /// The ids for waivers of these breaks.
         ids: Vec<String>,
     },
-    /// Something that no release may have: a code that is used again, a waiver that has expired.
+    /// A finding that no release may have, such as a reused code or an expired waiver.
     Fault {
-        /// What was found.
+        /// The message of the finding.
         message: Text,
     },
 }
 
 impl Objection {
-    /// What it is, in both languages.
+    /// Returns a sentence for the user, in both languages.
     #[must_use]
     pub fn message(&self) -> Text {
         let [zh, en] = match self {
@@ -286,14 +286,14 @@ impl Objection {
     }
 }
 
-/// What a change asks of a number, the most first.
+/// The size of a change, the largest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Step {
     /// Messages break.
     Break,
-    /// Programs have something new to know.
+    /// Programs see a change.
     Change,
-    /// Texts and examples.
+    /// Only texts and examples change.
     Text,
 }
 
@@ -309,11 +309,10 @@ impl Step {
     }
 }
 
-/// Everything that speaks against releasing what was found under a number.
+/// Returns all reasons against releasing these changes under a number.
 ///
-/// By the calendar any later number does, but each break has to be accepted by a waiver. Other numbers say what has changed:
-/// where messages break the first part rises, where programs have something new to know the second one, and for texts any.
-/// Before 1.0 a break asks for the second part.
+/// A calendar number only has to be later, but each break needs a waiver. In other numbers, a break raises the first
+/// part, a visible change the second, and a change of texts any. Before 1.0, a break raises the second part.
 #[must_use]
 pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Objection> {
     let mut objections = Vec::new();
@@ -329,7 +328,7 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
     objections.extend(faults.iter().chain(never).map(|finding| Objection::Fault {
         message: finding.message.clone(),
     }));
-    // The number itself is a difference.
+    // The version number itself always differs.
     let is_change = |it: &&&Finding| it.subject != VERSION;
     let Some(step) = changes
         .iter()
@@ -366,7 +365,7 @@ pub fn objections(last: &Number, next: &Number, findings: &[Finding]) -> Vec<Obj
     objections
 }
 
-/// That a number comes before the version by which the spec calls itself, where that is a number.
+/// Returns an objection if a number is below the version of the spec. A version that is not a number is ignored.
 #[must_use]
 pub fn goes_back(next: &Number, version: &str) -> Option<Objection> {
     let written: Number = version.parse().ok()?;
@@ -375,5 +374,5 @@ pub fn goes_back(next: &Number, version: &str) -> Option<Objection> {
     })
 }
 
-/// What findings call the number itself.
+/// The subject of findings about the version number.
 pub(crate) const VERSION: &str = "protocol.version";

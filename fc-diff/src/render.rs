@@ -1,4 +1,4 @@
-//! Findings for people and for other programs.
+//! Renders findings for people and for other programs.
 
 use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::pick;
@@ -11,14 +11,14 @@ use serde::Serialize;
 use serde::ser::{SerializeSeq as _, Serializer as _};
 use std::fmt::Write as _;
 
-/// How findings are shown.
+/// An output format of findings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// With the places of both versions, for a terminal.
+    /// Text for a terminal, with the places of both versions.
     Text,
     /// A list of objects with the keys of [`Finding`].
     Json,
-    /// A table, for a pull request or a changelog.
+    /// A Markdown table for a pull request or a changelog.
     Markdown,
     /// Annotations of a GitHub pull request, at the places of the new version.
     Github,
@@ -26,7 +26,7 @@ pub enum Format {
     Sarif,
 }
 
-/// The findings of [`diff`](crate::diff) on two versions.
+/// Renders the findings of [`diff`](crate::diff) on two versions.
 #[must_use]
 pub fn render(
     findings: &[Finding],
@@ -43,8 +43,8 @@ pub fn render(
     }
 }
 
-/// Whether a finding is about something that stands in this file, in one of the two versions. What has no place of its own
-/// stands where its owner does.
+/// Returns `true` if the subject of a finding is in this file, in either version. A subject without a place counts as
+/// being where its owner is.
 #[must_use]
 pub fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bool {
     let owner = |version: &Version| {
@@ -62,11 +62,11 @@ pub fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bo
         .any(is_there)
 }
 
-/// A line of a version: `-` or `+`, its file, its number, and it.
+/// A line of a version: `-` or `+`, the file, the line number and the line.
 type Excerpt<'v> = (char, &'v str, usize, &'v str);
 
-/// Lines of both versions that show a finding: of what it is about, the first that differs and has the value from which or to which
-/// it changed, or else the one with the name.
+/// Returns a line of each version that shows the finding. Prefers the first line that contains the changed value and is
+/// not in the other version. The line with the name is the fallback.
 fn excerpts<'v>(finding: &Finding, [old, new]: [&'v Version; 2]) -> Vec<Excerpt<'v>> {
     let side = |spots: &[Spot], version: &'v Version| {
         let place = place_of(spots, version);
@@ -88,7 +88,7 @@ fn excerpts<'v>(finding: &Finding, [old, new]: [&'v Version; 2]) -> Vec<Excerpt<
     excerpts.collect()
 }
 
-/// The lines of a span with their numbers, without the blanks around them.
+/// Returns the lines of a span with their numbers, trimmed.
 fn lines(span: Span, version: &Version) -> Vec<(usize, &str)> {
     let Some(file) = version.sources.get(span.file) else {
         return Vec::new();
@@ -100,7 +100,7 @@ fn lines(span: Span, version: &Version) -> Vec<(usize, &str)> {
     (first..).zip(lines).collect()
 }
 
-/// A place as `path:line`.
+/// Returns the file and line of a place.
 fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
     let found = place_of(spots, version)?.key;
     Some((
@@ -118,7 +118,7 @@ fn place_of<'v>(spots: &[Spot], version: &'v Version) -> Option<&'v Place> {
     })
 }
 
-/// Whom it breaks, in a few words.
+/// Returns a short description of the effects.
 fn breaks(finding: &Finding, lang: Lang) -> String {
     let mut parts: Vec<String> = Vec::new();
     for deployment in &finding.wire {
@@ -196,7 +196,7 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
     text
 }
 
-/// Who has accepted it, until when and why.
+/// Returns a sentence with the person, the end and the reason of a waiver.
 fn waived(waiver: &Waiver, lang: Lang) -> String {
     let Waiver { by, until, .. } = waiver;
     let reason = lang.text(&waiver.reason);
@@ -311,7 +311,7 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
                 "message": { "text": format!("{} ({})", lang.text(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
                 "locations": at.into_iter().collect::<Vec<_>>(),
                 "partialFingerprints": { "fc/v1": finding.fingerprint },
-                // Code hosts show it as accepted, and count it no more.
+                // Code hosts then mark the finding as accepted and do not count it.
                 "suppressions": finding.waived.iter().map(|waiver| json!({
                     "kind": "external",
                     "justification": waived(waiver, lang),

@@ -1,4 +1,4 @@
-//! What differs between two dumps and is judged by no rule, so that nothing goes unsaid.
+//! Reports all differences between two dumps that no rule has judged.
 
 use crate::finding::Finding;
 use crate::judge::{Account, Path};
@@ -8,11 +8,11 @@ use fc_spec::model::{Dump, Model};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// What follows from elsewhere in the spec or from the place where something is written, or is not about the protocol.
+/// Keys that are derived from other parts of the spec, or are not about the protocol.
 const DERIVED: [&str; 4] = ["place", "edit", "format", "waivers"];
-/// A path of it says that what is in both versions of a list stands in another order.
+/// The last step of a path for a changed order of the items in both versions.
 const ORDER: &str = "#order";
-/// Lists in the order of the files.
+/// Lists in the order of the files. Their order has no meaning.
 const AS_WRITTEN: [&str; 6] = [
     "answers",
     "questions",
@@ -21,12 +21,12 @@ const AS_WRITTEN: [&str; 6] = [
     "groups",
     "operations",
 ];
-/// A question is of the group of what it is about.
+/// The list of questions. The group of a question follows from its subject.
 const OF_QUESTIONS: &str = "questions";
-/// Characters of a value that a finding shows.
+/// The maximum number of characters of a value that a finding shows.
 const SHOWN: usize = 60;
 
-/// Every difference that no path of the account covers.
+/// Returns every difference that no claimed path covers.
 pub(crate) fn rest(old: &Model, new: &Model, account: &Account) -> Vec<Finding> {
     let dump = |model: &Model| serde_json::to_value(Dump::from(model)).unwrap_or_default();
     let mut walk = Walk {
@@ -146,7 +146,7 @@ impl Walk<'_> {
 
 type List<'v> = Vec<(String, &'v Value)>;
 
-/// The key by which the items of a list are told apart.
+/// Returns the keys that identify the items of a list.
 fn key(path: &Path) -> &'static [&'static str] {
     let list = path.last().map(String::as_str).unwrap_or_default();
     match list {
@@ -163,7 +163,7 @@ fn key(path: &Path) -> &'static [&'static str] {
     }
 }
 
-/// Items with what tells them apart; `None` if something does not.
+/// Returns the items by their ids, or `None` if an item has no unique id.
 fn by_id<'v>(items: &'v [Value], keys: &[&str]) -> Option<List<'v>> {
     let mut list = List::new();
     for item in items {
@@ -183,7 +183,7 @@ fn by_id<'v>(items: &'v [Value], keys: &[&str]) -> Option<List<'v>> {
     Some(list)
 }
 
-/// A value in a line that is not too long; nothing for nothing.
+/// Returns a value, cut to [`SHOWN`] characters. Null becomes an empty string.
 fn shown(value: &Value) -> String {
     let text = match value {
         Value::Null => return String::new(),

@@ -1,36 +1,36 @@
-//! What a rule says of itself: its code, whom it can break, its mirror, its texts.
+//! Rules: their codes, effects, mirrors and texts.
 
 use crate::rules;
 use fc_spec::model::Lang;
 use serde::{Serialize, Serializer};
 
-/// A kind of change, and the most that it can break.
+/// A kind of change, and its greatest possible effects.
 #[derive(Debug)]
 pub struct Rule {
     /// Number. The code is `FC07` and this number. 0 is for differences without a rule, 65 to 67 are for waivers, all others
     /// for changes. A new rule takes the next number, in any section.
     pub number: u8,
-    /// Its name, such as `port-number-changed`.
+    /// The name, such as `port-number-changed`.
     pub name: &'static str,
-    /// Which messages it can break.
+    /// The messages that it can break.
     pub wire: Wire,
-    /// In which languages programs can stop compiling.
+    /// The languages whose programs can stop compiling.
     pub source: &'static [Language],
-    /// Whether programs can behave differently although all messages are read.
+    /// `true` if programs can behave differently although they read all messages.
     pub behaviour: bool,
-    /// Whether it can go unnoticed: no message is refused, but a value is wrong.
+    /// `true` if a value can be wrong without an error.
     pub silent: bool,
-    /// Whether a release must not have it, even where no message breaks.
+    /// `true` if no release may have it, even if no message breaks.
     pub is_error: bool,
     /// The subject of its findings.
     pub about: About,
-    /// Numbers of the rules of which one finds the opposite change.
+    /// The numbers of the rules that find the opposite change.
     pub mirror: &'static [u8],
-    /// Why no rule finds the opposite change, in English and in Chinese; empty where one does.
+    /// The reason why no rule finds the opposite change, in English and in Chinese; empty if one does.
     pub no_mirror: [&'static str; 2],
-    /// What happened, in a few words, in English and in Chinese.
+    /// A short title of the change, in English and in Chinese.
     pub title: [&'static str; 2],
-    /// What it means and what to do, in English and in Chinese.
+    /// The explanation and the advice, in English and in Chinese.
     pub text: [&'static str; 2],
 }
 
@@ -45,21 +45,21 @@ pub enum About {
     Waiver,
 }
 
-/// Which messages a change breaks: those of a sender of the old version at a receiver of the new one, or the reverse.
+/// The messages that a change breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
     /// None.
     Fine,
-    /// Those from old senders at new receivers.
+    /// Messages from old senders at new receivers.
     OldSender,
-    /// Those of new senders at old receivers.
+    /// Messages from new senders at old receivers.
     NewSender,
-    /// Both.
+    /// Messages in both directions.
     Both,
 }
 
 impl Wire {
-    /// From whether old senders and whether new senders break.
+    /// Returns the value for whether messages from old and from new senders break.
     #[must_use]
     pub fn of(old_sender: bool, new_sender: bool) -> Self {
         match (old_sender, new_sender) {
@@ -70,13 +70,13 @@ impl Wire {
         }
     }
 
-    /// Whether messages from old senders break.
+    /// Returns `true` if messages from old senders break.
     #[must_use]
     pub fn breaks_old_sender(self) -> bool {
         matches!(self, Self::OldSender | Self::Both)
     }
 
-    /// Whether messages of new senders break.
+    /// Returns `true` if messages from new senders break.
     #[must_use]
     pub fn breaks_new_sender(self) -> bool {
         matches!(self, Self::NewSender | Self::Both)
@@ -91,18 +91,18 @@ pub enum Language {
     Rust,
     /// Kotlin.
     Kotlin,
-    /// Compiled Java and Kotlin that runs with another version of the package.
+    /// Compiled Java and Kotlin code that runs with another version of the package.
     JvmBinary,
     /// C++.
     Cpp,
-    /// Python, as its type checkers see it.
+    /// Python, as type checkers see it.
     Python,
     /// TypeScript.
     Typescript,
 }
 
 impl Language {
-    /// What it is called.
+    /// Returns the display name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -116,13 +116,13 @@ impl Language {
     }
 }
 
-/// The one of an English and a Chinese text in this language.
+/// Returns the English or the Chinese string.
 pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
     lang.pick(zh, en)
 }
 
 impl Rule {
-    /// Every rule, by number; what no rule judges comes first.
+    /// Returns every rule by number. The rule for unjudged differences comes first.
     pub fn all() -> impl Iterator<Item = &'static Self> {
         let sections = rules::ALL.iter();
         let mut rules: Vec<&Self> = sections.flat_map(|it| it.iter().copied()).collect();
@@ -130,13 +130,13 @@ impl Rule {
         rules.into_iter()
     }
 
-    /// Its code, such as `FC0701`.
+    /// Returns the code, such as `FC0701`.
     #[must_use]
     pub fn code(&self) -> String {
         format!("FC07{:02}", self.number)
     }
 
-    /// The rule with this code, in any case, with or without its `FC` and zeros in front.
+    /// Returns the rule with this code, in any case, with or without `FC` and leading zeros.
     #[must_use]
     pub fn parse(code: &str) -> Option<&'static Self> {
         let upper = code.trim().to_ascii_uppercase();
@@ -145,19 +145,19 @@ impl Rule {
         Self::all().find(|rule| rule.code() == padded)
     }
 
-    /// What it is about, in a few words.
+    /// Returns the short title.
     #[must_use]
     pub fn title_in(&self, lang: Lang) -> &'static str {
         pick(lang, self.title)
     }
 
-    /// What it means, whom it breaks and what finds its opposite, as Markdown.
+    /// Returns the explanation with the effects and the rule for the opposite change, as Markdown.
     #[must_use]
     pub fn explain(&self, lang: Lang) -> String {
         format!("{}\n\n{}\n", pick(lang, self.text), self.marks(lang))
     }
 
-    /// The most that it can break, as a list.
+    /// Returns the greatest possible effects as a list.
     fn marks(&self, lang: Lang) -> String {
         let wire = match self.wire {
             Wire::Fine => ["nothing breaks", "不影响"],
@@ -210,7 +210,7 @@ impl Rule {
     }
 }
 
-/// As its name.
+/// Serializes the name.
 impl Serialize for Rule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name)

@@ -1,11 +1,12 @@
-//! What is gone before the day that was promised.
+//! Reports operations that were removed before their `sunset`.
 
 use crate::finding::Finding;
 use crate::matching::{Pair, operations};
 use crate::rules::process::RELEASE;
 use fc_spec::model::{Model, is_past};
 
-/// Operations of the old version that the new one does not have although their `sunset` is not over on a day, `YYYY-MM-DD`.
+/// Returns a finding for each operation that the new version lacks although its `sunset` is not over on a day,
+/// `YYYY-MM-DD`.
 #[must_use]
 pub fn gone_early(old: &Model, new: &Model, today: &str) -> Vec<Finding> {
     let gone = operations(old, new).into_iter().filter_map(|pair| {

@@ -1,4 +1,4 @@
-//! A version of a spec to compare: a directory, a dump, a release, or what git has of one.
+//! Loads a version of a spec from a directory, a dump, a release or git.
 
 use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
@@ -13,47 +13,47 @@ use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a version of git begins with: `git:main`.
+/// The prefix of a version in git: `git:main`.
 const GIT: &str = "git:";
-/// Bytes that all files of a version may have together.
+/// The maximum total size of the files of a version, in bytes.
 const MOST: u64 = 256 << 20;
 
 /// A version of a spec.
 #[derive(Debug)]
 pub struct Version {
-    /// What it is called: as it was asked for.
+    /// The name that the caller gave.
     pub name: String,
-    /// What it says.
+    /// The model.
     pub model: Model,
-    /// Its files; none of a dump.
+    /// The files; none for a dump.
     pub sources: Sources,
-    /// Where each thing stands in them.
+    /// The place of each definition in the files.
     pub places: Places,
 }
 
-/// Why a version cannot be compared.
+/// The reason why a version cannot be loaded.
 #[derive(Debug)]
 pub enum VersionError {
-    /// Its spec has errors.
+    /// The spec has errors.
     Faulty {
-        /// What was asked for.
+        /// The name that the caller gave.
         name: String,
-        /// Its files.
+        /// The files of the spec.
         sources: Sources,
-        /// They; boxed, since most results are none.
+        /// The errors, in a box because they are large and rare.
         faults: Box<Faults>,
     },
-    /// This version does not read the dump.
+    /// The dump has a format that this program cannot read.
     Dump(String, DumpError),
-    /// It cannot be read.
+    /// The file or directory cannot be read.
     Unreadable(String, std::io::Error),
-    /// There is no git, or it does not have it; what git says.
+    /// git is missing or fails. The second value is its message.
     Git(String, String),
-    /// It is not a directory with a spec, nor a file.
+    /// The path is neither a file nor a directory with a spec.
     NoSpec(String),
-    /// It is the number of a release that there is not.
+    /// There is no release with this number.
     NoRelease(NoRelease),
-    /// Its files are too large.
+    /// The files are too large.
     TooLarge(String),
     /// The dump of a release is a directory, a pipe or a device.
     NotAFile(String),
@@ -115,9 +115,12 @@ impl fmt::Display for VersionError {
 impl std::error::Error for VersionError {}
 
 impl Version {
-    /// Reads a version: a project's or a spec's directory, a file that `fcproto inspect` has printed, the number of a release of
-    /// the spec in `project`, which counts before a file of that name, or `git:REF` for what git has of it; `spec` leads from
-    /// there to the spec's directory.
+    /// Loads a version by name. The name is one of these:
+    ///
+    /// - the directory of a project or of a spec; `spec` leads from a project to its spec
+    /// - a file from `fcproto inspect`
+    /// - the number of a release in `project`; it takes precedence over a file with that name
+    /// - `git:REF` for a revision in git
     ///
     /// # Errors
     ///
@@ -128,13 +131,13 @@ impl Version {
         }
         let unreadable = |error| VersionError::Unreadable(name.to_owned(), error);
         let releases = Releases::beside(&project.join(spec)).map_err(unreadable)?;
-        // A directory that is called like a release is `./2026.12`.
+        // `./2026.12` names a directory that is called like a release.
         let release = releases.named(name);
         let path = release.unwrap_or(Path::new(name));
         if release.is_none() && name.parse::<Number>().is_ok() && !path.exists() {
             return Err(VersionError::NoRelease(releases.without(name)));
         }
-        // To open a pipe would wait for its writer.
+        // Opening a pipe would wait for its writer.
         if release.is_some() && path.metadata().is_ok_and(|found| !found.is_file()) {
             return Err(VersionError::NotAFile(path.display().to_string()));
         }
@@ -158,7 +161,7 @@ impl Version {
                 places: Places::default(),
             });
         }
-        // A project has its spec below it.
+        // Looks for the spec of a project first, then for a spec in the directory itself.
         let inside = [spec, Path::new("")];
         let has_spec = |inside: &&Path| path.join(inside).join("protocol.yaml").is_file();
         let Some(inside) = inside.into_iter().find(has_spec) else {
@@ -169,7 +172,7 @@ impl Version {
         Self::of(name, sources, faults)
     }
 
-    /// The files of a spec as `git:REF` has them, with their paths from `project`, read or not.
+    /// Returns the files of a spec at `git:REF`, with paths relative to `project`. They need not parse.
     ///
     /// # Errors
     ///
@@ -179,14 +182,14 @@ impl Version {
         git(name, reference, project, spec)
     }
 
-    /// A version that consists of these files, in which these faults have been found already.
+    /// Loads a version from files. `faults` has the errors that were found before.
     ///
     /// # Errors
     ///
     /// [`VersionError::Faulty`].
     pub fn of(name: &str, sources: Sources, mut faults: Faults) -> Result<Self, VersionError> {
         let name = name.to_owned();
-        // The settings of another version are unknown.
+        // The project settings of another version are unknown.
         let trees = Trees::new(&sources);
         match trees.load(Languages::Any, &mut faults).model() {
             Some(model) => Ok(Self {
@@ -204,7 +207,7 @@ impl Version {
     }
 }
 
-/// The files of a spec as a reference of git has them.
+/// Reads the files of a spec at a git revision.
 fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sources, VersionError> {
     let fails = |why: String| VersionError::Git(name.to_owned(), why);
     let say = |arguments: &[&str]| -> Result<Vec<u8>, VersionError> {
@@ -226,7 +229,7 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
             "expected a branch, tag or commit, such as git:main".to_owned(),
         ));
     }
-    // From the project's directory, wherever that is in its repository.
+    // The path is relative to the project's directory, which need not be the root of the repository.
     let tree = format!("{reference}:./{}", spec.to_string_lossy());
     let id = say(&["rev-parse", "--verify", "--end-of-options", &tree])?;
     let id = String::from_utf8_lossy(&id).trim().to_owned();
@@ -242,7 +245,7 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
             facts.nth(2).unwrap_or_default(),
             facts.next().unwrap_or_default(),
         );
-        // Those that are read from a directory.
+        // Only files that a spec in a directory would consist of.
         let file = path.strip_prefix("commands/").unwrap_or(path);
         if file.contains('/') || Path::new(file).extension().is_none_or(|it| it != "yaml") {
             continue;

@@ -1,29 +1,29 @@
-//! Waivers applied: which findings the owner has accepted, and which waivers accept nothing.
+//! Applies waivers to findings, and reports waivers without effect.
 
 use crate::finding::Finding;
 use crate::rules::operations::CODE_REUSED;
 use crate::rules::process::{RELEASE, WAIVER_OVER, WAIVER_REFUSED, WAIVER_UNUSED};
 use fc_spec::model::Waiver;
 
-/// What the ids of waivers for this comparison begin with; those of others are for others.
+/// The prefix of waiver ids for comparisons of versions.
 const OURS: &str = "FC07";
 
-/// Whether a waiver is about a change between versions.
+/// Returns `true` if a waiver is about a change between versions.
 #[must_use]
 pub fn is_ours(waiver: &Waiver) -> bool {
     waiver.id.starts_with(OURS)
 }
 
-/// Against what was compared, which decides what can be said of a waiver that accepts nothing.
+/// The base of the comparison. It decides whether an unused waiver is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
-    /// The last release. All that has changed since is among the findings.
+    /// The last release. The findings contain all changes since then.
     Release,
-    /// Another version, in which the accepted change may have happened already.
+    /// Another version. It may already contain the accepted change.
     Other,
 }
 
-/// Marks the findings that waivers accept on a day, `YYYY-MM-DD`, and adds what is wrong with the waivers.
+/// Marks the findings that waivers accept on a day, `YYYY-MM-DD`. Adds findings about invalid waivers.
 pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str, against: Against) {
     let mut wrong = Vec::new();
     for waiver in waivers.iter().filter(|it| is_ours(it)) {
@@ -40,14 +40,14 @@ pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str, again
             None => {}
         }
     }
-    // Breaks that are accepted are announced.
+    // An accepted break counts as announced.
     if !findings.iter().any(Finding::is_break) {
         findings.retain(|it| it.rule.number != RELEASE.number);
     }
     findings.append(&mut wrong);
 }
 
-/// A code that once meant something else is read as that by every old peer, and no date ends that.
+/// Returns `true` for a reused code. Every old peer reads it with its old meaning, and this never ends.
 fn is_never_waived(finding: &Finding) -> bool {
     finding.rule.number == CODE_REUSED.number
 }

@@ -1,13 +1,13 @@
-//! Which values a field takes: whether all that one version may send is taken by the other.
+//! Compares the values that two fields accept.
 
 use crate::rule::Wire;
 use fc_spec::model::{Field, FieldDetails, IntKind, Number, Quirk, Scalar, Type, WireForm};
 use std::cmp::Ordering;
 
-/// The smallest and the largest number; `None` where there is no end.
+/// The smallest and the largest number. `None` means no limit.
 pub(super) type Interval = (Option<Number>, Option<Number>);
 
-/// The numbers that a type holds, within the limits of a field; `None` for other types.
+/// Returns the numbers that a type holds within the limits of a field, or `None` for a type without numbers.
 pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
     let (mut least, mut most) = match ty {
         Type::Int(kind) => of_integers(*kind),
@@ -34,7 +34,7 @@ fn of_integers(kind: IntKind) -> Interval {
     (Some(Number::Int(least)), Some(Number::Int(most)))
 }
 
-/// Whether all of one interval lies in another.
+/// Returns `true` if `outer` contains all of `inner`.
 pub(super) fn within(inner: &Interval, outer: &Interval) -> bool {
     let least = match (&inner.0, &outer.0) {
         (_, None) => true,
@@ -56,12 +56,12 @@ fn compare(one: &Number, other: &Number) -> Ordering {
     }
 }
 
-/// Whether all values that `inner` names are among those that `outer` names; to name none is to name all.
+/// Returns `true` if `outer` contains all values of `inner`. An empty list means all values.
 pub(super) fn only_within(inner: &[Scalar], outer: &[Scalar]) -> bool {
     outer.is_empty() || (!inner.is_empty() && inner.iter().all(|value| outer.contains(value)))
 }
 
-/// Whom another form of a value breaks: a lenient receiver reads both.
+/// Returns the messages that a change of form breaks. A lenient receiver reads both forms.
 pub(super) fn forms(old: &Field, new: &Field) -> Wire {
     let is_lenient = |field: &Field, form: WireForm| {
         let quirks = &field.details().quirks;
@@ -77,7 +77,8 @@ pub(super) fn forms(old: &Field, new: &Field) -> Wire {
     )
 }
 
-/// Whom another type breaks, where no closer rule judges it: text takes any Base64, and JSON anything.
+/// Returns the messages that a change of type breaks, if no other rule judges it. A string accepts any Base64, and JSON
+/// accepts any value.
 pub(super) fn types(old: &Type, new: &Type) -> Wire {
     let takes = |receiver: &Type, sender: &Type| match (receiver, sender) {
         (Type::Json, _) | (Type::String, Type::Base64) => true,

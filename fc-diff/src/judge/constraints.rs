@@ -1,4 +1,4 @@
-//! What a field takes within its type.
+//! Judges the constraints of fields.
 
 use super::fields::Fields;
 use super::{Judge, accept, json, sources};
@@ -12,7 +12,7 @@ impl Judge<'_> {
         let is_same_type = it.old.ty == it.new.ty;
         let limits = |it: &FieldDetails| (it.min.clone(), it.max.clone());
         if limits(old) != limits(new) || old.only != new.only {
-            // Of another type, that is judged with the limits.
+            // If the type also changed, the finding about the type covers the limits.
             if is_same_type {
                 let (one, other) = (limits(old), limits(new));
                 let holds =
@@ -80,7 +80,7 @@ impl Judge<'_> {
     }
 }
 
-/// The limits of a field for people: `1–100`, `1, 6`.
+/// Returns the limits of a field as a string, such as `1–100` or `1, 6`.
 fn range(details: &FieldDetails) -> String {
     let mut parts = Vec::new();
     if details.min.is_some() || details.max.is_some() {

@@ -1,4 +1,4 @@
-//! Fields: their keys, types and forms. What they take within their type is judged as a constraint.
+//! Judges fields: their keys, types and forms.
 
 use super::frame::both;
 use super::types::Here;
@@ -11,7 +11,7 @@ use crate::rules::process::DOCS;
 use crate::rules::results::QUIRK_REMOVED;
 use fc_spec::model::{Field, FloatKind, Model, Type};
 
-/// An old and a new field that are the same.
+/// The two versions of a field.
 pub(super) struct Fields<'f> {
     pub(super) old: &'f Field,
     pub(super) new: &'f Field,
@@ -21,7 +21,7 @@ pub(super) struct Fields<'f> {
 }
 
 impl Fields<'_> {
-    /// A finding about the field.
+    /// Returns a finding about the field.
     pub(super) fn found(&self, rule: &'static Rule, values: [&str; 2], wire: Wire) -> Finding {
         let [old, new] = &self.here.owners;
         Finding::new(
@@ -36,7 +36,7 @@ impl Fields<'_> {
 }
 
 impl Judge<'_> {
-    /// The fields of an object.
+    /// Judges the fields of an object.
     pub(super) fn object(&mut self, here: &Here, old: &[Field], new: &[Field]) {
         let list: Path = here
             .path
@@ -83,7 +83,7 @@ impl Judge<'_> {
         self.claim_in(list, &["#order"]);
     }
 
-    /// The keys of the envelope, which every message has.
+    /// Judges the keys of the envelope, which every message has.
     pub(super) fn envelope(&mut self) {
         let (old, new) = (&self.old.envelope, &self.new.envelope);
         let first = self.found.len();
@@ -106,7 +106,7 @@ impl Judge<'_> {
                 &matching::envelope(new),
             );
         }
-        // The runtime makes the envelopes, and C++ has no types for them.
+        // The runtime builds the envelopes, so programs need no new keys. C++ has no types for envelopes.
         for finding in self.found.iter_mut().skip(first) {
             match finding.rule.number {
                 number if number == rules::REQUIRED_ADDED.number => finding.source.clear(),
@@ -186,7 +186,7 @@ impl Judge<'_> {
             let values = [old.wire_form.name(), new.wire_form.name()];
             self.report(it.found(&rules::FORM_CHANGED, values, accept::forms(old, new)));
             self.claim_in(&it.path, &["wire_form"]);
-            // It is written as it is sent.
+            // The example is written in the form of the message, so it changes too.
             self.claim_in(&it.path, &["example"]);
         }
         let (details, others) = (old.details(), new.details());
@@ -236,7 +236,7 @@ impl Judge<'_> {
             } else {
                 &rules::KEY_CHANGED
             };
-            // A required one is missed.
+            // If the field is required, the receiver reports the missing key.
             let silent = old.optional || new.optional;
             self.report(it.found(rule, [&old.wire, &new.wire], wire).silent(silent));
             for key in ["path", "wire", "also"] {
@@ -258,7 +258,7 @@ impl Judge<'_> {
         self.claim_in(&it.path, &["type"]);
         self.claim_in(&it.path, &["example"]);
         self.claim_in(&it.path, &["example_is"]);
-        // Named types that are the same thing are judged for themselves, their names too.
+        // Other findings judge a pair of named types, including their names.
         if matching::named(&old.ty, &new.ty).is_some() {
             return;
         }
@@ -337,7 +337,7 @@ impl Judge<'_> {
             (Some(one), Some(other)) => is_known(self.new, one) || is_known(self.old, other),
             _ => false,
         };
-        // Adding or removing `refers` changes nothing but the documentation.
+        // If the ID type stays the same, adding or removing `refers` only changes documentation.
         if source.is_empty() && !is_other {
             return;
         }

@@ -1,4 +1,4 @@
-//! Frame and transport.
+//! Judges the frame and the transport.
 
 use super::{Judge, shown};
 use crate::finding::{Finding, Senders};
@@ -116,7 +116,7 @@ impl Judge<'_> {
             let values = [shape(one), shape(other)];
             if values[0] != values[1] {
                 let finding = Finding::new(&rules::HEADER_LAYOUT, &subject, both(&values));
-                // A new field, or another place, changes no field of Rust.
+                // A new or moved field does not change the type of any Rust field.
                 let ty = |field: Option<&HeaderField>| field.map(|it| it.ty);
                 let is_other = one.is_some() && ty(one) != ty(other);
                 let source = if is_other {
@@ -272,7 +272,7 @@ impl Judge<'_> {
     }
 }
 
-/// Both as texts.
+/// Borrows both values.
 pub(super) fn both(values: &[String; 2]) -> [&str; 2] {
     [&values[0], &values[1]]
 }

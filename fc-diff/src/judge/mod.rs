@@ -1,4 +1,4 @@
-//! The rules applied: each section reports what it finds and claims the paths of the dump that it has judged.
+//! Applies the rules. Each section reports its findings and claims the paths of the dump that it has judged.
 
 mod accept;
 mod constraints;
@@ -20,19 +20,19 @@ use crate::rest;
 use fc_spec::model::{Model, Operation, TypeDef};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// A path of the dump, where lists are entered by the ids of their items, those of the new version.
+/// A path of the dump. The id of an item is its step into a list; the new version's id counts.
 pub(crate) type Path = Vec<String>;
 
-/// What has been judged, and what has another id in the new version.
+/// The judged paths, and the renamed items.
 #[derive(Default)]
 pub(crate) struct Account {
-    /// Paths with all below them that nothing more is said of.
+    /// Judged paths. A claim covers everything below its path.
     pub(crate) claims: BTreeSet<Path>,
-    /// New ids by old ones, by the path of their list.
+    /// New ids by old ids, per path of a list.
     pub(crate) renames: BTreeMap<Path, BTreeMap<String, String>>,
 }
 
-/// Two models and what has been found.
+/// Two models and the findings so far.
 struct Judge<'m> {
     old: &'m Model,
     new: &'m Model,
@@ -95,20 +95,20 @@ impl<'m> Judge<'m> {
         self.found.push(finding);
     }
 
-    /// Nothing more is said of this path and what is below it.
+    /// Claims a path and everything below it.
     fn claim(&mut self, path: &[&str]) {
         let path = path.iter().map(|part| (*part).to_owned()).collect();
         self.account.claims.insert(path);
     }
 
-    /// The same below a path.
+    /// Claims a path below another one.
     fn claim_in(&mut self, base: &[String], parts: &[&str]) {
         let parts = parts.iter().map(|part| (*part).to_owned());
         let path = base.iter().cloned().chain(parts).collect();
         self.account.claims.insert(path);
     }
 
-    /// What is called otherwise in the new version of a list.
+    /// Records that an item of a list has another id in the new version.
     fn renamed_in(&mut self, list: &[String], old: &str, new: &str) {
         let renames = self.account.renames.entry(list.to_vec()).or_default();
         renames.insert(old.to_owned(), new.to_owned());
@@ -121,7 +121,7 @@ impl<'m> Judge<'m> {
     }
 }
 
-/// What a type is called in findings: by the message that it is part of, or by its name.
+/// Returns the name of a type in findings: the message that contains it, or its own name.
 fn called(ty: &TypeDef) -> String {
     match &ty.body_of {
         Some(place) => {
@@ -135,12 +135,12 @@ fn called(ty: &TypeDef) -> String {
     }
 }
 
-/// As a text, or nothing.
+/// Returns a value as a string, or an empty string.
 fn shown<T: std::fmt::Display>(value: Option<T>) -> String {
     value.map(|value| value.to_string()).unwrap_or_default()
 }
 
-/// Things by what tells them apart.
+/// Indexes items by a key.
 fn by<'m, T, K: std::hash::Hash + Eq>(
     things: &'m [T],
     key: impl Fn(&'m T) -> K,
@@ -148,7 +148,7 @@ fn by<'m, T, K: std::hash::Hash + Eq>(
     things.iter().map(|thing| (key(thing), thing)).collect()
 }
 
-/// A value as it is sent.
+/// Returns a value as JSON.
 fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }

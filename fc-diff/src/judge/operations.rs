@@ -1,4 +1,4 @@
-//! Operations.
+//! Judges operations.
 
 use super::frame::both;
 use super::{Judge, by, called};
@@ -37,7 +37,7 @@ impl<'m> Judge<'m> {
         }
     }
 
-    /// What is in one version only.
+    /// Judges an operation that only one version has.
     fn gone(&mut self, operation: &'m Operation, name: &str, removed: bool) {
         let is_asked = operation.sender == Side::App;
         let rule = match (is_asked, removed) {
@@ -56,7 +56,7 @@ impl<'m> Judge<'m> {
         if !removed {
             finding = finding.source(asked_by(operation, rule));
         }
-        // Without a code nobody can have sent it.
+        // An operation without a code has never been sent.
         if is_asked && operation.code.value.is_some() {
             let senders = Senders::of(operation.sender);
             finding = finding.on(senders, Wire::of(removed, !removed));
@@ -119,7 +119,7 @@ impl<'m> Judge<'m> {
             }
             return self.facts(old, new);
         }
-        // Where the whole kind moved, that is said once.
+        // If the whole kind moved to another port, one finding reports it.
         let kinds = (&self.old.frame.kinds, &self.new.frame.kinds);
         let moved = kinds.0.of(old.kind()).port != kinds.1.of(new.kind()).port;
         if old.port != new.port {
@@ -374,7 +374,7 @@ impl<'m> Judge<'m> {
         }
     }
 
-    /// Whether the facts of an operation are stated, inferred or open.
+    /// Judges whether the facts of an operation are stated, inferred or open.
     fn facts(&mut self, old: &Operation, new: &Operation) {
         let name = new.name.as_str();
         for fact in Fact::ALL {
@@ -396,13 +396,13 @@ impl<'m> Judge<'m> {
                 }
             }
         }
-        // The names of the types of its messages follow from its own; what they hold is judged with the types.
+        // The types of messages take their names from the operation. The rules for types judge their contents.
         for direction in Direction::ALL {
             self.claim(&["operations", name, direction.name(), "type"]);
         }
     }
 
-    /// Codes that mean something else now.
+    /// Judges codes with a new meaning, removed entries of retired codes, and acknowledgement times.
     fn codes(&mut self) {
         let place = |it: &Operation| it.code.value.map(|code| (it.kind(), code));
         let before: HashMap<_, &Operation> = self
@@ -470,7 +470,7 @@ impl<'m> Judge<'m> {
         }
     }
 
-    /// A type with another name, or without a counterpart.
+    /// Judges renamed types, and claims the types without a counterpart.
     pub(super) fn renamed_types(&mut self) {
         use crate::rules::fields::TYPE_RENAMED;
         let pairs: Vec<_> = self
@@ -501,7 +501,7 @@ impl<'m> Judge<'m> {
                 self.claim(&["types", &new.name, key]);
             }
         }
-        // What uses one that is new or gone is judged.
+        // The rules judge the places that use a new or removed type.
         let alone = [&mut self.types.added, &mut self.types.removed].map(std::mem::take);
         for ty in alone.into_iter().flatten() {
             self.claim(&["types", &ty.name]);
@@ -532,7 +532,7 @@ fn unless(rule: &Rule, is_without_cpp: bool) -> Vec<Language> {
         .collect()
 }
 
-/// The pass-through ranges by the names of their methods.
+/// Returns the pass-through ranges by the names of their methods.
 fn methods(model: &Model) -> BTreeMap<String, &CodeRange> {
     let ranges = model.ranges.iter();
     let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);

@@ -1,4 +1,4 @@
-//! How the change is made.
+//! Judges the announcement of a change.
 
 use super::Judge;
 use crate::finding::Finding;
@@ -7,13 +7,13 @@ use crate::rules::process::RELEASE;
 use fc_spec::model::{Model, Operation, is_past};
 
 impl Judge<'_> {
-    /// What is deprecated goes earlier than was promised. A later date, and none, is left to be read.
+    /// Reports a `sunset` that moved to an earlier date. A later date and a missing date need no finding.
     pub(super) fn sunset(&mut self, old: &Operation, new: &Operation) {
         let sunset = |it: &Operation| it.deprecated.clone().and_then(|it| it.sunset);
         let (Some(before), Some(after)) = (sunset(old), sunset(new)) else {
             return;
         };
-        // A month lasts to its end, so that a day in it is earlier.
+        // A month lasts until its end, so a day in it is earlier.
         let is_within = after.len() > before.len() && after.starts_with(&before);
         if is_past(&after, &before) || is_within {
             let subject = format!("{}.deprecated.sunset", new.name);

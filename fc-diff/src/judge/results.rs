@@ -1,4 +1,4 @@
-//! Results, the times that calls take, and tables.
+//! Judges results, call times and tables.
 
 use super::Judge;
 use super::frame::both;
@@ -53,7 +53,7 @@ impl Judge<'_> {
             };
             let values = [shown(old), shown(new)];
             let finding = Finding::new(&rules::RESULT_CODE, subject, both(&values));
-            // The robot says it, and so does the app of reports.
+            // Robots send results, and apps send them in acknowledgements of reports.
             self.report(at(finding).on(Senders::BOTH, Wire::Both));
             for code in [old.code, new.code] {
                 self.claim(&["result_codes", &code.to_string()]);

@@ -1,4 +1,4 @@
-//! Types: objects, enums and choices.
+//! Judges types: objects, enums and choices.
 
 use super::{Judge, Path, called, json};
 use crate::finding::{Finding, Senders};
@@ -9,16 +9,16 @@ use crate::rules::fields::{NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_C
 use crate::rules::operations::GROUP_MOVED;
 use fc_spec::model::{EnumRepr, EnumType, IntKind, OneOf, TypeDef, TypeShape};
 
-/// A pair of things at one place.
+/// The place of a pair that is judged.
 #[derive(Clone)]
 pub(super) struct Here {
-    /// What it is called in findings.
+    /// The name in findings.
     pub(super) subject: String,
-    /// Its path in the dump.
+    /// The path in the dump.
     pub(super) path: Path,
-    /// Who sends messages that hold it.
+    /// The senders of messages that contain it.
     pub(super) senders: Senders,
-    /// Names of the old and the new type that it is.
+    /// The names of the old and the new type.
     pub(super) owners: [String; 2],
 }
 
@@ -63,7 +63,8 @@ impl<'m> Judge<'m> {
         }
     }
 
-    /// Whose file holds it now. What is part of a message goes with its operation, and what has another name has another path anyway.
+    /// Judges a move to another group. A type in a message moves with its operation, and a renamed type has another
+    /// path anyway.
     fn type_moved(&mut self, old: &TypeDef, new: &TypeDef) {
         self.claim(&["types", &new.name, "group"]);
         if new.body_of.is_none() && old.name == new.name {
@@ -174,7 +175,7 @@ impl<'m> Judge<'m> {
             .is("value", format!("{other}.{new}"))
     }
 
-    /// What an enum is sent as.
+    /// Judges the representation of an enum in messages.
     fn repr(&mut self, here: &Here, old: &EnumType, new: &EnumType) {
         let name = |repr: EnumRepr| match repr {
             EnumRepr::Int(kind) => kind.name(),
@@ -191,7 +192,7 @@ impl<'m> Judge<'m> {
                     outer.0 <= inner.0 && inner.1 <= outer.1
                 };
                 let (fits, fitted) = (is_within(one, other), is_within(other, one));
-                // The values of a closed enum fit both types, or the spec would have a fault.
+                // The values of a closed enum fit both types. Otherwise the spec would have an error.
                 let wire = Wire::of(!fits && !old.closed, !fitted && !new.closed);
                 (
                     if fits {

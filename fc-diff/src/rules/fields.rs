@@ -290,7 +290,7 @@ rules! {
         number: 77,
         name: "member-order-changed",
         source: &[Cpp],
-        // Taking out the field that moved the others is judged as a removal.
+        // The finding about the removed field covers this change.
         mirror: &[77, 27, 28],
         title: ["fields of a struct have other positions", "结构体字段的位置变更"],
         text: [

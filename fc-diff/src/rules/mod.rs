@@ -22,7 +22,7 @@ pub(crate) const ALL: [&[&Rule]; 8] = [
     process::RULES,
 ];
 
-/// Programs in every language.
+/// All languages.
 const EVERY: &[Language] = &[
     Language::Rust,
     Language::Kotlin,

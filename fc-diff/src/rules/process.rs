@@ -1,4 +1,4 @@
-//! How a change is made.
+//! Announcements, waivers and documentation.
 
 use super::{BASE, rules};
 use crate::rule::{About, Rule};
