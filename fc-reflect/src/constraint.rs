@@ -1,4 +1,4 @@
-//! What the spec demands of values beyond their types.
+//! Checks values against the constraints of the spec.
 
 use crate::plan::FieldPlan;
 use crate::tree::{Node, Value};
@@ -28,7 +28,7 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// The first constraint that a value breaks. An absent one breaks none.
+/// Returns the first constraint that a value breaks. An absent value breaks none.
 fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyErrorKind, String)> {
     let mut constraints = field.constraints.iter();
     constraints.find_map(|constraint| match *constraint {
@@ -50,7 +50,7 @@ fn broken(field: &FieldPlan<'_>, value: &Value<'_>) -> Option<(BodyErrorKind, St
             let Value::Text(text) = value else {
                 return None;
             };
-            // A checked model's patterns compile; one that does not takes nothing.
+            // The patterns of a checked model compile. A pattern that does not compile matches nothing.
             let regex = field.pattern.as_ref();
             let fits = regex.is_some_and(|regex| regex.is_match(text));
             let detail = || format!("the string must match `{source}` as a whole");
@@ -74,7 +74,7 @@ fn out_of_range(relation: &str, limit: &Number) -> (BodyErrorKind, String) {
     (BodyErrorKind::OutOfRange, detail)
 }
 
-/// What an error says of a value that is none of these.
+/// Returns the message for a value that is not in the list.
 fn not_taken(taken: &[Scalar]) -> String {
     let taken: Vec<String> = taken
         .iter()
@@ -86,7 +86,7 @@ fn not_taken(taken: &[Scalar]) -> String {
     format!("the value must be one of: {}", taken.join(", "))
 }
 
-/// How a number compares with a limit: exactly where both are integers.
+/// Compares a number with a limit. The comparison is exact if both are integers.
 fn compare(value: &Value<'_>, limit: &Number) -> Option<Ordering> {
     match (value, limit) {
         (Value::Int(value), Number::Int(limit)) => Some(value.cmp(limit)),
@@ -96,7 +96,7 @@ fn compare(value: &Value<'_>, limit: &Number) -> Option<Ordering> {
     }
 }
 
-/// Characters of a string, items of a list, bytes of base64.
+/// Returns the number of characters of a string, items of a list, or bytes of base64.
 fn length(value: &Value<'_>) -> Option<u64> {
     let length = match value {
         Value::Text(text) => text.chars().count(),

@@ -1,10 +1,10 @@
-//! What can be wrong with a frame or a body, by the names that every product of a spec gives it.
+//! Errors of frames and bodies. Every product of a spec uses the same names for them.
 
 use crate::id::FrameId;
 use fc_runtime::json::BodyError;
 use std::fmt;
 
-/// Declares a closed set of names: each is written once.
+/// Declares an enum of errors and writes each name once.
 macro_rules! named {
     (
         $(#[$about:meta])*
@@ -17,10 +17,10 @@ macro_rules! named {
         }
 
         impl $set {
-            /// All of them.
+            /// All values.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// Its name, the same in every product of the spec.
+            /// Returns the name, the same in every product of the spec.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -32,9 +32,9 @@ macro_rules! named {
 }
 
 named! {
-    /// What is wrong with a frame.
+    /// A kind of error in a frame.
     FrameFault {
-        /// The bytes where a frame has to begin are no head.
+        /// The frame does not begin with a head of the protocol.
         BadHead = "bad_head",
         /// The total length is less than that of a header.
         ShortFrame = "short_frame",
@@ -42,34 +42,34 @@ named! {
         FrameTooLong = "frame_too_long",
         /// The input ends inside the frame.
         Truncated = "truncated",
-        /// The kind is none of the protocol's.
+        /// The protocol has no such kind.
         UnknownKind = "unknown_kind",
         /// The kind is reserved for later versions of the protocol.
         ReservedKind = "reserved_kind",
-        /// The data is packed in a way that the protocol does not know.
+        /// The protocol has no such encoding.
         UnknownEncoding = "unknown_encoding",
-        /// The digest is not that of the data.
+        /// The digest does not match the data.
         BadDigest = "bad_digest",
-        /// The data is not one whole gzip member.
+        /// The data is not one complete gzip member.
         BadGzip = "bad_gzip",
-        /// The data has another length than the header says it has before compression.
+        /// The length of the data differs from the plain length in the header.
         PlainLengthMismatch = "plain_length_mismatch",
-        /// The data would be longer than the limit after decompression.
+        /// The decompressed data would exceed the limit.
         InflatedTooLong = "inflated_too_long",
-        /// The data would grow by more than text does when it is inflated.
+        /// The decompressed data would be larger than the ratio limit allows.
         InflatesTooMuch = "inflates_too_much",
     }
 }
 
-/// A frame that cannot be taken apart, or made.
+/// An error in reading or writing a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameError {
-    /// What is wrong.
+    /// The kind of error.
     pub fault: FrameFault,
-    /// Which message the frame belongs to; `None` where not even its end is known, so that a stream
-    /// of frames cannot go on behind it.
+    /// The message of the frame. `None` if the length of the frame is unknown, so that reading a stream of frames
+    /// cannot continue.
     pub frame: Option<FrameId>,
-    /// What was found and what is wanted.
+    /// The actual and the expected content.
     pub detail: String,
 }
 
@@ -99,22 +99,22 @@ impl fmt::Display for FrameError {
 
 impl std::error::Error for FrameError {}
 
-/// What is wrong with a frame or with the body in it.
+/// An error in a frame or in its body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// The frame cannot be taken apart.
+    /// The frame is invalid.
     Frame(FrameError),
-    /// The frame is right, and its body is not.
+    /// The frame is valid, and its body is not.
     Body {
-        /// Which message it is.
+        /// The message of the frame.
         frame: FrameId,
-        /// What is wrong with it.
+        /// The error in the body.
         error: BodyError,
     },
 }
 
 impl Error {
-    /// The fault's name, the same in every product of the spec.
+    /// Returns the name of the error, the same in every product of the spec.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -123,7 +123,7 @@ impl Error {
         }
     }
 
-    /// Where in the body; empty for the body as a whole and for a frame.
+    /// Returns the place in the body. It is empty for an error of the whole body or of the frame.
     #[must_use]
     pub fn path(&self) -> &str {
         match self {

@@ -1,4 +1,4 @@
-//! Bytes to frames and back, by the header that the model lays out.
+//! Reads and writes frames with the header layout of the model.
 
 use crate::error::{FrameError, FrameFault};
 use crate::id::FrameId;
@@ -13,88 +13,88 @@ use md5::{Digest as _, Md5};
 use std::fmt;
 use std::ops::Range;
 
-/// Data of so many bytes or fewer may have been compressed by any ratio.
+/// Up to this size, decompressed data may have any compression ratio.
 const INFLATE_FREE: u64 = 1 << 20;
 
-/// How the data of a frame is to be sent.
+/// The packing of the data in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Packing {
-    /// As it is.
+    /// Uncompressed.
     #[default]
     Plain,
-    /// As one gzip member, where that is shorter.
+    /// One gzip member, if it is shorter than the data.
     Gzip {
-        /// 1 (fast) to 9 (small).
+        /// The level from 1 (fast) to 9 (small).
         level: u8,
     },
 }
 
-/// A frame that has been taken apart.
+/// A frame that has been read.
 #[derive(Clone)]
 pub struct Frame<'m> {
-    /// Which message it belongs to.
+    /// The message that the frame belongs to.
     pub id: FrameId,
-    /// Every field of the header, in order.
+    /// All fields of the header, in order.
     pub header: Vec<HeaderValue<'m>>,
-    /// What the spec says of its kind.
+    /// The kind of the frame in the spec.
     pub kind: &'m FrameKind,
-    /// What the spec says of how its data is packed.
+    /// The encoding of the data in the spec.
     pub encoding: Option<&'m Encoding>,
-    /// The operation with its code among those of its kind; `None` if the spec has none.
+    /// The operation with this kind and code, or `None` if the spec has none.
     pub operation: Option<&'m Operation>,
-    /// Bytes of the whole frame: a stream goes on behind them.
+    /// The length of the whole frame in bytes. The next frame of a stream begins there.
     pub length: usize,
-    /// Where its data lies, as sent.
+    /// The position of the data in the frame, as sent.
     pub packed: Range<usize>,
-    /// Its data, decompressed.
+    /// The decompressed data.
     pub data: Vec<u8>,
 }
 
 impl<'m> Frame<'m> {
-    /// The header field with this role.
+    /// Returns the header field with this role.
     #[must_use]
     pub fn field(&self, role: HeaderRole) -> Option<&HeaderValue<'m>> {
         let has_role = |value: &&HeaderValue<'m>| value.field.role == Some(role);
         self.header.iter().find(has_role)
     }
 
-    /// Whether its data is raw bytes instead of JSON.
+    /// Returns `true` if the data is raw bytes instead of JSON.
     #[must_use]
     pub fn is_stream(&self) -> bool {
         self.kind.role == KindRole::Stream
     }
 }
 
-/// Shows no data: bodies may hold what must not be logged.
+/// Leaves out the data, because a body can contain values that must not be logged.
 impl fmt::Debug for Frame<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Frame({}, {} bytes)", self.id, self.data.len())
     }
 }
 
-/// A field of a header.
+/// A header field of a frame.
 #[derive(Clone, Debug)]
 pub struct HeaderValue<'m> {
-    /// Its wire name, its name in code, its role and its description.
+    /// The field in the spec, with its names, role and description.
     pub field: &'m HeaderField,
-    /// Its bytes in the frame.
+    /// The position of its bytes in the frame.
     pub span: Range<usize>,
-    /// What it holds.
+    /// The content.
     pub content: HeaderContent,
-    /// Whether it was accepted by a quirk alone: a plain length of 0 where the data is not compressed.
+    /// `true` if only a quirk accepts the value: a plain length of 0 with uncompressed data.
     pub lenient: bool,
 }
 
-/// What a header field holds.
+/// The content of a header field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HeaderContent {
     /// An integer.
     Int(u64),
-    /// A run of bytes.
+    /// A sequence of bytes.
     Bytes(Vec<u8>),
 }
 
-/// Takes the frame apart that `bytes` begin with.
+/// Reads the frame at the start of `bytes`.
 pub(crate) fn read<'m>(
     plan: &Plan<'m>,
     limits: &Limits,
@@ -137,8 +137,8 @@ pub(crate) fn read<'m>(
     })
 }
 
-/// Length of the frame that `bytes` begin with, and which head it has. What can be refused is refused with its first
-/// wrong byte, as by a receiver to which they come one by one.
+/// Returns the length of the frame at the start of `bytes`, and its direction. An error is reported as soon as the
+/// bytes show it. A receiver that reads byte by byte reports the same error.
 fn locate(
     plan: &FramePlan<'_>,
     limits: &Limits,
@@ -186,23 +186,24 @@ fn locate(
     Ok((length, direction))
 }
 
-/// A header as bytes.
+/// The bytes of a header.
 struct Raw<'p, 'm, 'b> {
     plan: &'p FramePlan<'m>,
     bytes: &'b [u8],
 }
 
-/// What a frame has been found to be.
+/// The result of checking a frame.
 struct Checked<'m> {
     kind: &'m FrameKind,
     encoding: Option<&'m Encoding>,
     data: Vec<u8>,
-    /// Whether a plain length of 0 was taken for that of the data.
+    /// `true` if a plain length of 0 was accepted.
     zero_length: bool,
 }
 
 impl<'m> Raw<'_, 'm, '_> {
-    /// The integer in the field with this role; `None` if there is no such field, or its bytes have not come.
+    /// Returns the integer in the field with this role. Returns `None` if the field does not exist or its bytes are
+    /// missing.
     fn int(&self, role: HeaderRole) -> Option<u64> {
         self.int_in(self.plan.layout.field(role)?)
     }
@@ -225,7 +226,7 @@ impl<'m> Raw<'_, 'm, '_> {
         }
     }
 
-    /// Checks a whole frame in the order that decides which of several errors it has, and inflates it.
+    /// Checks a whole frame and decompresses it. The order of the checks decides which of several errors is reported.
     fn check(&self, id: FrameId, limits: &Limits) -> Result<Checked<'m>, FrameError> {
         let fault = |fault, detail: String| Err(FrameError::new(fault, Some(id), detail));
         let kind = match self.plan.kind(id.kind) {
@@ -239,7 +240,7 @@ impl<'m> Raw<'_, 'm, '_> {
                 return fault(FrameFault::UnknownKind, detail);
             }
         };
-        // Where nothing says how the data is packed, it is not.
+        // Without an encoding field, the data is uncompressed.
         let encoding = match self.int(HeaderRole::Encoding) {
             Some(value) => {
                 let mut encodings = self.plan.layout.encodings.iter();
@@ -308,7 +309,7 @@ impl<'m> Raw<'_, 'm, '_> {
     }
 }
 
-/// What a digest field holds of data.
+/// Returns the content of a digest field for data.
 fn digest(field: &HeaderField, data: &[u8]) -> HeaderContent {
     match field.digest() {
         Some(DigestAlgorithm::Crc32) => HeaderContent::Int(crc32fast::hash(data).into()),
@@ -316,7 +317,7 @@ fn digest(field: &HeaderField, data: &[u8]) -> HeaderContent {
     }
 }
 
-/// Makes a frame around data: packed, lengths and digest in place.
+/// Builds a frame around data, with packing, lengths and digest.
 pub(crate) fn write(
     plan: &FramePlan<'_>,
     limits: &Limits,
@@ -343,7 +344,7 @@ pub(crate) fn write(
     Ok(around(plan, id, encoding, sent, data.len()))
 }
 
-/// Puts a header before data as it is sent.
+/// Puts a header before packed data.
 pub(crate) fn around(
     plan: &FramePlan<'_>,
     id: FrameId,
@@ -370,7 +371,7 @@ pub(crate) fn around(
             Some(HeaderRole::TotalLength) => HeaderContent::Int(bytes.len() as u64),
             Some(HeaderRole::PlainLength) => HeaderContent::Int(plain_length as u64),
             Some(HeaderRole::Digest) => digest(field, sent),
-            // A run of bytes is sent as zeros.
+            // A byte field is sent as zeros.
             Some(HeaderRole::Status) | None => match field.ty {
                 HeaderType::Bytes(_) => HeaderContent::Bytes(Vec::new()),
                 _ => HeaderContent::Int(field.value),
@@ -381,7 +382,7 @@ pub(crate) fn around(
     bytes
 }
 
-/// Overwrites the integer in the header field with this role, if there is one.
+/// Overwrites the integer in the header field with this role, if the field exists.
 pub(crate) fn overwrite(plan: &FramePlan<'_>, frame: &mut [u8], role: HeaderRole, value: u64) {
     if let Some(field) = plan.layout.field(role) {
         put(plan, frame, field, &HeaderContent::Int(value));

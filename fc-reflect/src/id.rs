@@ -1,23 +1,23 @@
-//! What a frame belongs to.
+//! The header fields that identify the message of a frame.
 
 use fc_spec::model::Direction;
 use std::fmt;
 
-/// Which message a frame belongs to.
+/// Identifies the message of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FrameId {
-    /// Which head the frame opens with.
+    /// The head that the frame begins with.
     pub direction: Direction,
-    /// Kind of the data.
+    /// The kind of the data.
     pub kind: u8,
-    /// Command code.
+    /// The command code.
     pub code: u16,
-    /// Message id.
+    /// The message id.
     pub id: u32,
 }
 
 impl FrameId {
-    /// The id of an answer to this frame: it echoes everything but the head.
+    /// Returns the id of a response to this frame. Only the head differs.
     #[must_use]
     pub fn answer(self) -> Self {
         Self {

@@ -1,9 +1,9 @@
-//! Frames and bodies by the model of a protocol, at run time.
+//! Reads and writes frames and bodies of any protocol at run time.
 //!
-//! The generated packages know one spec when they are compiled. This crate knows any spec that [`fc_spec`] has loaded,
-//! also one read a second ago: it takes frames apart into named, described values with their places, and makes frames
-//! of JSON. What it accepts, what it refuses, the names and paths of errors and the bytes it writes are those of the
-//! generated packages.
+//! A generated package knows one spec at compile time. This crate takes any spec that [`fc_spec`] has loaded. It reads
+//! frames into named and described values with their positions, and builds frames from JSON. It behaves like the
+//! generated packages: it accepts the same input, writes the same bytes, and reports errors with the same names and
+//! paths.
 //!
 //! ```text
 //! bytes ──frame──► Frame: header fields, operation, data ──message──► Message: envelope and body as trees of Nodes
@@ -35,7 +35,7 @@
 //! assert_eq!(shown, ["lux at 14..17: Illuminance", "new at 24..26: unknown"]);
 //! assert_eq!(message.canonical()?, r#"{"at":1,"lux":2.0,"new":[]}"#);
 //!
-//! // What nobody is there to answer is answered with the example of the spec, or with any of its results.
+//! // Without a robot, the example of the spec or any of its results is the response.
 //! let answer = reflector.answer(&reflector.frame(&bytes)?, None, Packing::Plain).expect("a report")?;
 //! let answer = reflector.frame(&answer)?;
 //! assert_eq!(answer.id, id.answer());
@@ -43,8 +43,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Architecture invariant.** No I/O, and no fact of any protocol: all comes from the model. Errors come with the
-//! names of [`FrameFault`] and [`BodyErrorKind`]; nothing grows without a limit ([`Limits`]).
+//! **Architecture invariant.** This crate does no I/O and contains no fact about a protocol, because all facts come
+//! from the model. Errors have the names of [`FrameFault`] and [`BodyErrorKind`]. [`Limits`] bound all memory.
 
 mod constraint;
 mod error;
@@ -89,18 +89,18 @@ impl<'m> Reflector<'m> {
         }
     }
 
-    /// Sets what a frame and its body may cost.
+    /// Sets the limits of a frame and its body.
     #[must_use]
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;
         self
     }
 
-    /// Takes the frame apart that `bytes` begin with, and reads its body. All of it must be right; to see the parts of
-    /// what is not, ask for the [frame](Self::frame) and the [message](Self::message) one by one.
+    /// Reads the frame at the start of `bytes` and its body. Both must be valid. For the parts of an invalid frame,
+    /// call [`frame`](Self::frame) and [`message`](Self::message).
     ///
     /// # Errors
-    /// What is wrong with the frame, with the envelope or with the body.
+    /// The error in the frame, the envelope or the body.
     pub fn decode(&self, bytes: &[u8]) -> Result<Decoded<'m>, Error> {
         let frame = self.frame(bytes)?;
         if is_bytes(&frame) {
@@ -122,19 +122,19 @@ impl<'m> Reflector<'m> {
         })
     }
 
-    /// Takes the frame apart that `bytes` begin with. What comes behind it is not looked at.
+    /// Reads the frame at the start of `bytes`. Ignores the bytes after it.
     ///
     /// # Errors
-    /// What is wrong with the frame.
+    /// The error in the frame.
     pub fn frame(&self, bytes: &[u8]) -> Result<Frame<'m>, FrameError> {
         frame::read(&self.plan, &self.limits, bytes)
     }
 
-    /// Reads the text of a message of one side of an operation. No bytes are read as `{}`. Where there is no operation,
-    /// the envelope is read and all other keys are unknown. What a stream carries has no envelope.
+    /// Reads the text of a message of one side of an operation. Empty text counts as `{}`. Without an operation, all
+    /// keys outside the envelope are unknown. A stream has no envelope.
     ///
     /// # Errors
-    /// What keeps even the envelope from being read. What is wrong with the body is in the message.
+    /// The error that prevents reading the envelope. The message contains an error of the body.
     pub fn message(
         &self,
         operation: Option<&Operation>,
@@ -153,8 +153,8 @@ impl<'m> Reflector<'m> {
         read::message(&self.plan, envelope, own, text, &self.limits)
     }
 
-    /// What the header of a message of an operation says, of `id` as many of the low bits as it has room for; `None`
-    /// while the operation has no code.
+    /// Returns the header fields for a message of an operation, or `None` while the operation has no code. `id` is cut
+    /// to the low bits that fit its field.
     #[must_use]
     pub fn id(&self, operation: &Operation, direction: Direction, id: u32) -> Option<FrameId> {
         let (kind, code) = self.plan.named(&operation.name)?.place()?;
@@ -168,12 +168,12 @@ impl<'m> Reflector<'m> {
         })
     }
 
-    /// Makes a frame of a JSON object of wire keys, those of the envelope included, such as the text of a
-    /// [`fc_spec::model::Value`]: read as [`message`](Self::message) reads it, and written in canonical form. What
-    /// a stream carries is sent as it is, unless the spec has its keys.
+    /// Builds a frame from the text of a JSON object with wire keys, including those of the envelope.
+    /// [`message`](Self::message) reads the object, and the frame contains its canonical form. The data of a stream is
+    /// sent unchanged, unless the spec defines its keys.
     ///
     /// # Errors
-    /// What is wrong with the body: what a receiver would refuse is not sent; `frame_too_long`.
+    /// The error that a receiver would report for the body, or `frame_too_long`.
     pub fn encode(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, Error> {
         let operation = self.plan.with_code(id.kind, id.code);
         let operation = operation.map(|plan| plan.operation);
@@ -187,7 +187,7 @@ impl<'m> Reflector<'m> {
         Ok(self.seal(id, text.as_bytes(), packing)?)
     }
 
-    /// Makes a frame around data as it is, whatever it holds: header, lengths and digest.
+    /// Builds a frame around any data, with header, lengths and digest.
     ///
     /// # Errors
     /// `frame_too_long`.
@@ -195,8 +195,8 @@ impl<'m> Reflector<'m> {
         frame::write(&self.plan.frame, &self.limits, id, data, packing)
     }
 
-    /// Puts a header before data that is packed already, or only said to be, and whose plain length is only said to be
-    /// this. For tests of receivers: nothing is checked.
+    /// Puts a header with this encoding and plain length before `sent`. It checks nothing, so that tests of receivers
+    /// can build invalid frames.
     #[must_use]
     pub fn seal_as_sent(
         &self,
@@ -208,28 +208,28 @@ impl<'m> Reflector<'m> {
         frame::around(&self.plan.frame, id, encoding, sent, plain_length)
     }
 
-    /// Overwrites the integer in the header field with this role, if there is one, by its low bytes. For tests of
-    /// receivers: the frame may be wrong then.
+    /// Overwrites the integer in the header field with this role, if the field exists. The value is cut to its low
+    /// bytes. Tests of receivers build invalid frames with it.
     pub fn overwrite(&self, frame: &mut [u8], role: HeaderRole, value: u64) {
         frame::overwrite(&self.plan.frame, frame, role, value);
     }
 
-    /// The model.
+    /// Returns the model.
     #[must_use]
     pub fn model(&self) -> &'m Model {
         self.samples.model()
     }
 
-    /// Composes messages from the examples of the model.
+    /// Returns the samples, which compose messages from the examples of the model.
     #[must_use]
     pub fn samples(&self) -> &Samples<'m> {
         &self.samples
     }
 
-    /// A frame of the example of one side of an operation; `None` while it has no code.
+    /// Returns a frame with the example of one side of an operation, or `None` while the operation has no code.
     ///
     /// # Errors
-    /// `frame_too_long`, where the limits are too narrow for the example.
+    /// `frame_too_long` if the limits are too small for the example.
     #[must_use]
     pub fn sample(
         &self,
@@ -242,13 +242,15 @@ impl<'m> Reflector<'m> {
         Some(self.seal(id, &self.samples.data(operation, direction), packing))
     }
 
-    /// A frame that answers a request, with the same id: the response to a command, the acknowledgement of a report.
-    /// Without a `result` it is the example of the operation; with a refusal, the envelope alone. `None` of
-    /// what is not answered: a response, a stream, without a `result` a code that the spec does not have, and a
-    /// refusal where no response says how it went.
+    /// Returns the frame that answers a request with the same id: a response to a command, or an acknowledgement of a
+    /// report. Without a `result`, the answer is the example of the operation. With a refusal, it is the envelope
+    /// alone.
+    ///
+    /// Returns `None` for a response or a stream, and without a `result` for an unknown code. Also returns `None` for a
+    /// refusal if the envelope has no result code.
     ///
     /// # Errors
-    /// As of [`sample`](Self::sample).
+    /// The same as [`sample`](Self::sample).
     #[must_use]
     pub fn answer(
         &self,
@@ -274,22 +276,22 @@ impl<'m> Reflector<'m> {
     }
 }
 
-/// Whether it is of a stream, and the model does not say more of its bytes.
+/// Returns `true` for a stream whose bytes the model does not describe.
 fn is_bytes(frame: &Frame<'_>) -> bool {
     let body = frame.operation.and_then(|it| it.body(frame.id.direction));
     frame.is_stream() && body.is_none()
 }
 
-/// A frame and what it carries.
+/// A frame and its message.
 #[derive(Clone, Debug)]
 pub struct Decoded<'m> {
     /// The frame.
     pub frame: Frame<'m>,
-    /// The message in it; `None` of a stream that is not JSON: its bytes are [`Frame::data`].
+    /// The message, or `None` for a stream without JSON. [`Frame::data`] has its bytes.
     pub message: Option<Message<'m>>,
 }
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

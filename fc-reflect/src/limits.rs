@@ -1,26 +1,26 @@
-//! What may be read.
+//! Limits for reading.
 
 use fc_spec::model::Model;
 
-/// What a frame and its body may cost.
+/// The limits of a frame and its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Longest frame, header included, in bytes.
+    /// The maximum length of a frame with its header, in bytes.
     pub frame_bytes: u32,
-    /// Longest data after decompression, in bytes.
+    /// The maximum length of decompressed data, in bytes.
     pub inflated_bytes: u32,
-    /// Most bytes that one byte of compressed JSON may become, where more than a mebibyte comes out.
+    /// The maximum compression ratio of JSON. It applies if the data is larger than one mebibyte.
     pub inflate_ratio: u32,
-    /// Deepest nesting of a body; more than 127 counts as that.
+    /// The maximum nesting of a body. Values above 127 count as 127.
     pub json_depth: usize,
-    /// Most keys and items in a body, those of all levels together. Each takes up to 192 bytes as a [`Node`](crate::Node), beside
-    /// its text.
+    /// The maximum number of keys and items in a body, on all levels together. Each takes up to 192 bytes as a
+    /// [`Node`](crate::Node), in addition to its text.
     pub json_values: usize,
 }
 
 impl Limits {
-    /// Those of the spec. Where it says nothing, they are those of the generated packages: a ratio of 256, and 2^20 keys
-    /// and items.
+    /// Returns the limits of the spec. The spec defines neither `inflate_ratio` nor `json_values`. They are 256 and
+    /// 2^20, as in the generated packages.
     #[must_use]
     pub fn of(model: &Model) -> Self {
         Self {

@@ -7,18 +7,18 @@ use fc_runtime::json::BodyError;
 /// The keys of a message.
 #[derive(Clone, Debug)]
 pub struct Message<'m> {
-    /// Those of the envelope, in the order in which they came.
+    /// The keys of the envelope, in the order of the message.
     pub envelope: Vec<Node<'m>>,
-    /// Its own and unknown ones, in the order in which they came; or what is wrong with them: a refusal that carries
-    /// nothing but an envelope is still understood.
+    /// The other keys, in the order of the message, or the error in them. A refusal with only an envelope is still
+    /// readable.
     pub body: Result<Vec<Node<'m>>, BodyError>,
 }
 
 impl Message<'_> {
-    /// Its text in canonical form, as the generated packages write it.
+    /// Returns the canonical text, as the generated packages write it.
     ///
     /// # Errors
-    /// What is wrong with the body; `out_of_range` of NaN and infinities, which only a change can bring.
+    /// The error in the body, or `out_of_range` for NaN and infinities. Only a changed message can contain these.
     pub fn canonical(&self) -> Result<String, BodyError> {
         match &self.body {
             Ok(body) => write::object(&[&self.envelope, body]),

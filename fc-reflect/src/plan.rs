@@ -1,7 +1,7 @@
-//! What reading and writing need to know of a model, looked up once.
+//! Prepares a model for reading and writing.
 //!
-//! **Architecture invariant.** This is the one module that asks the model what its names and roles refer to; all others
-//! go by what stands here. After it no name of the spec is looked up, however many values are read.
+//! **Architecture invariant.** Only this module looks up names and roles in the model. The other modules use its
+//! results, so reading a value never looks up a name of the spec.
 
 use crate::tree::About;
 use fc_spec::model::{
@@ -11,12 +11,12 @@ use fc_spec::model::{
 use regex_lite::Regex;
 use std::collections::HashMap;
 
-/// A model, prepared.
+/// A prepared model.
 pub(crate) struct Plan<'m> {
     pub(crate) frame: FramePlan<'m>,
-    /// Keys of the envelope of requests.
+    /// The envelope keys of requests.
     request: Vec<FieldPlan<'m>>,
-    /// Keys of the envelope of responses and acknowledgements.
+    /// The envelope keys of responses and acknowledgements.
     response: Vec<FieldPlan<'m>>,
     shapes: Vec<Shape<'m>>,
     operations: Vec<OperationPlan<'m>>,
@@ -47,23 +47,23 @@ pub(crate) struct FieldPlan<'m> {
     pub(crate) ty: TypePlan<'m>,
     pub(crate) optional: bool,
     pub(crate) form: Form,
-    /// What a value must satisfy beyond its type.
+    /// The constraints that a value must satisfy.
     pub(crate) constraints: Vec<Constraint<'m>>,
-    /// The pattern among them, compiled.
+    /// The compiled pattern of the constraints.
     pub(crate) pattern: Option<Regex>,
 }
 
-/// How a value travels, and what else is taken for it.
+/// The form of a value in messages, and the other forms that a reader accepts.
 #[derive(Clone, Copy)]
 pub(crate) struct Form {
     pub(crate) wire: WireForm,
     pub(crate) empty_is_absent: bool,
-    /// Whether the other spellings of its type are taken: `lenient_number`, `lenient_bool`.
+    /// `true` if the quirk `lenient_number` or `lenient_bool` accepts other forms.
     pub(crate) lenient: bool,
 }
 
 impl Form {
-    /// As its type says, and nothing else.
+    /// Only the form of the type.
     pub(crate) const PLAIN: Self = Self {
         wire: WireForm::Plain,
         empty_is_absent: false,
@@ -71,13 +71,13 @@ impl Form {
     };
 }
 
-/// A type of the spec, and what a value of it is read as.
+/// A type of the spec, and the way to read its values.
 pub(crate) struct TypePlan<'m> {
     pub(crate) ty: &'m Type,
     pub(crate) read: Read<'m>,
 }
 
-/// What a value is read as.
+/// The way to read a value.
 pub(crate) enum Read<'m> {
     Bool,
     Int(IntKind),
@@ -86,7 +86,7 @@ pub(crate) enum Read<'m> {
     Base64,
     Json,
     List(Box<TypePlan<'m>>),
-    /// The shape of this number.
+    /// The shape with this index.
     Shape(usize),
 }
 
@@ -94,7 +94,7 @@ pub(crate) enum Read<'m> {
 pub(crate) enum Shape<'m> {
     Struct(Vec<FieldPlan<'m>>),
     Enum(&'m EnumType),
-    /// Each with the number of its struct.
+    /// The variants, each with the index of its struct.
     Choice(Vec<(&'m Variant, usize)>),
 }
 
@@ -130,7 +130,7 @@ impl<'m> Plan<'m> {
         }
     }
 
-    /// The keys of the envelope of a request or a response.
+    /// Returns the envelope keys of a request or a response.
     pub(crate) fn envelope(&self, response: bool) -> &[FieldPlan<'m>] {
         if response {
             &self.response
@@ -139,17 +139,17 @@ impl<'m> Plan<'m> {
         }
     }
 
-    /// The operation with this code among those of a kind.
+    /// Returns the operation with this kind and code.
     pub(crate) fn with_code(&self, kind: u8, code: u16) -> Option<&OperationPlan<'m>> {
         self.operations.get(*self.by_code.get(&(kind, code))?)
     }
 
-    /// The operation of this name.
+    /// Returns the operation with this name.
     pub(crate) fn named(&self, name: &str) -> Option<&OperationPlan<'m>> {
         self.operations.get(*self.by_name.get(name)?)
     }
 
-    /// The own keys of one side of an operation; none of raw bytes.
+    /// Returns the keys of one side of an operation, without the envelope. Returns none for raw bytes.
     pub(crate) fn body(&self, operation: &OperationPlan<'m>, response: bool) -> &[FieldPlan<'m>] {
         let number = if response {
             operation.response
@@ -159,7 +159,7 @@ impl<'m> Plan<'m> {
         number.map_or(&[], |number| self.fields(number))
     }
 
-    /// The fields of the struct of this number.
+    /// Returns the fields of the struct with this index.
     pub(crate) fn fields(&self, number: usize) -> &[FieldPlan<'m>] {
         match self.shapes.get(number) {
             Some(Shape::Struct(fields)) => fields,
@@ -167,14 +167,14 @@ impl<'m> Plan<'m> {
         }
     }
 
-    /// The shape of this number.
+    /// Returns the shape with this index.
     pub(crate) fn shape(&self, number: usize) -> Option<&Shape<'m>> {
         self.shapes.get(number)
     }
 }
 
 impl OperationPlan<'_> {
-    /// Kind and code in the header; `None` while it has no code.
+    /// Returns the kind and the code in the header, or `None` while the operation has no code.
     pub(crate) fn place(&self) -> Option<(u8, u16)> {
         Some((self.kind, self.operation.code.value?))
     }
@@ -189,25 +189,25 @@ impl<'m> FramePlan<'m> {
         }
     }
 
-    /// The kind with this value.
+    /// Returns the kind with this value.
     pub(crate) fn kind(&self, value: u8) -> Option<&'m FrameKind> {
         self.layout.kinds.with_value(value)
     }
 
-    /// Whether frames of this kind are those of streams.
+    /// Returns `true` if frames of this kind belong to streams.
     pub(crate) fn is_stream(&self, kind: u8) -> bool {
         self.layout.kinds.stream.value == kind
     }
 }
 
 impl FieldPlan<'_> {
-    /// Whether this is the field of a key.
+    /// Returns `true` if the field has this key, or accepts it as another key.
     pub(crate) fn is_named(&self, key: &str) -> bool {
         self.wire == key || self.also.iter().any(|other| other == key)
     }
 }
 
-/// The number of the struct of one side; `None` for raw bytes.
+/// Returns the index of the struct of one side, or `None` for raw bytes.
 fn struct_of(operation: &Operation, direction: Direction) -> Option<usize> {
     Some(operation.body(direction)?.ty.id().index())
 }

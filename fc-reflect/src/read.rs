@@ -1,4 +1,4 @@
-//! Bodies, read as the types of the spec want them.
+//! Reads bodies into values with the types of the spec.
 
 use crate::constraint;
 use crate::limits::Limits;
@@ -14,7 +14,7 @@ use fc_spec::model::{
 };
 use std::borrow::Cow;
 
-/// Reads the text of a message: the keys of an envelope, own keys and unknown ones in any order.
+/// Reads the text of a message. The keys can have any order.
 pub(crate) fn message<'m>(
     plan: &Plan<'m>,
     envelope: &[FieldPlan<'m>],
@@ -27,7 +27,7 @@ pub(crate) fn message<'m>(
         values: limits.json_values,
         ..Allowance::ANY
     };
-    // What is behind a fault counts as well.
+    // The limits also count the part after an error.
     json::read_object(bytes, allowance, |reader| {
         reader.skip_value()?;
         reader.end()
@@ -38,7 +38,7 @@ pub(crate) fn message<'m>(
             Reading { plan, reader }.object(keys)
         })
     };
-    // A body that is at fault must not cost the envelope.
+    // The envelope stays readable if the body has an error.
     Ok(Message {
         envelope: reading(Keys {
             fields: envelope,
@@ -51,27 +51,27 @@ pub(crate) fn message<'m>(
     })
 }
 
-/// The keys that are read of an object.
+/// The keys to read from an object.
 #[derive(Clone, Copy)]
 struct Keys<'p, 'm> {
     fields: &'p [FieldPlan<'m>],
     others: Others<'p, 'm>,
 }
 
-/// What becomes of the other keys.
+/// The treatment of other keys.
 #[derive(Clone, Copy)]
 enum Others<'p, 'm> {
     Skipped,
-    /// They are kept, but for those of these fields.
+    /// Other keys are kept, except those of these fields.
     KeptBut(&'p [FieldPlan<'m>]),
 }
 
-/// A value, and where the reader has been lenient to get it.
+/// A value, and the quirk that accepted it.
 type Found<'m> = (Value<'m>, Option<Quirk>);
 
 struct Reading<'p, 'm, 't> {
     plan: &'p Plan<'m>,
-    /// In a text that is known to be JSON.
+    /// A reader of text that is valid JSON.
     reader: Reader<'t>,
 }
 
@@ -82,7 +82,7 @@ impl<'m> Reading<'_, 'm, '_> {
         let start = self.reader.clone();
         self.reader.begin_object()?;
         let mut nodes: Vec<Node<'m>> = Vec::new();
-        // One for each field: whether its key has come.
+        // For each field, `true` if its key was read.
         let mut seen = vec![false; keys.fields.len()];
         while !self.reader.end_object() {
             let key = self.reader.key()?;
@@ -152,7 +152,7 @@ impl<'m> Reading<'_, 'm, '_> {
         })
     }
 
-    /// Reads the value of a field, which may be absent.
+    /// Reads the value of a field, which can be absent.
     fn optional(&mut self, field: &FieldPlan<'m>) -> Result<Found<'m>, BodyError> {
         if field.optional && self.reader.take_null() {
             return Ok((Value::Absent, None));
@@ -241,7 +241,7 @@ impl<'m> Reading<'_, 'm, '_> {
         Ok(Value::Enum { wire, named })
     }
 
-    /// Reads an object as the first variant whose required keys it has all.
+    /// Reads an object as the first variant whose required keys are all there.
     fn choice_of_objects(
         &mut self,
         variants: &[(&'m Variant, usize)],
@@ -250,7 +250,7 @@ impl<'m> Reading<'_, 'm, '_> {
         let start = self.reader.clone();
         let mut ahead = start.clone();
         ahead.begin_object()?;
-        // For each variant, which of its fields have come.
+        // For each variant, the fields whose keys were read.
         let mut seen: Vec<Vec<bool>> = variants
             .iter()
             .map(|(_, number)| vec![false; self.plan.fields(*number).len()])

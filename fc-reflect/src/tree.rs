@@ -1,4 +1,4 @@
-//! What has been read: values with their names, places and descriptions.
+//! Trees of values with their names, positions and descriptions.
 
 use fc_spec::model::{EnumValue, EnvelopeField, Field, Quirk, Scalar, Text, Type, Variant};
 use std::fmt::{self, Write as _};
@@ -7,55 +7,54 @@ use std::ops::Range;
 /// A value in a body.
 #[derive(Clone)]
 pub struct Node<'m> {
-    /// Its key or its place in a list.
+    /// The key, or the index in a list.
     pub key: Key,
-    /// Where the spec describes it.
+    /// The description in the spec.
     pub about: About<'m>,
-    /// Its type in the spec; `None` of an unknown key.
+    /// The type in the spec, or `None` for an unknown key.
     pub ty: Option<&'m Type>,
-    /// Its bytes in the decompressed body.
+    /// The position in the decompressed body.
     pub span: Range<usize>,
-    /// Its value.
+    /// The value.
     pub value: Value<'m>,
-    /// Where the reader has been lenient to get it. Written again, it has the canonical form.
+    /// The leniencies of the reader for this value. Writing the value gives its canonical form.
     pub lenient: Vec<Leniency>,
-    /// Its place among the fields of its object, which is the order in which they are written; those that the spec does
-    /// not know come behind.
+    /// The index among the fields of the object, which is the order in writing. Unknown keys come last.
     pub(crate) slot: usize,
 }
 
-/// What leads to a value from what holds it.
+/// The step from a container to a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// A key as received, without escapes: the wire key, or another that is taken for it.
+    /// A key as received, without escapes. It can be the wire key or another accepted key.
     Name(String),
-    /// The place in a list, from 0.
+    /// The index in a list, from 0.
     Item(usize),
 }
 
-/// Where the spec describes a value.
+/// The description of a value in the spec.
 #[derive(Clone, Copy, Debug)]
 pub enum About<'m> {
     /// A field of a struct.
     Field(&'m Field),
-    /// A key of the envelope.
+    /// An item. The field of its list describes it.
     Envelope(&'m EnvelopeField),
     /// An item, which the field of its list describes.
     Item,
-    /// Nowhere: the spec does not know the key.
+    /// A key that the spec does not have.
     Unknown,
 }
 
 /// A value.
 #[derive(Clone, Debug)]
 pub enum Value<'m> {
-    /// An optional field that is there and says nothing: `null`, or what the spec takes for it.
+    /// A field that is present but means absent: `null`, or another form that the spec accepts for it.
     Absent,
     /// A bool.
     Bool(bool),
     /// An integer or a timestamp.
     Int(i128),
-    /// A float; of an `f32` one that it holds exactly.
+    /// A float. An `f32` has a value that the type represents exactly.
     Float(f64),
     /// A string.
     Text(String),
@@ -65,35 +64,35 @@ pub enum Value<'m> {
     Json(String),
     /// A value of an enum.
     Enum {
-        /// What travels.
+        /// The value in the message.
         wire: Scalar,
-        /// What the spec says of it; `None` of a value that an open enum does not have.
+        /// The value in the spec, or `None` for an unknown value of an open enum.
         named: Option<&'m EnumValue>,
     },
     /// A list.
     List(Vec<Node<'m>>),
-    /// An object: its keys in the order in which they came.
+    /// An object, with its keys in the order of the message.
     Object(Vec<Node<'m>>),
-    /// An object that is one of several.
+    /// An object that is one of several variants.
     OneOf {
-        /// Which.
+        /// The variant.
         variant: &'m Variant,
-        /// Its keys in the order in which they came.
+        /// The keys in the order of the message.
         keys: Vec<Node<'m>>,
     },
 }
 
-/// A place where a reader is more lenient than a writer.
+/// A place where a reader accepts more than a writer sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Leniency {
     /// A quirk of the field.
     Quirk(Quirk),
-    /// Another key was taken for the field's.
+    /// Another accepted key instead of the wire key.
     OtherKey,
 }
 
 impl<'m> Node<'m> {
-    /// The key that is sent for it, whichever was received; empty of an item.
+    /// Returns the wire key, regardless of the received key. It is empty for an item.
     #[must_use]
     pub fn wire(&self) -> &str {
         match (self.about, &self.key) {
@@ -104,7 +103,7 @@ impl<'m> Node<'m> {
         }
     }
 
-    /// Its name in code; `None` of items and unknown keys.
+    /// Returns the name in code, or `None` for an item or an unknown key.
     #[must_use]
     pub fn name(&self) -> Option<&'m str> {
         match self.about {
@@ -114,7 +113,7 @@ impl<'m> Node<'m> {
         }
     }
 
-    /// What the spec says of it in both languages; `None` of items and unknown keys.
+    /// Returns the description in both languages, or `None` for an item or an unknown key.
     #[must_use]
     pub fn text(&self) -> Option<&'m Text> {
         match self.about {
@@ -124,13 +123,13 @@ impl<'m> Node<'m> {
         }
     }
 
-    /// Whether its value must not be shown in logs.
+    /// Returns `true` if logs must not show the value.
     #[must_use]
     pub fn is_sensitive(&self) -> bool {
         matches!(self.about, About::Field(field) if field.sensitive)
     }
 
-    /// What it holds: keys of an object, items of a list.
+    /// Returns the keys of an object or the items of a list.
     #[must_use]
     pub fn children(&self) -> &[Node<'m>] {
         match &self.value {
@@ -140,7 +139,7 @@ impl<'m> Node<'m> {
     }
 }
 
-/// Does not show what must not be logged.
+/// Leaves out values that must not be logged.
 impl fmt::Debug for Node<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = f.debug_struct("Node");
@@ -157,13 +156,13 @@ impl fmt::Debug for Node<'_> {
     }
 }
 
-/// Shows each of `nodes` and all that they hold, with its path in front, such as `data.stations[3].x`.
+/// Visits all nodes and their descendants, with a path such as `data.stations[3].x`.
 pub fn walk<'a, 'm>(nodes: &'a [Node<'m>], visit: &mut dyn FnMut(&str, &'a Node<'m>)) {
     let mut path = String::new();
     walk_from(nodes, &mut path, visit);
 }
 
-/// As deep as the text is nested, which is bounded.
+/// The recursion is as deep as the text is nested, which is bounded.
 fn walk_from<'a, 'm>(
     nodes: &'a [Node<'m>],
     path: &mut String,
@@ -193,7 +192,7 @@ fn walk_from<'a, 'm>(
 mod tests {
     use super::Node;
 
-    /// What `Limits::json_values` promises.
+    /// The documentation of `Limits::json_values` promises this size.
     #[test]
     fn a_node_takes_no_more_than_is_promised() {
         assert!(size_of::<Node<'_>>() <= 192, "{}", size_of::<Node<'_>>());

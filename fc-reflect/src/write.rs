@@ -1,4 +1,4 @@
-//! The canonical text of what has been read: the keys of the envelope, own keys in the order of the spec, unknown ones.
+//! Writes the canonical text of a message: the envelope, then known keys in the order of the spec, then unknown keys.
 
 use crate::tree::{About, Node, Value};
 use base64::Engine as _;
@@ -6,11 +6,11 @@ use base64::engine::general_purpose::STANDARD;
 use fc_runtime::json::{BodyError, BodyErrorKind, Writer};
 use fc_spec::model::{FloatKind, Number, Scalar, Type, WireForm};
 
-/// Writes one object of several groups of keys.
+/// Writes one object from several groups of keys.
 pub(crate) fn object(groups: &[&[Node<'_>]]) -> Result<String, BodyError> {
     let mut out = Vec::new();
     keys(&mut out, groups)?;
-    // Nothing but text has been written.
+    // All writers produce UTF-8.
     Ok(String::from_utf8(out).unwrap_or_default())
 }
 
@@ -19,7 +19,7 @@ fn keys(out: &mut Vec<u8>, groups: &[&[Node<'_>]]) -> Result<(), BodyError> {
     let mut is_first = true;
     for group in groups {
         let mut sorted: Vec<_> = group.iter().collect();
-        // Unknown keys stay in the order in which they came.
+        // Unknown keys keep their order.
         sorted.sort_by_key(|node| node.slot);
         for node in sorted {
             if matches!(node.value, Value::Absent) {
@@ -88,7 +88,7 @@ fn value(out: &mut Vec<u8>, node: &Node<'_>) -> Result<(), BodyError> {
     Ok(())
 }
 
-/// JSON has neither NaN nor infinities, and `null` in their place would be read as absent.
+/// Refuses NaN and infinities. JSON has neither, and `null` would mean absent.
 fn float(out: &mut Vec<u8>, value: f64, ty: Option<&Type>) -> Result<(), BodyError> {
     #[allow(
         clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! From a type and the examples of its fields to a JSON value.
+//! Composes JSON values from types and the examples of their fields.
 
 use super::STREAM_BYTES;
 use super::constraint::{self, Bound};
@@ -8,23 +8,22 @@ use fc_spec::model::{
     WireForm,
 };
 
-/// Which of all the messages that a type allows is composed.
+/// The choice of fields and values in a composed message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Profile {
-    /// What the spec's examples show.
+    /// The examples of the spec.
     Example,
-    /// As `Example`, with every optional field there. In this and all others, a field whose condition does not hold is
-    /// left out.
+    /// As `Example`, with every optional field. Every profile leaves out a field whose condition does not hold.
     Full,
-    /// Required fields only, and those whose condition holds; smallest numbers, shortest strings and arrays that the constraints
-    /// allow; what has no lower bound keeps its example.
+    /// Required fields, and fields whose condition holds. Numbers, strings and arrays are at the lower end of their
+    /// constraints. A value without a lower bound keeps its example.
     Minimal,
-    /// Every field; arrays of two items, largest numbers and longest strings.
+    /// All fields, arrays of two items, and the largest numbers and longest strings.
     Maximal,
 }
 
 impl Profile {
-    /// Which edge of a constraint its values lie at.
+    /// Returns the end of constraints that the values are at.
     fn bound(self) -> Bound {
         match self {
             Self::Example | Self::Full => Bound::None,
@@ -34,39 +33,39 @@ impl Profile {
     }
 }
 
-/// Composes examples of a model.
+/// Composes messages from the examples of a model.
 #[derive(Clone, Debug)]
 pub struct Samples<'m> {
     model: &'m Model,
 }
 
 impl<'m> Samples<'m> {
-    /// Those of this model.
+    /// Uses the examples of a model.
     #[must_use]
     pub fn new(model: &'m Model) -> Self {
         Self { model }
     }
 
-    /// The model.
+    /// Returns the model.
     #[must_use]
     pub fn model(&self) -> &'m Model {
         self.model
     }
 
-    /// A value of a named type.
+    /// Returns a value of a named type.
     #[must_use]
     pub fn named(&self, ty: &TypeDef, profile: Profile) -> Value {
         self.value_of_named(ty, profile, &mut Vec::new())
     }
 
-    /// A value of a field, whether its condition holds or not.
+    /// Returns a value of a field and ignores its condition.
     #[must_use]
     pub fn value_of(&self, field: &Field) -> Value {
         let value = self.field(field, Profile::Full, &mut Vec::new());
         value.unwrap_or(Value::Null)
     }
 
-    /// The own keys of one side of an operation; an empty object for raw bytes.
+    /// Returns the body of one side of an operation, without the envelope. Returns an empty object for raw bytes.
     #[must_use]
     pub fn body(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
         match operation.body(direction) {
@@ -75,7 +74,7 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// A whole message: the envelope, then the own keys; of a stream the own keys alone.
+    /// Returns a whole message: the envelope, then the body. A stream has no envelope.
     #[must_use]
     pub fn message(&self, operation: &Operation, direction: Direction, profile: Profile) -> Value {
         let body = self.body(operation, direction, profile);
@@ -90,8 +89,7 @@ impl<'m> Samples<'m> {
         message
     }
 
-    /// A whole response that says this result. Only a success has own keys; an operation that the spec does not have has
-    /// none either.
+    /// Returns a whole response with this result. Only a success of a known operation has a body.
     #[must_use]
     pub fn response(&self, operation: Option<&Operation>, result: &ResultCode) -> Value {
         let direction = Direction::Response;
@@ -109,7 +107,7 @@ impl<'m> Samples<'m> {
         message
     }
 
-    /// What a frame of this example carries: the text of the message, or the bytes of a stream.
+    /// Returns the data of a frame with the example: the text of the message, or the bytes of a stream.
     #[must_use]
     pub fn data(&self, operation: &Operation, direction: Direction) -> Vec<u8> {
         if operation.body(direction).is_none() {
@@ -119,7 +117,7 @@ impl<'m> Samples<'m> {
         message.to_string().into_bytes()
     }
 
-    /// Changes what the envelope of a message says under the keys of this role.
+    /// Sets the envelope keys with this role.
     fn tell(&self, message: &mut Value, direction: Direction, role: EnvelopeRole, value: &Value) {
         let fields = self.envelope(direction).iter();
         for field in fields.filter(|field| field.role == role) {
@@ -129,7 +127,7 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// Own keys with the envelope before them.
+    /// Returns the body with the envelope before it.
     #[must_use]
     pub fn enveloped(&self, direction: Direction, body: Value, profile: Profile) -> Value {
         let fields = self.envelope(direction).iter();
@@ -143,7 +141,7 @@ impl<'m> Samples<'m> {
         Value::Object(entries)
     }
 
-    /// The keys that every message of this direction carries.
+    /// Returns the envelope keys of this direction.
     #[must_use]
     pub fn envelope(&self, direction: Direction) -> &'m [EnvelopeField] {
         match direction {
@@ -152,7 +150,7 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// The variant that a received object is read as: the first whose required keys are all there.
+    /// Returns the variant of a received object: the first whose required keys are all there.
     #[must_use]
     pub fn variant_of<'c>(&self, choice: &'c OneOf, value: &Value) -> Option<&'c Variant> {
         choice.variants.iter().find(|variant| {
@@ -190,13 +188,13 @@ impl<'m> Samples<'m> {
         without_unasked(shape, Value::Object(entries))
     }
 
-    /// `None`: this profile leaves the field out.
+    /// Returns `None` if the profile leaves the field out.
     fn field(&self, field: &Field, profile: Profile, open: &mut Vec<String>) -> Option<Value> {
         if field.optional {
             let left_out = match profile {
                 Profile::Example => field.example == Example::Absent,
                 Profile::Full | Profile::Maximal => self.is_open(&field.ty, open),
-                // Where its condition holds it is as good as required.
+                // A field whose condition holds counts as required.
                 Profile::Minimal => {
                     field.details().condition.is_none() || self.is_open(&field.ty, open)
                 }
@@ -256,7 +254,7 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// Whether a value of this type would hold a value of a type that is being composed.
+    /// Returns `true` if a value of this type would contain a type that is being composed.
     fn is_open(&self, ty: &Type, open: &[String]) -> bool {
         match ty {
             Type::Named(named) => {
@@ -274,7 +272,8 @@ impl<'m> Samples<'m> {
         }
     }
 
-    /// A given example as an encoder writes it: `1` of a float is `1.0`, an `f32` has its digits.
+    /// Returns an example in the form that an encoder writes: `1` as a float is `1.0`, and an `f32` has its shortest
+    /// digits.
     fn canonical(&self, ty: &Type, form: WireForm, value: &Value) -> Value {
         match (ty, value) {
             (Type::Float(kind), Value::Number(number)) => {
@@ -314,7 +313,7 @@ impl<'m> Samples<'m> {
     }
 }
 
-/// An object without the optional fields whose condition does not hold in it.
+/// Returns an object without the optional fields whose condition does not hold in it.
 fn without_unasked(shape: &StructType, object: Value) -> Value {
     let is_unasked = |field: &&Field| {
         let condition = field.details().condition.as_ref();
@@ -331,12 +330,12 @@ fn without_unasked(shape: &StructType, object: Value) -> Value {
     }
 }
 
-/// Whether a value says no more than that an optional field is absent.
+/// Returns `true` if the value only means that an optional field is absent.
 fn is_absence(field: &Field, value: &Value) -> bool {
     field.optional && *value == Value::Null
 }
 
-/// Whether it is one of the types that are being composed.
+/// Returns `true` if the type is being composed.
 fn is_in(open: &[String], ty: &TypeRef) -> bool {
     open.iter().any(|name| name == ty.name())
 }

@@ -1,13 +1,13 @@
-//! Values of leaf types, within or at the edge of a field's constraints.
+//! Values of leaf types inside or at the end of a field's constraints.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use fc_spec::model::{EnumType, Field, FloatKind, IntKind, Number, Scalar, Type, Value, WireForm};
 
-/// Longest string, byte run or array that is written out to reach a constraint's upper bound.
+/// The maximum length of a composed string, byte sequence or array. Larger upper bounds are not reached.
 pub const LONGEST: u64 = 4096;
 
-/// Integers past this are not carried exactly by every JSON reader: 2⁵³ − 1.
+/// 2⁵³ − 1. Some JSON readers round larger integers.
 const LARGEST_SAFE: i128 = 9_007_199_254_740_991;
 
 const SAMPLE_MS: i128 = 1_667_823_500_544;
@@ -15,18 +15,18 @@ const SAMPLE_S: i128 = 1_667_739_993;
 const SAMPLE_BASE64: &str = "aGVsbG8=";
 const SAMPLE_TEXT: &str = "text";
 
-/// Which edge of a constraint.
+/// The end of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Bound {
-    /// Somewhere within.
+    /// Any allowed value.
     None,
-    /// Smallest, shortest.
+    /// The smallest or shortest value.
     Least,
-    /// Largest, longest.
+    /// The largest or longest value.
     Most,
 }
 
-/// A value of a type without fields, not yet in wire form unless `given` is.
+/// Returns a value of a type without fields. It is not yet in wire form, unless it comes from `given`.
 pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
     match ty {
         Type::Bool => match bound {
@@ -44,13 +44,13 @@ pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound
         Type::TimestampS => given
             .cloned()
             .unwrap_or(Value::Number(Number::Int(SAMPLE_S))),
-        // A null would only say that an optional field is absent.
+        // `null` would only mean that the optional field is absent.
         Type::Json if field.optional => given.cloned().unwrap_or_else(any_json),
         Type::Json | Type::Array(_) | Type::Named(_) => given.cloned().unwrap_or(Value::Null),
     }
 }
 
-/// Puts a number or bool into the string that `wire: string` asks for, or a bool as the number that `wire: number` does.
+/// Converts a value to its wire form: a number or bool to a string, or a bool to a number.
 #[must_use]
 pub fn on_the_wire(value: Value, form: WireForm) -> Value {
     match (form, value) {
@@ -66,7 +66,6 @@ pub fn on_the_wire(value: Value, form: WireForm) -> Value {
     }
 }
 
-/// Any JSON value.
 fn any_json() -> Value {
     Value::Object(vec![(
         "any".to_owned(),
@@ -78,7 +77,7 @@ fn any_json() -> Value {
     )])
 }
 
-/// A value of an enum: the first or the last of those that `only` names, of all where it names none.
+/// Returns the first or last value of an enum. If `only` has values, only these count.
 pub(crate) fn enum_value(shape: &EnumType, only: &[Scalar], bound: Bound) -> Value {
     let wires = shape.values.iter().map(|value| &value.wire);
     let mut taken = wires.filter(|wire| only.is_empty() || only.contains(wire));
@@ -89,7 +88,7 @@ pub(crate) fn enum_value(shape: &EnumType, only: &[Scalar], bound: Bound) -> Val
     value.map_or(Value::Null, Value::from)
 }
 
-/// How many items an array has.
+/// Returns the number of items of an array.
 pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
     let (least, most) = match (&field.ty, field.details().length) {
         (Type::Array(_), Some(length)) => length,
@@ -103,7 +102,7 @@ pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
     wanted.clamp(least.min(LONGEST), most.max(least).min(LONGEST))
 }
 
-/// Smallest and largest integer that a field takes.
+/// Returns the smallest and the largest integer that a field accepts.
 #[must_use]
 pub fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
     let (least, most) = kind.range();
@@ -112,7 +111,7 @@ pub fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
     (min.max(least), max.min(most))
 }
 
-/// A float as it is written after it was read: an `f32` with the fewest digits that tell it apart.
+/// Returns a float as an encoder writes it. An `f32` gets the fewest digits that identify it.
 pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
     #[allow(clippy::cast_possible_truncation)]
     let short = value as f32;
@@ -123,7 +122,7 @@ pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
     Value::Number(Number::Float(digits.unwrap_or(value)))
 }
 
-/// Whether a field's pattern, if it has one, takes this text as a whole.
+/// Returns `true` if the field has no pattern, or its pattern matches the whole text.
 #[must_use]
 pub fn pattern_takes(field: &Field, text: &str) -> bool {
     let Some(pattern) = &field.details().pattern else {
@@ -132,7 +131,7 @@ pub fn pattern_takes(field: &Field, text: &str) -> bool {
     pattern.matches(text)
 }
 
-/// The characters of `text` over and over, `count` of them.
+/// Returns `count` characters by repeating `text`, at most [`LONGEST`] and one more.
 #[must_use]
 pub fn cycled(text: &str, count: u64) -> String {
     let text = if text.is_empty() { SAMPLE_TEXT } else { text };
@@ -140,7 +139,7 @@ pub fn cycled(text: &str, count: u64) -> String {
     text.chars().cycle().take(count).collect()
 }
 
-/// So many bytes as standard base64 with padding (RFC 4648, section 4), `LONGEST` and one more at the most.
+/// Returns `count` bytes as standard base64 with padding (RFC 4648, section 4), at most [`LONGEST`] and one more.
 #[must_use]
 pub fn base64_of(count: u64) -> String {
     STANDARD.encode(cycled("hello", count))
