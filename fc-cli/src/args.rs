@@ -50,7 +50,7 @@ pub struct Args {
         help = both("只输出错误和请求的结果", "Print errors and requested results only")
     )]
     pub quiet: bool,
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -153,7 +153,7 @@ pub fn help() -> Help {
     }
 }
 
-/// When to use colors.
+/// When colors are used.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Color {
     #[value(help = both("在终端上使用，除非环境变量禁用", "On a terminal, unless the environment disables them"))]
@@ -165,7 +165,7 @@ pub enum Color {
 }
 
 impl Color {
-    /// Makes both output streams follow the choice.
+    /// Applies the choice to both output streams.
     pub fn apply(self) {
         match self {
             Self::Auto => anstream::ColorChoice::Auto,

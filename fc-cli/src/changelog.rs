@@ -86,7 +86,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// Both versions without what is not for this audience. One that does not know it withholds nothing from it.
+/// Returns both versions without the parts for other audiences. A version that does not know the audience stays whole.
 fn of_audience(old: Version, new: Version, audience: &str) -> Result<(Version, Version), Failure> {
     let (one, other) = (
         old.model.for_audience(audience),

@@ -137,7 +137,7 @@ pub fn help() -> Help {
     }
 }
 
-/// What `--deny` takes for errors.
+/// The findings that `--deny` counts as errors.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Denied {
     #[value(help = both("所有警告", "Every warning"))]
@@ -180,7 +180,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(options.status(&spec))
 }
 
-/// The spec with the certain fixes made, on the disk as well unless that is only to be shown.
+/// Applies the certain fixes and returns the fixed spec. Writes the files, unless `--dry-run` only shows the changes.
 fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
     let Some(fixed) = fix_all(&spec.sources, |sources| {
         spec.instead(sources.clone()).faults
@@ -229,7 +229,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
 }
 
 impl Shown {
-    /// Shows faults: to people on standard error, to programs on standard output.
+    /// Shows diagnostics. Text for people goes to standard error, and formats for programs go to standard output.
     pub fn show(
         self,
         project: &Project,

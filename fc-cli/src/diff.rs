@@ -118,7 +118,7 @@ pub fn help() -> Help {
     }
 }
 
-/// Keys of the format `json`.
+/// The keys of the format `json`.
 fn keys() -> Part {
     Part::Terms(
         both("`json` 的键", "Keys of `json`"),
@@ -202,7 +202,7 @@ impl Kind {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    // Two versions that are named need no project around them.
+    // Two named versions need no project, unless git has one of them.
     let named: Vec<_> = [&options.old, &options.new].into_iter().flatten().collect();
     let needs_project = named.len() < 2 || named.iter().any(|it| it.starts_with("git:"));
     let shelf = Shelf::find(place, needs_project)?;

@@ -93,7 +93,7 @@ impl Options {
     }
 }
 
-/// What a text from standard input is called.
+/// The name of standard input in messages.
 const STDIN: &str = "<stdin>";
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -166,13 +166,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     })
 }
 
-/// A byte order mark at the start of a text.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
-/// The bytes on standard input, up to one more than a file may have.
+/// Reads standard input, up to one byte beyond the limit of a file.
 fn stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    // One byte more than a file may have, so that one that is too long is seen to be.
+    // The extra byte shows that the input is too long.
     let limit = u64::try_from(limits::FILE_BYTES).unwrap_or(u64::MAX);
     std::io::stdin()
         .take(limit.saturating_add(1))
@@ -190,18 +189,18 @@ struct Run<'a> {
     root: &'a Path,
     options: &'a Options,
     from_stdin: bool,
-    /// Byte order mark of standard input, if it has one.
+    /// The byte order mark of standard input; empty if it has none.
     mark: &'static str,
-    /// What goes to standard output.
+    /// The text for standard output.
     shown: String,
-    /// Number of files that are not laid out, or were not.
+    /// The number of files whose layout is wrong, or was wrong.
     changed: usize,
-    /// What went wrong without being a fault of the spec.
+    /// Messages about bugs of the formatter. They are not errors of the spec.
     mistakes: String,
 }
 
 impl Run<'_> {
-    /// The text of a file as it is laid out, or as it is where that cannot be.
+    /// Returns the formatted text of a file, or its text unchanged if it cannot be formatted.
     fn laid_out(&mut self, id: FileId, file: &SourceFile, faults: &mut Faults) -> String {
         match format(id, file) {
             Ok(new) => return new,
@@ -218,7 +217,7 @@ impl Run<'_> {
         file.text.clone()
     }
 
-    /// Shows or writes what has become of a file.
+    /// Writes a file, or shows its change.
     fn show(&mut self, file: &SourceFile, new: &str) -> Result<(), Failure> {
         let writes = !self.options.check && !self.options.diff;
         if self.from_stdin && writes {

@@ -18,7 +18,7 @@ use crate::spec::Spec;
 use crate::versions::Shelf;
 use crate::{input, plugin, print, progress, watch};
 
-/// Paths that are named one by one.
+/// The maximum number of paths that a message lists.
 const NAMED: usize = 10;
 
 /// Options of `fcproto generate`.
@@ -175,7 +175,7 @@ fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
     in_project(Project::find(place)?, place, options)
 }
 
-/// Generates or checks the files of a project; `place` is what the user is told to type.
+/// Generates or checks the files of a project. Messages use `place` in commands for the user.
 pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<Status, Failure> {
     let released = match &options.as_of {
         Some(release) => Some(Shelf::of(&project)?.released(release)?),
@@ -211,7 +211,7 @@ impl Options {
     }
 }
 
-/// The model that `fcproto inspect` has written.
+/// Returns the model from the output of `fcproto inspect`.
 fn dumped(name: &str, text: &str) -> Result<Model, Failure> {
     Ok(Dump::read(text).map_err(|error| {
         said!(
@@ -222,7 +222,7 @@ fn dumped(name: &str, text: &str) -> Result<Model, Failure> {
     })?)
 }
 
-/// Makes the files of a model, or checks them; `read` says what it was read from.
+/// Generates or checks the files of a model. `read` names its source in messages.
 fn make(
     model: &Model,
     read: &str,
@@ -237,7 +237,7 @@ fn make(
     let targets = project.targets.only(&options.only)?;
     let part = part(model, options.audience.as_deref())?;
     let model = &*part;
-    // Those of a spec have been reported as its faults, in place.
+    // Errors of a spec have already been reported with their places.
     if let Some(clash) = clashes(model, &targets.languages()).first() {
         return Err(format!("`{read}`: {clash}").into());
     }
@@ -263,11 +263,11 @@ fn make(
     Ok(Status::Fine)
 }
 
-/// A project is not the place for what `--out` asks for: its manifest would give its own files away.
+/// Refuses a project as the directory for `--out`, because the manifest there would let its own files be removed.
 fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
     let is_root = match (out.canonicalize(), root.canonicalize()) {
         (Ok(out), Ok(root)) => out == root,
-        // What is not there yet is no project.
+        // A directory that does not exist yet is not a project.
         _ => false,
     };
     if is_root || is_there(&out.join(FILE)) {
@@ -313,7 +313,7 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
     Ok(Status::Faulty)
 }
 
-/// What the run has changed.
+/// Returns a summary of the changed files.
 fn summary(plan: &Plan) -> String {
     let created = plan.created.iter().map(|file| file.path.as_str());
     let updated = plan.updated.iter().map(|file| file.path.as_str());
@@ -347,7 +347,7 @@ fn summary(plan: &Plan) -> String {
     out
 }
 
-/// The command that fixes what `--check` found, as it was called.
+/// Returns the command that brings the files up to date, with the options of this run.
 fn command(place: &Place, options: &Options) -> String {
     let mut command = "fcproto generate".to_owned();
     if !options.only.is_empty() {

@@ -80,16 +80,16 @@ const FILES: [(&str, [&str; 2]); 8] = [
     ("tests/talk.rs", template!("tests/talk.rs")),
 ];
 
-/// A group of operations, which has both languages.
+/// A group of operations with texts in both languages.
 const LIGHT: &str = include_str!("../templates/init/spec/commands/light.yaml");
 
-/// Patterns for git.
+/// The `.gitignore` of the project.
 const IGNORED: &str = include_str!("../templates/init/gitignore");
 
-/// Its manifest, which says of some crates where they are.
+/// The `Cargo.toml` of the project, with placeholders for the sources of [`CRATES`].
 const MANIFEST: &str = include_str!("../templates/init/Cargo.toml.in");
 
-/// The crates that it stands on.
+/// The crates that the project depends on.
 const CRATES: [&str; 2] = ["fc-derive", "fc-runtime"];
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -121,7 +121,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(status)
 }
 
-/// A directory with something in it but the beginnings of a repository is somebody's.
+/// Refuses a directory that contains anything except `.git`.
 fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,
@@ -151,7 +151,7 @@ fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
 
 fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
     let built_from = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    // One that was installed from a registry has no checkout around it.
+    // A program from a registry has no checkout around it.
     let has = |checkout: &&Path| CRATES.iter().all(|name| checkout.join(name).is_dir());
     let checkout = runtime.or_else(|| Some(built_from.as_path()).filter(has));
     let mut manifest = MANIFEST.to_owned();
@@ -173,7 +173,7 @@ fn path_of(path: &Path) -> Result<String, Failure> {
             "there is no `{path}` ({error}); name a checkout with --runtime"
         )
     })?;
-    // Quoted and escaped as TOML and Rust both do.
+    // TOML and Rust quote and escape this in the same way.
     Ok(format!("path = {:?}", path.to_string_lossy()))
 }
 

@@ -1,4 +1,4 @@
-//! Files that the command line names, or standard input for `-`. None is read beyond its limit.
+//! Input files of the command line, or standard input for `-`. Reading stops at a size limit.
 
 use std::io::Read;
 use std::path::Path;
@@ -9,7 +9,7 @@ use fc_spec::text;
 use crate::lang::said;
 use crate::outcome::Failure;
 
-/// Largest input, in bytes.
+/// The maximum size of an input, in bytes.
 const LONGEST: u64 = 256 << 20;
 
 /// Reads the bytes of an input.
@@ -45,7 +45,7 @@ pub fn text(path: &Path) -> Result<String, Failure> {
     Ok(without_mark.unwrap_or(text))
 }
 
-/// Reads the text of a file of the project. To open a pipe would wait for its writer.
+/// Reads the text of a file of the project. Opening a pipe would wait for its writer, so pipes are refused.
 pub fn file(path: &Path) -> Result<String, Failure> {
     if path.metadata().is_ok_and(|found| !found.is_file()) {
         let name = path.display();
@@ -56,7 +56,7 @@ pub fn file(path: &Path) -> Result<String, Failure> {
 
 fn bounded(input: impl Read, name: &Text) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    // One byte more than allowed shows that there is more.
+    // The extra byte shows that the input is too large.
     let mut input = input.take(LONGEST.saturating_add(1));
     input
         .read_to_end(&mut bytes)

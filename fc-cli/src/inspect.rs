@@ -64,7 +64,7 @@ pub fn help() -> Help {
     }
 }
 
-/// How to print the model.
+/// The output format.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Shown {
     #[value(help = both("一个 JSON 文档", "One JSON document"))]

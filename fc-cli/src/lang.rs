@@ -1,4 +1,4 @@
-//! In which language the command speaks.
+//! The language of the command's output.
 
 use std::ffi::OsString;
 use std::sync::OnceLock;
@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use clap::ValueEnum;
 use fc_spec::model::{Lang, Text};
 
-/// A language that the command speaks.
+/// A language of the output.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Language {
     #[value(help = both("中文", "Chinese"))]
@@ -18,18 +18,18 @@ pub enum Language {
 /// The language of this run.
 static SPOKEN: OnceLock<Lang> = OnceLock::new();
 
-/// Where the language stands if no option names one, the first that is set and not empty; so does POSIX have it.
+/// The environment variables for the language, in POSIX order. The first one that is set and not empty counts.
 const VARIABLES: [&str; 3] = ["LC_ALL", "LC_MESSAGES", "LANG"];
 
-/// Settles the language of this run: `--lang` on the command line, or else the environment.
+/// Sets the language of this run from `--lang` or the environment.
 ///
-/// The words are read before the command line is parsed: help and usage errors are in this language, too.
+/// It reads `--lang` before clap parses the command line, so that help and usage errors use the language too.
 pub fn speak(words: impl IntoIterator<Item = OsString>) {
-    // A run has one command line, so this is the first call.
+    // A run has one command line, so only this call sets the language.
     let _ = SPOKEN.set(asked(words).unwrap_or_else(of_environment));
 }
 
-/// The language that `--lang` names, if it names one.
+/// Returns the language of `--lang`, if the option has a valid one.
 fn asked(words: impl IntoIterator<Item = OsString>) -> Option<Lang> {
     let words = words
         .into_iter()
@@ -44,7 +44,7 @@ fn asked(words: impl IntoIterator<Item = OsString>) -> Option<Lang> {
         match value.as_str() {
             "zh" => return Some(Lang::Zh),
             "en" => return Some(Lang::En),
-            // The parser reports a wrong value.
+            // The parser reports an invalid value.
             _ => {}
         }
     }
@@ -62,22 +62,22 @@ fn of_environment() -> Lang {
     if is_chinese { Lang::Zh } else { Lang::En }
 }
 
-/// The language of this run.
+/// Returns the language of this run.
 pub fn lang() -> Lang {
     *SPOKEN.get_or_init(of_environment)
 }
 
-/// A fixed text in the language of this run.
+/// Returns a fixed text in the language of this run.
 pub fn both(zh: &'static str, en: &'static str) -> &'static str {
     lang().pick(zh, en)
 }
 
-/// A text in the language of this run.
+/// Returns a text in the language of this run.
 pub fn in_lang(text: &Text) -> String {
     lang().text(text).to_owned()
 }
 
-/// What [`fc_spec::text!`] writes, in the language of this run.
+/// Formats a text as [`fc_spec::text!`] does, in the language of this run.
 macro_rules! said {
     ($($text:tt)+) => {
         $crate::lang::in_lang(&fc_spec::text!($($text)+))
@@ -86,7 +86,7 @@ macro_rules! said {
 
 pub(crate) use said;
 
-/// `1 file`, `2 files`; `1 个文件`.
+/// Returns a number with its noun: `1 file`, `2 files`; `1 个文件`.
 pub fn counted(count: usize, zh: &str, en: &str) -> String {
     match (lang(), count) {
         (Lang::Zh, _) => format!("{count} 个{zh}"),

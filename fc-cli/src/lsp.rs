@@ -49,7 +49,7 @@ pub fn help() -> Help {
 pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     let (connection, threads) = Connection::stdio();
     let was_asked_to_end = serve(&connection, &Here { place })?;
-    // Nothing more is said, which is when the thread that writes ends.
+    // The writing thread ends when the connection is dropped.
     drop(connection);
     threads.join()?;
     Ok(if was_asked_to_end {
@@ -59,7 +59,7 @@ pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     })
 }
 
-/// What the command line says of the project.
+/// The host of the server, with the project options of the command line.
 struct Here<'p> {
     place: &'p Place,
 }
@@ -68,7 +68,7 @@ impl Host for Here<'_> {
     fn find(&self, directory: &Path) -> Result<fc_lsp::Project, String> {
         let project =
             Project::find_from(self.place, directory).map_err(|error| error.to_string())?;
-        // Clients name files by where they are, wherever the server was started.
+        // Clients name files by absolute paths, independent of the server's directory.
         let root = std::path::absolute(&project.root).map_err(|error| error.to_string())?;
         Ok(fc_lsp::Project::new(root, project.spec, project.targets))
     }

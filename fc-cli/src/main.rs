@@ -1,6 +1,6 @@
-//! The `fcproto` command: checks a protocol spec and generates what follows from it.
+//! The `fcproto` command: checks a protocol spec and generates code and docs from it.
 //!
-//! One file per subcommand; what they do is in `fc_codegen`, here is only what is said about it.
+//! Each subcommand has one file with its options and messages. `fc_codegen` and the other crates do the work.
 
 mod args;
 mod changelog;
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     print::quiet(args.quiet);
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
-            // The reader of the output is gone; there is nobody to tell.
+            // The reader of the output has closed it, so a message would have no reader.
             return Status::Fine;
         }
         print::failure(failure.as_ref());

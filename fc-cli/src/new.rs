@@ -86,7 +86,7 @@ pub fn help() -> Help {
     }
 }
 
-/// A code as the spec writes it, or in decimal.
+/// Parses a code in hexadecimal with `0x` or in decimal.
 pub fn code(text: &str) -> Result<u16, String> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u16::from_str_radix(digits, 16),

@@ -1,15 +1,15 @@
-//! How a command can end.
+//! The outcome of a command.
 
-/// How a command ended; its number is the exit status.
+/// The outcome of a command. Its number is the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Success.
     Fine = 0,
-    /// The spec has errors, generated files are stale, or the spec is not laid out.
+    /// The spec has errors, generated files are stale, or the spec is not formatted.
     Faulty = 1,
     /// Wrong usage, or a file that cannot be read or written.
     Failed = 2,
 }
 
-/// Why a command could not do its work: a sentence for the user.
+/// The reason why a command failed: a sentence for the user.
 pub type Failure = Box<dyn std::error::Error>;

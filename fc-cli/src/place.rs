@@ -1,11 +1,11 @@
-//! Where the project is, as every command is told.
+//! Global options for the place of the project.
 
 use std::path::PathBuf;
 
 use crate::help::global;
 use crate::lang::both;
 
-/// Where the project and its spec are.
+/// The place of the project and its spec.
 #[derive(Debug, clap::Args)]
 pub struct Place {
     #[arg(

@@ -1,4 +1,4 @@
-//! Targets that other programs make.
+//! Runs programs that generate targets.
 
 mod group;
 
@@ -19,7 +19,7 @@ use crate::lang::said;
 use crate::outcome::Failure;
 use group::Group;
 
-/// Ends the plugin that runs, with its children.
+/// Ends the running plugin and its children.
 pub fn end() {
     group::end_running();
 }
@@ -49,11 +49,11 @@ pub fn run(plugin: &Plugin, model: &Model, root: &Path) -> Result<Vec<Artifact>,
     })
 }
 
-/// An event of a program that runs.
+/// An event of a running program.
 enum Event {
-    /// It has closed its output, or exceeded its size.
+    /// The program closed its output, or exceeded the size limit.
     Answer(io::Result<Option<Vec<u8>>>),
-    /// It has ended.
+    /// The program ended.
     End(io::Result<ExitStatus>),
 }
 
@@ -67,7 +67,7 @@ fn ask(plugin: &Plugin, question: String, root: &Path) -> Result<Vec<u8>, Text> 
     answer
 }
 
-/// A program that runs.
+/// A running program.
 struct Running {
     group: Group,
     events: Receiver<Event>,
@@ -103,7 +103,7 @@ fn start(plugin: &Plugin, question: String, root: &Path) -> io::Result<Running> 
     Ok(Running { group, events })
 }
 
-/// All of an output; `None` if it is longer.
+/// Reads the whole output, or returns `None` if it is too long.
 fn bounded(output: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     output

@@ -1,4 +1,4 @@
-//! Output. Everything may hold ANSI colors; the streams take them out where they do not belong.
+//! Output to the terminal. All texts may contain ANSI colors, and the streams remove them where they are not supported.
 
 use fc_codegen::output::OutputError;
 use fc_codegen::target::TargetError;
@@ -29,7 +29,7 @@ pub fn result(text: &str) -> io::Result<()> {
     stdout.flush()
 }
 
-/// Whether nobody wants to hear of what went well.
+/// `true` with `--quiet`.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Makes [`done`] silent.
@@ -37,12 +37,12 @@ pub fn quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
-/// Whether it is so.
+/// Returns `true` if [`done`] is silent.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Prints what has been done, or found to be in order.
+/// Prints a success message.
 pub fn done(text: &str) -> io::Result<()> {
     if is_quiet() {
         return Ok(());
@@ -50,21 +50,21 @@ pub fn done(text: &str) -> io::Result<()> {
     result(text)
 }
 
-/// Prints what people should know beside the result.
+/// Prints a message to standard error.
 pub fn message(text: &str) -> io::Result<()> {
     progress::done();
     anstream::stderr().lock().write_all(text.as_bytes())
 }
 
-/// Prints why a command failed.
+/// Prints the reason why a command failed.
 pub fn failure(failure: &(dyn Error + 'static)) {
     let failure = words(failure);
-    // If the error stream is closed as well, the exit status has to do.
+    // If standard error is closed as well, the exit status is the only signal.
     let error = said!("错误：{failure}\n", "error: {failure}\n");
     let _ = message(&leveled(&error));
 }
 
-/// Why a command failed, in the language of this run; errors of libraries know English alone.
+/// Returns the reason in the language of this run. Errors of libraries are in English only.
 fn words(failure: &(dyn Error + 'static)) -> String {
     macro_rules! of {
         ($($Known:ty),+) => {
@@ -86,12 +86,12 @@ fn words(failure: &(dyn Error + 'static)) -> String {
     failure.to_string()
 }
 
-/// A word of good news.
+/// Returns a success word in color.
 pub fn good(text: &str) -> String {
     format!("{GOOD}{text}{GOOD:#}")
 }
 
-/// The level at the start of a line, in color.
+/// Colors the level at the start of a line.
 pub fn leveled(line: &str) -> String {
     for level in ["error:", "错误："] {
         if let Some(rest) = line.strip_prefix(level) {
@@ -101,7 +101,7 @@ pub fn leveled(line: &str) -> String {
     line.to_owned()
 }
 
-/// A unified diff, in color.
+/// Colors a unified diff.
 pub fn diff(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
@@ -116,7 +116,7 @@ pub fn diff(text: &str) -> String {
     out
 }
 
-/// Whether a command failed because its output is not read any more (`fcproto explain | head`).
+/// Returns `true` if a command failed because its output was closed, as in `fcproto explain | head`.
 pub fn is_closed_pipe(failure: &(dyn Error + 'static)) -> bool {
     failure
         .downcast_ref::<io::Error>()

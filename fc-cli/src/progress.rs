@@ -1,26 +1,26 @@
-//! What is being done, for a person who waits for longer than a second.
+//! A progress line for work that takes longer than a second.
 //!
-//! One line on the error stream, and only where that is a terminal that a person reads: not in a pipe, not in CI, not with
-//! `--quiet`. It is gone before anything else is printed.
+//! The line appears only if standard error is a terminal, and neither in CI nor with `--quiet`. It is erased before any
+//! other output.
 
 use std::io::{IsTerminal as _, Write as _, stderr};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long nothing is said.
+/// The delay before the line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// How often the line is written again.
+/// The interval between updates of the line.
 const PACE: Duration = Duration::from_millis(200);
 
-/// Takes the line away, on every terminal.
+/// Erases the line on every terminal.
 const ERASE: &[u8] = b"\r\x1b[K";
 
 struct Line {
-    /// What is being done, and since when.
+    /// The current work and its start time.
     doing: Option<(&'static str, Instant)>,
     is_shown: bool,
-    /// Whether the thread is there that shows it.
+    /// `true` if the thread that shows the line has started.
     is_running: bool,
 }
 
@@ -35,7 +35,7 @@ fn line() -> MutexGuard<'static, Line> {
     LINE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Says what is being done from here on, if that takes long.
+/// Sets the current work. The line shows it if it takes long.
 pub fn doing(what: &'static str) {
     let unread = ["CI", "FC_CI"]
         .iter()
@@ -48,13 +48,13 @@ pub fn doing(what: &'static str) {
     line.doing = Some((what, Instant::now()));
     if !line.is_running {
         line.is_running = true;
-        // It ends with the program.
+        // The thread ends with the program.
         std::thread::spawn(show);
     }
     CHANGED.notify_one();
 }
 
-/// Takes the line away, since something else is printed or all is done.
+/// Erases the line before other output or at the end.
 pub fn done() {
     let mut line = line();
     line.doing = None;

@@ -1,4 +1,4 @@
-//! Where the project is, and what it makes.
+//! Finds the project and reads its settings.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -16,32 +16,32 @@ const PROTOCOL: &str = "protocol.yaml";
 
 /// A project: a directory with `fc.yaml`, or with a spec at its usual place.
 pub struct Project {
-    /// Its directory.
+    /// The project's directory.
     pub root: PathBuf,
-    /// Directory of its spec, from the root.
+    /// The directory of the spec, relative to the root.
     pub spec: PathBuf,
-    /// What is made of the spec.
+    /// The targets that the project generates.
     pub targets: Targets,
 }
 
 impl Project {
-    /// The project that is named, or else that of the nearest directory upwards that is one.
+    /// Returns the named project, or the nearest one upwards from the current directory.
     pub fn find(place: &Place) -> Result<Self, Failure> {
         Self::at(root(place)?, place)
     }
 
-    /// The directory of that project, whatever its `fc.yaml` says.
+    /// Returns the directory of that project. It does not read `fc.yaml`.
     pub fn root(place: &Place) -> Result<PathBuf, Failure> {
         root(place)
     }
 
-    /// Directory of the spec, from the root, where no `fc.yaml` says so.
+    /// Returns the directory of the spec without `fc.yaml`, relative to the root.
     pub fn usual_spec(place: &Place) -> PathBuf {
         let spec = place.spec.clone();
         spec.unwrap_or_else(|| Targets::default().spec.into())
     }
 
-    /// The project that is named, or else the innermost one that a file lies in; `path` leads there from the current
+    /// Returns the named project, or the innermost one that contains a file. `path` is relative to the current
     /// directory.
     pub fn around(place: &Place, path: &Path) -> Result<Option<Self>, Failure> {
         let root = match &place.root {
@@ -55,7 +55,7 @@ impl Project {
         root.map(|root| Self::at(root, place)).transpose()
     }
 
-    /// The same from a directory other than the current one.
+    /// Like [`Self::find`], from another directory.
     pub fn find_from(place: &Place, directory: &Path) -> Result<Self, Failure> {
         let root = match &place.root {
             Some(_) => root(place)?,
@@ -81,7 +81,7 @@ impl Project {
     }
 }
 
-/// Reads the text of `fc.yaml`; `None` if there is none.
+/// Reads the text of `fc.yaml`. Returns `None` if the file does not exist.
 pub fn settings(root: &Path) -> Result<Option<String>, Failure> {
     let file = root.join(FILE);
     if !is_there(&file) {
@@ -100,7 +100,7 @@ pub fn settings(root: &Path) -> Result<Option<String>, Failure> {
 pub fn is_there(path: &Path) -> bool {
     match path.symlink_metadata() {
         Ok(_) => true,
-        // The system does not show it, so it may be there.
+        // The path may exist without being readable.
         Err(error) => !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory),
     }
 }
@@ -141,16 +141,16 @@ fn is_project(directory: &Path, place: &Place) -> bool {
     is_there(&directory.join(FILE)) || is_there(&directory.join(protocol(place)))
 }
 
-/// What leads from a project's directory to its `protocol.yaml`, where no `fc.yaml` says so.
+/// Returns the path of `protocol.yaml` without `fc.yaml`, relative to the project's directory.
 fn protocol(place: &Place) -> PathBuf {
     Project::usual_spec(place).join(PROTOCOL)
 }
 
-/// What leads to the project's root from the repository that holds it, with `/` between its parts: code hosts show
-/// faults beside the lines only where paths count from there. Empty where both are one. If there is no
-/// repository, paths count from the current directory.
+/// Returns the path from the repository to the project's root, with `/` as separator. It is empty if they are the same.
+/// Code hosts need paths from the repository to show annotations. Without a repository, the path is relative to the
+/// current directory.
 pub fn in_repository(root: &Path) -> String {
-    // Without links and `..`, so that one can be seen to lie in the other.
+    // Canonical paths have no links and no `..`, so that prefixes can be compared.
     let Ok(root) = root.canonicalize() else {
         return String::new();
     };

@@ -170,7 +170,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 }
 
 impl Options {
-    /// Who names a question gets it, whatever its state.
+    /// Returns `true` if the list shows a question. A question that is named by its id is always shown.
     fn wants(&self, question: &Question) -> bool {
         if !self.ids.is_empty() {
             let named = |id: &String| *id == question.id || question.ids.contains(id);

@@ -86,7 +86,7 @@ pub fn help() -> Help {
     }
 }
 
-/// The number of a release on the command line.
+/// Parses the number of a release on the command line.
 fn number(text: &str) -> Result<Number, String> {
     text.parse().map_err(|error: NoNumber| {
         said!(
@@ -185,17 +185,17 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// What a release makes of the spec.
+/// The changes that a release makes to the spec.
 struct Change {
-    /// Under the new number, with its waivers: what is judged.
+    /// The model with the new number and the waivers. It is compared with the last release.
     agreed: Model,
-    /// Without the waivers: what is frozen.
+    /// The model without the waivers. The release contains it.
     released: Model,
-    /// Its files.
+    /// The changed files.
     sources: Sources,
-    /// Path and lines of each change, as diffs without line numbers.
+    /// The path and the diff of each change, without line numbers.
     diffs: Vec<(String, String)>,
-    /// Waivers that are not written on lines of their own, which people have to take out.
+    /// Waivers that are not on separate lines. The user has to remove them.
     left: Vec<String>,
 }
 
@@ -237,13 +237,13 @@ impl Change {
     }
 }
 
-/// What has changed.
+/// The changes since the last release.
 enum Since {
-    /// Since the last release.
+    /// The findings of the comparison.
     Release(Vec<Finding>),
-    /// There is none before this.
+    /// There is no earlier release.
     Nothing,
-    /// It cannot be said, for what has been shown.
+    /// The comparison is impossible, and the errors have been shown.
     Faulty,
 }
 
@@ -259,7 +259,7 @@ fn changes(shelf: &Shelf, project: &Project, model: &Model, today: &str) -> Resu
     Ok(Since::Release(shelf.compare(&old, &new, today)?))
 }
 
-/// Says why there is no such release.
+/// Prints the reasons why there is no release.
 fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<Status, Failure> {
     let mut text = String::new();
     for objection in objections {
@@ -280,7 +280,7 @@ fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<St
     Ok(Status::Faulty)
 }
 
-/// Writes the dump and the changelogs, and tells their paths.
+/// Writes the dump and the changelogs, and returns their paths.
 fn write(
     project: &Project,
     shelf: &Shelf,
@@ -306,7 +306,7 @@ fn write(
     Ok(written)
 }
 
-/// With `/` between its parts.
+/// Returns a path with `/` as separator.
 fn slashed(path: &Path) -> String {
     let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")

@@ -43,7 +43,7 @@ pub fn help() -> Help {
     }
 }
 
-/// What a schema describes.
+/// The subject of a schema.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Of {
     #[value(help = both("规范语言", "The spec language"))]

@@ -240,7 +240,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// What is still to be said, of the same things first.
+/// Returns a message about the open questions. It lists those with the same subject.
 fn rest(model: &Model, ids: &[String]) -> String {
     let asked = model.questions.iter();
     let asked = asked.filter(|question| question.kind == AnswerKind::Question);
@@ -270,7 +270,7 @@ fn rest(model: &Model, ids: &[String]) -> String {
 }
 
 impl Options {
-    /// What the command line or the sheet says.
+    /// Returns the answers from the command line or the sheet.
     fn said(&self, model: &Model) -> Result<Vec<Said>, Failure> {
         let today = || jiff::Zoned::now().date().to_string();
         let date = self.date.clone().unwrap_or_else(today);

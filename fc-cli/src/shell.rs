@@ -1,4 +1,4 @@
-//! `fcproto completions` and `fcproto man`: what a shell and its reader want to know of the command line.
+//! `fcproto completions` and `fcproto man`: completion scripts and manual pages.
 
 use std::path::PathBuf;
 
@@ -98,13 +98,13 @@ pub fn man(options: &Man) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// Number of pages: a command's own, and those of the commands below it.
+/// Returns the number of manual pages of a command and its subcommands.
 fn pages(command: &Command) -> usize {
     let below = command.get_subcommands().filter(|it| !it.is_hide_set());
     1 + below.map(pages).sum::<usize>()
 }
 
-/// The command line; `help` is not a page of its own, each command has its own.
+/// Returns the command line without `help`. Each command already has its own page.
 fn command() -> Command {
     described().disable_help_subcommand(true)
 }

@@ -1,4 +1,4 @@
-//! Reading the spec and showing its faults.
+//! Reads the spec and shows its diagnostics.
 
 use fc_codegen::check::{Requirements, check};
 use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
@@ -13,25 +13,25 @@ use crate::print;
 use crate::progress;
 use crate::project::Project;
 
-/// A spec that has been read.
+/// A spec that has been read and checked.
 pub struct Spec {
-    /// Its files.
+    /// The files.
     pub sources: Sources,
-    /// Its faults, in the order of the files.
+    /// The diagnostics, in the order of the files.
     pub faults: Faults,
-    /// What it means, unless there is an error in it.
+    /// The model, or `None` if the spec has errors.
     pub model: Option<Model>,
-    /// Those of its project.
+    /// The requirements of the project.
     requirements: Requirements,
 }
 
 impl Spec {
-    /// Reads the spec and finds its faults.
+    /// Finds the project, then reads and checks its spec.
     pub fn read(place: &Place) -> Result<Self, Failure> {
         Ok(Self::in_project(&Project::find(place)?))
     }
 
-    /// The same of a project that has been found.
+    /// Reads and checks the spec of a project.
     pub fn in_project(project: &Project) -> Self {
         progress::doing(both("正在检查规范", "checking the spec"));
         let mut faults = Faults::new();
@@ -49,12 +49,12 @@ impl Spec {
         }
     }
 
-    /// The languages in which each text is required.
+    /// Returns the languages in which each text is required.
     pub fn texts(&self) -> Languages {
         self.requirements.texts
     }
 
-    /// The spec as it would be with another text in one of its files.
+    /// Checks the spec with another text in one of its files.
     pub fn with(&self, path: &str, text: &str) -> Self {
         let texts = self.sources.iter().map(|(_, file)| {
             let text = if file.path == path { text } else { &file.text };
@@ -63,12 +63,12 @@ impl Spec {
         self.instead(Sources::from_texts(texts))
     }
 
-    /// The spec as it would be with other files.
+    /// Checks other files with the same requirements.
     pub fn instead(&self, sources: Sources) -> Self {
         Self::of(sources, Faults::new(), self.requirements.clone())
     }
 
-    /// Why a spec that is not on disk yet does not get there: its errors without their places.
+    /// Returns the errors without their places. They are the reason why a changed spec is not written.
     pub fn objection(&self) -> String {
         let errors = self.faults.iter();
         let errors = errors.filter(|fault| fault.severity == Severity::Error);
@@ -89,12 +89,12 @@ impl Spec {
         )
     }
 
-    /// Shows the faults to people, and how to read more about them.
+    /// Shows the diagnostics as text, with a hint for more information.
     pub fn show_faults(&self) -> Result<(), Failure> {
         show_faults(&self.faults, &self.sources)
     }
 
-    /// The exit status for its faults.
+    /// Returns the exit status for the diagnostics.
     pub fn status(&self) -> Status {
         if self
             .faults
@@ -109,13 +109,13 @@ impl Spec {
         }
     }
 
-    /// Number of files.
+    /// Returns the number of files.
     pub fn files(&self) -> usize {
         self.sources.iter().count()
     }
 }
 
-/// Shows faults to people, and how to read more about them.
+/// Shows diagnostics as text, with a hint for more information.
 pub fn show_faults(faults: &Faults, sources: &Sources) -> Result<(), Failure> {
     let text = render(faults, sources, Format::Colored, lang());
     let summary = summary(faults, lang()).map(|line| print::leveled(&line) + "\n");

@@ -1,4 +1,4 @@
-//! Versions of the spec to compare, as commands are told of them.
+//! Reads the versions of the spec that a command line names.
 
 use std::path::{Path, PathBuf};
 
@@ -13,26 +13,26 @@ use crate::print;
 use crate::progress;
 use crate::project::Project;
 
-/// Where versions are looked for.
+/// The places to look for versions.
 pub struct Shelf {
     /// The project's directory.
     pub root: PathBuf,
-    /// Its spec, from there.
+    /// The directory of the spec, relative to `root`.
     pub spec: PathBuf,
-    /// The frozen versions of it.
+    /// The releases of the spec.
     pub releases: Releases,
-    /// Settings of its packages.
+    /// The settings of the project's packages.
     packages: Packages,
 }
 
 impl Shelf {
-    /// Of the project that is named or found.
+    /// Returns the shelf of a project.
     pub fn of(project: &Project) -> Result<Self, Failure> {
         let packages = packages(project);
         Self::at(project.root.clone(), project.spec.clone(), packages)
     }
 
-    /// Of the project, or of the current directory where none is needed and there is none.
+    /// Returns the shelf of the project. Without a project, uses the current directory if `is_needed` is `false`.
     pub fn find(place: &Place, is_needed: bool) -> Result<Self, Failure> {
         match Project::find(place) {
             Ok(project) => Self::of(&project),
@@ -60,7 +60,7 @@ impl Shelf {
         })
     }
 
-    /// Name of the last release.
+    /// Returns the name of the last release.
     pub fn last(&self) -> Result<String, Failure> {
         match self.releases.last() {
             Some((number, _)) => Ok(number.to_string()),
@@ -74,18 +74,18 @@ impl Shelf {
         }
     }
 
-    /// The file with the dump of a release.
+    /// Returns the file with the dump of a release.
     pub fn released(&self, name: &str) -> Result<PathBuf, Failure> {
         let path = self.releases.named(name).map(Path::to_owned);
         Ok(path.ok_or_else(|| self.releases.without(name))?)
     }
 
-    /// Name of the working tree.
+    /// Returns the name of the working tree.
     pub fn here(&self) -> String {
         self.root.display().to_string()
     }
 
-    /// Reads a version; `None` if its spec has errors, which are shown.
+    /// Reads a version. Shows the errors of its spec and returns `None` if it has any.
     pub fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
         progress::doing(both(
             "正在读取规范的两个版本",
@@ -109,7 +109,7 @@ impl Shelf {
         }
     }
 
-    /// What differs, with the waivers of the new version applied.
+    /// Compares two versions and applies the waivers of the new one.
     pub fn compare(
         &self,
         old: &Version,
@@ -132,7 +132,8 @@ impl Shelf {
         Ok(findings)
     }
 
-    /// Reads the releases before both versions, the last one first. A version that is not a release comes after all releases.
+    /// Reads the releases before both versions, the last one first. A version that is not a release comes after all
+    /// releases.
     fn earlier(&self, old: &Version, new: &Version) -> Result<Vec<Version>, Failure> {
         let number = |name: &str| {
             let mut numbers = self.releases.numbers();
@@ -152,7 +153,7 @@ impl Shelf {
         Ok(versions.into_iter().flatten().collect())
     }
 
-    /// The path of a file of the spec, from the root.
+    /// Returns the path of a file of the spec, relative to the root.
     pub fn file(&self, path: &str) -> PathBuf {
         Path::new(&self.spec).join(path)
     }
@@ -165,12 +166,12 @@ pub fn packages(project: &Project) -> Packages {
     }
 }
 
-/// The day that is meant where none is named.
+/// Returns the named day, or today.
 pub fn today(named: Option<&str>) -> String {
     named.map_or_else(|| jiff::Zoned::now().date().to_string(), str::to_owned)
 }
 
-/// A day of the command line.
+/// Parses a day of the command line.
 pub fn day(text: &str) -> Result<String, String> {
     let day: jiff::civil::Date = text.parse().map_err(|_| {
         said!(

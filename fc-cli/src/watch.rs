@@ -1,8 +1,8 @@
 //! `fcproto generate --watch`.
 //!
-//! What the file system tells says only that something may have changed: what has is found out by reading the spec again. So
-//! neither an editor that saves by renaming, nor a directory that comes back, nor what is generated into the spec's own
-//! directory needs a case of its own.
+//! An event of the file system only means that something may have changed. Each event makes the program read the spec
+//! again and compare it. So there are no special cases for editors that save by renaming, for recreated directories,
+//! and for files generated into the spec's directory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,17 +22,17 @@ use crate::place::Place;
 use crate::project::{Project, settings};
 use crate::{plugin, print};
 
-/// Nothing must change for so long before the spec is read again: editors and git change several files at once.
+/// The time without events before the spec is read again. Editors and git change several files at once.
 const CALM: Duration = Duration::from_millis(100);
 
-/// What changes all the time is read in between nevertheless.
+/// The maximum time until the spec is read again, even if events continue.
 const AT_MOST: Duration = Duration::from_secs(1);
 
-/// Files that are named one by one.
+/// The maximum number of files that a message lists.
 const NAMED: usize = 10;
 
-/// Does the work, and does it again whenever the spec or `fc.yaml` has changed, until Ctrl-C. Faults of the spec and
-/// failures are shown; neither ends it.
+/// Runs `work`, and runs it again after each change of the spec or `fc.yaml`, until Ctrl-C. Errors of the spec and
+/// failures are shown, and the loop continues.
 pub fn run(
     place: &Place,
     work: impl Fn(&Place) -> Result<Status, Failure>,
@@ -42,7 +42,7 @@ pub fn run(
         root: Some(root.clone()),
         spec: place.spec.clone(),
     };
-    // One event says as much as many.
+    // One pending event is enough, whatever its number.
     let (sender, events) = sync_channel(1);
     let ended = Arc::new(AtomicBool::new(false));
     let (end, wake) = (Arc::clone(&ended), sender.clone());
@@ -58,7 +58,7 @@ pub fn run(
         )
     })?;
     let watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
-        // Reading is no change, and the spec is read after each.
+        // Reading is not a change. Without this filter, each read of the spec would cause another one.
         let is_reading =
             |kind| matches!(kind, EventKind::Access(kind) if !matches!(kind, AccessKind::Any));
         if !event.is_ok_and(|event| is_reading(event.kind)) {
@@ -73,7 +73,7 @@ pub fn run(
     let mut last: Option<Input> = None;
     while !ended.load(Ordering::Relaxed) {
         let spec = spec(&place);
-        // Before reading, so that what changes from here on is told.
+        // Watching starts before reading, so that no change is missed.
         places.renew(&root, &spec)?;
         let now = Input::read(&root, &spec);
         if last.as_ref() != Some(&now) {
@@ -99,7 +99,7 @@ pub fn run(
     Ok(Status::Fine)
 }
 
-/// Until something has changed and calm has returned.
+/// Waits for a change, and then until no more follow.
 fn wait(events: &Receiver<()>) {
     if events.recv().is_err() {
         return;
@@ -114,7 +114,7 @@ fn wait(events: &Receiver<()>) {
     }
 }
 
-/// Where the spec is: at its usual place while `fc.yaml` cannot be read.
+/// Returns the directory of the spec: the usual one while `fc.yaml` cannot be read.
 fn spec(place: &Place) -> PathBuf {
     Project::find(place).map_or_else(|_| Project::usual_spec(place), |project| project.spec)
 }
@@ -127,22 +127,22 @@ fn cannot(path: &Path, error: &notify::Error) -> String {
     )
 }
 
-/// What is watched.
+/// The watched paths.
 struct Watched {
     watcher: RecommendedWatcher,
     paths: Vec<PathBuf>,
 }
 
 impl Watched {
-    /// Watches what is there now: a directory that was removed and made again is another one.
+    /// Watches the current directories. A directory that was removed and created again needs a new watch.
     fn renew(&mut self, root: &Path, spec: &Path) -> Result<(), Failure> {
         for path in self.paths.drain(..) {
-            // It may be gone.
+            // The path may no longer exist.
             let _ = self.watcher.unwatch(&path);
         }
         let spec = root.join(spec);
         let mut wanted = vec![(root.to_owned(), RecursiveMode::NonRecursive)];
-        // What is above the spec tells of it when it goes and comes.
+        // The directory above the spec reports when the spec is removed or created.
         if let Some(above) = spec.ancestors().skip(1).find(|above| above.is_dir())
             && above != root
         {
@@ -154,7 +154,7 @@ impl Watched {
         for (path, mode) in wanted {
             match self.watcher.watch(&path, mode) {
                 Ok(()) => self.paths.push(path),
-                // Gone since a moment ago, of which what is above it tells.
+                // The path was just removed. The directory above reports when it is created again.
                 Err(_) if !path.exists() => {}
                 Err(error) => return Err(cannot(&path, &error).into()),
             }
@@ -163,12 +163,12 @@ impl Watched {
     }
 }
 
-/// All that is generated from, as it was when it was read.
+/// The input of the generator at one time.
 #[derive(PartialEq)]
 struct Input {
     /// Paths and texts, sorted by path.
     files: Vec<(String, String)>,
-    /// Codes of what could not be read.
+    /// The codes of errors in reading.
     faults: Vec<&'static str>,
 }
 
@@ -190,7 +190,7 @@ impl Input {
         }
     }
 
-    /// Which files are others than they were.
+    /// Returns the names of the files that differ from `last`.
     fn since(&self, last: &Self) -> String {
         let lacks = |input: &Self, path: &str| !input.files.iter().any(|(it, _)| it == path);
         let new = self.files.iter().filter(|file| !last.files.contains(file));

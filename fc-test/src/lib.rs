@@ -1,21 +1,20 @@
-//! Tests that end: a fault that makes something wait or spin for ever is found by the test itself, which fails
-//! and says so, and not by whoever loses patience with the whole run.
+//! A test attribute with a time limit.
+//!
+//! A test that hangs fails with a message, instead of blocking the whole run.
 
 use proc_macro::{Delimiter, Group, TokenStream, TokenTree};
 
-/// How long a test may take that does not say it, in seconds: many times what the slowest of them does,
-/// so that a busy machine fails none.
+/// The default time limit of a test in seconds. It is many times the duration of the slowest test, so that a busy
+/// machine causes no failures.
 const LIMIT: &str = "60";
 
-/// A test, asynchronous or not, that fails if it is not over in time.
+/// A test, synchronous or asynchronous, that fails if it exceeds a time limit.
 ///
-/// It runs in a thread of its own while the harness waits for it: a minute, or what is said with
-/// `within = …`, an expression of type `Duration`. What does not end is left behind; it ends with the
-/// process.
+/// The test runs in a separate thread. The limit is a minute, or the `Duration` expression in `within = …`. A test that
+/// does not end keeps its thread until the process ends.
 ///
-/// An `async fn` gets a tokio runtime, by default with one thread; all other arguments are those of
-/// `#[tokio::test]`. With `start_paused = true` it fails at once when nothing is left to be done and
-/// nothing to wait for but a time more than a week away.
+/// An `async fn` gets a tokio runtime, with one thread by default. All other arguments are those of `#[tokio::test]`.
+/// With `start_paused = true` it fails immediately if it is idle and its next timer is more than a week away.
 #[proc_macro_attribute]
 pub fn test(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let (within, runtime) = split(arguments);
@@ -75,7 +74,7 @@ pub fn test(arguments: TokenStream, item: TokenStream) -> TokenStream {
     whole
 }
 
-/// The body as one that fails when paused time has nothing to go on to.
+/// Returns the body of a test that fails if paused time has no timer within a week.
 fn ends_when_idle(body: Group) -> TokenStream {
     let mut timed = code("::core::time::Duration::from_secs(7 * 24 * 60 * 60), async");
     timed.extend([TokenTree::Group(body)]);
@@ -87,7 +86,7 @@ fn ends_when_idle(body: Group) -> TokenStream {
     whole
 }
 
-/// What follows `within =`, and the other arguments.
+/// Returns the expression after `within =`, and the other arguments.
 fn split(arguments: TokenStream) -> (Option<TokenStream>, TokenStream) {
     let mut within = None;
     let mut others = TokenStream::new();

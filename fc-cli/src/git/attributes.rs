@@ -1,4 +1,4 @@
-//! What `.gitattributes` has to say so that git calls `fcproto`.
+//! The entries of `.gitattributes` that make git call `fcproto`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -10,16 +10,16 @@ use super::{git, parts};
 use crate::outcome::Failure;
 use crate::project::Project;
 
-/// What git calls both drivers.
+/// The name of both drivers in git.
 pub const DRIVER: &str = "fc";
 
-/// The lines that the project's `.gitattributes` lacks.
+/// Returns the lines that the project's `.gitattributes` lacks.
 pub fn missing(project: &Project) -> Result<Vec<String>, Failure> {
     let root = &project.root;
     let spec = project.spec.to_string_lossy();
     let spec = spec.trim_end_matches('/');
     let mut lines = Vec::new();
-    // Any name will do: no file has to be there.
+    // The files need not exist.
     let probes = ["protocol.yaml", "commands/group.yaml"].map(|file| format!("{spec}/{file}"));
     let [is_compared, is_merged] = ["diff", "merge"].map(|attribute| {
         let values = values(root, attribute, probes.iter().map(String::as_str))?;
@@ -43,7 +43,7 @@ pub fn missing(project: &Project) -> Result<Vec<String>, Failure> {
     Ok(lines)
 }
 
-/// What git says of an attribute of each path.
+/// Returns the value of an attribute for each path.
 fn values<'p>(
     root: &Path,
     attribute: &str,
@@ -57,7 +57,7 @@ fn values<'p>(
     Ok(triples.iter().map(of).collect())
 }
 
-/// The outermost directory around a path in which all is generated.
+/// Returns the outermost directory around a path that contains only generated files.
 fn whole<'p>(root: &Path, path: &'p str, generated: &BTreeSet<String>) -> Option<&'p str> {
     let ends = path.match_indices('/').map(|(at, _)| at);
     let mut above = ends.filter_map(|at| path.get(..at));

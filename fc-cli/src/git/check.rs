@@ -73,10 +73,10 @@ pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     generate::in_project(Project::find(&there)?, place, &options)
 }
 
-/// A copy of the staged files in a temporary directory, which is removed in the end.
+/// A copy of the staged files in a temporary directory. Dropping it removes the directory.
 struct Staged {
     directory: PathBuf,
-    /// The project's directory from the root of the working tree.
+    /// The project's directory, relative to the root of the working tree.
     prefix: String,
 }
 
@@ -92,7 +92,7 @@ impl Staged {
             directory: temporary()?,
             prefix: line(&["rev-parse", "--show-prefix"])?,
         };
-        // The tree of the next commit, without files that are only intended to be added.
+        // The tree of the next commit. It leaves out files that are only intended to be added.
         let tree = git(&top, &["write-tree"], "")?;
         let index = [(
             "GIT_INDEX_FILE",
@@ -120,17 +120,17 @@ impl Staged {
         Ok(staged)
     }
 
-    /// Root of the copied working tree.
+    /// Returns the root of the copied working tree.
     fn copy(&self) -> PathBuf {
         self.directory.join("tree")
     }
 
-    /// Root of the copied project.
+    /// Returns the root of the copied project.
     fn root(&self) -> PathBuf {
         self.copy().join(&self.prefix)
     }
 
-    /// Copies the generated files that git ignores: no commit has them.
+    /// Copies the generated files that git ignores, because no commit has them.
     fn take_ignored(&self, project: &Project) -> Result<(), Failure> {
         let list = [
             "ls-files",
@@ -163,7 +163,7 @@ impl Staged {
 
 impl Drop for Staged {
     fn drop(&mut self) {
-        // The system removes temporary files, too.
+        // If this fails, the system removes its temporary files later.
         let _ = fs::remove_dir_all(&self.directory);
     }
 }
@@ -194,5 +194,5 @@ fn temporary() -> Result<PathBuf, Failure> {
     }
 }
 
-/// Names that are tried for a temporary directory.
+/// The maximum number of further names that are tried for a temporary directory.
 const ATTEMPTS: u32 = 100;

@@ -18,10 +18,10 @@ use crate::print;
 use crate::project::Project;
 use crate::versions::{packages, today};
 
-/// Commits in whose files a version is looked for.
+/// The number of commits that are searched for a version of the file.
 const COMMITS: &str = "--max-count=200";
 
-/// What git calls a file that is not there.
+/// The name that git gives to a missing file.
 const NOTHING: &str = "/dev/null";
 
 /// Options of `fcproto git diff`.
@@ -100,11 +100,11 @@ pub fn help() -> Help {
 
 /// A version of the file.
 struct Side {
-    /// From the root of the working tree.
+    /// The path, relative to the root of the working tree.
     path: PathBuf,
-    /// `None` if it is not there.
+    /// The text, or `None` if the file is missing.
     text: Option<String>,
-    /// Its object; all zeros if git does not have it.
+    /// The id of the object. It is all zeros if git does not have the object.
     hex: String,
 }
 
@@ -171,7 +171,7 @@ impl Side {
     }
 }
 
-/// What the change means; empty if nothing, `None` if there is no spec that the two versions fit.
+/// Returns a description of the change, empty for no change. Returns `None` if no spec fits both versions of the file.
 fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Failure> {
     let Some(project) = Project::around(place, &new.path)? else {
         return Ok(None);
@@ -210,7 +210,7 @@ fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Fai
         let versions = [&before, &after];
         let mut findings = diff_for(&before.model, &after.model, packages(&project));
         if old_rest != new_rest {
-            // The other files differ as well, which is said of them.
+            // Other files can differ as well, and git reports them separately.
             findings.retain(|finding| {
                 stands_in(finding, &old_path, versions) || stands_in(finding, &new_path, versions)
             });
@@ -229,11 +229,11 @@ fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Fai
     Ok(None)
 }
 
-/// The working tree; a reference of git cannot be empty.
+/// The working tree. The name of a git revision cannot be empty.
 const HERE: &str = "";
 
-/// Where the rest of the spec may come from, for the old version and for the new one: from one place, so that it is the same, or
-/// else from where each has been.
+/// Returns the sources for the other files of the spec, each for the old and the new version. Most pairs give both
+/// versions the same files. The others use the files before and after the change.
 fn pairs(project: &Project, path: &str, new: &Side) -> Vec<[String; 2]> {
     let pair = |old: &str, new: &str| [old.to_owned(), new.to_owned()];
     let mut pairs = vec![pair(HERE, HERE), pair("HEAD", "HEAD")];
@@ -249,7 +249,7 @@ fn pairs(project: &Project, path: &str, new: &Side) -> Vec<[String; 2]> {
     pairs
 }
 
-/// The last commit that made a file what it is.
+/// Returns the last commit that gave the file its content.
 fn commit_with(project: &Project, path: &str, side: &Side) -> Option<String> {
     if !side.is_of_git() {
         return None;
@@ -269,7 +269,7 @@ fn commit_with(project: &Project, path: &str, side: &Side) -> Option<String> {
     let mut commit = None;
     for line in log.lines() {
         match line.strip_prefix(':') {
-            // Modes, then objects: of the old file and of the new one.
+            // Modes first, then the object of the old and of the new file.
             Some(facts) if facts.split(' ').nth(3) == Some(&side.hex) => return commit,
             None if !line.is_empty() => commit = Some(line.to_owned()),
             _ => {}
@@ -278,7 +278,7 @@ fn commit_with(project: &Project, path: &str, side: &Side) -> Option<String> {
     None
 }
 
-/// Files of the spec as they are in several places, each read once.
+/// The files of the spec from several sources. Each source is read once.
 struct Rests<'p> {
     project: &'p Project,
     read: Vec<(String, Option<Sources>)>,

@@ -74,7 +74,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let mine = generated(&project.root).unwrap_or_default();
     if mine.iter().any(|mine| mine == path) {
-        // What git cannot merge stays as this branch has it, which is right until it is written again.
+        // The next `fcproto generate` rewrites the file, so this branch's lines win conflicts.
         let _ = options.by_lines(&["--ours"])?;
         return Ok(Status::Fine);
     }
@@ -123,7 +123,7 @@ impl Options {
         Ok(Status::Fine)
     }
 
-    /// Merges the lines as git itself does. What it cannot merge it leaves as it is, and with marks around conflicts.
+    /// Merges by lines, as git does. Conflicts get markers.
     fn by_lines(&self, arguments: &[&str]) -> Result<Status, Failure> {
         let output = Command::new("git")
             .args(["merge-file", "--quiet"])

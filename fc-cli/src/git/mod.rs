@@ -1,4 +1,4 @@
-//! `fcproto git`: what git does better when it is told of the spec.
+//! `fcproto git`: drivers and hooks that teach git the spec.
 
 mod attributes;
 pub mod check;
@@ -75,12 +75,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
 }
 
-/// What git prints when it is called in a directory.
+/// Runs git in a directory and returns its output.
 fn git(directory: &Path, arguments: &[&str], input: &str) -> Result<String, Failure> {
     git_with(directory, arguments, input, &[])
 }
 
-/// The same with more in its environment.
+/// Runs git with additional environment variables.
 fn git_with(
     directory: &Path,
     arguments: &[&str],
@@ -99,7 +99,8 @@ fn git_with(
         .map_err(cannot)?;
     let mut stdin = child.stdin.take();
     let output = std::thread::scope(|scope| {
-        // Beside the reading, so that neither waits for the other. What git does not read it does not need.
+        // A separate thread writes, so that reading and writing do not block each other. Input that git does not read
+        // is not needed.
         scope.spawn(move || {
             stdin
                 .as_mut()
@@ -116,7 +117,7 @@ fn git_with(
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Whether a file is one of the project's spec; `path` leads there from the project's directory.
+/// Returns `true` if a file belongs to the project's spec. `path` is relative to the project's directory.
 fn spec_file(project: &Project, path: &Path) -> bool {
     let Ok(path) = path.strip_prefix(&project.spec) else {
         return false;
@@ -125,7 +126,7 @@ fn spec_file(project: &Project, path: &Path) -> bool {
     path.components().count() == 1 && path.extension().is_some_and(|it| it == "yaml")
 }
 
-/// The parts of a text that end with NUL each.
+/// Splits a text with parts that end in NUL.
 fn parts(text: &str) -> impl Iterator<Item = &str> {
     text.split('\0').filter(|part| !part.is_empty())
 }

@@ -69,13 +69,13 @@ pub fn help() -> Help {
     }
 }
 
-/// The line by which a hook is known to be ours.
+/// The line that identifies a hook of this program.
 const MARK: &str = "# Written by `fcproto git setup --hooks`.";
 
-/// The same line in hooks from when the program was called `fc`: they call it by a path where nothing is now.
+/// The line in hooks from the time when the program was called `fc`. Their path to the program is no longer valid.
 const OLD_MARK: &str = "# Written by `fc git setup --hooks`.";
 
-/// Hooks and what they do; `FC` stands for the command.
+/// The hooks and their commands. `FC` is the placeholder for this program.
 const HOOKS: [(&str, &str); 2] = [
     ("pre-commit", "FC git check\n"),
     (
@@ -143,7 +143,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// This program, as a shell calls it. By its path: git may be called where it is not on the `PATH`.
+/// Returns the command that runs this program from a shell. It is an absolute path, because git may run with another
+/// `PATH`.
 fn this_command() -> Result<String, Failure> {
     let path = std::env::current_exe().map_err(|error| {
         said!(
@@ -157,17 +158,17 @@ fn this_command() -> Result<String, Failure> {
     ))
 }
 
-/// The hooks that are to be written, unless one of somebody else is in the way.
+/// Returns the hooks to write. Fails if a hook of another program exists.
 fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> {
     let directory = git(root, &["rev-parse", "--git-path", "hooks"], "")?;
     let directory = root.join(directory.trim_end_matches(['\r', '\n']));
     let prefix = git(root, &["rev-parse", "--show-prefix"], "")?;
     let prefix = prefix.trim_end_matches(['\r', '\n']).trim_end_matches('/');
-    // Git calls hooks at the root of the working tree.
+    // Git runs hooks at the root of the working tree.
     let enter = if prefix.is_empty() {
         String::new()
     } else {
-        // With `GIT_DIR` alone, git takes the current directory for the root.
+        // With `GIT_DIR` alone, git uses the current directory as the root.
         let root = "[ -z \"$GIT_DIR\" ] || export GIT_WORK_TREE=\"$PWD\"\n";
         format!("{root}cd '{}' || exit\n", prefix.replace('\'', r"'\''"))
     };
@@ -179,7 +180,7 @@ fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> 
                 let text = String::from_utf8_lossy(&bytes);
                 !text.contains(MARK) && !text.contains(OLD_MARK)
             }
-            // A directory, or a link to nothing.
+            // The path is a directory or a dangling link.
             Err(_) => is_there(&path),
         };
         if is_other {

@@ -80,7 +80,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// Makes the last commit again with what is staged. Not by `git commit --amend`, which refuses while the hook of a merge runs.
+/// Repeats the last commit with the staged files. `git commit --amend` refuses this while the hook of a merge runs.
 fn amend(root: &Path) -> Result<(), Failure> {
     let of_last = |format: &str| {
         let format = format!("--format={format}");

@@ -19,16 +19,16 @@ use crate::{
 
 pub use page::{Options as PageOptions, run as page};
 
-/// The texts of a command, except those of its arguments.
+/// The texts of a command without those of its arguments.
 #[derive(Debug)]
 pub struct Help {
     /// Verb and object, up to 60 columns, without a full stop.
     pub summary: &'static str,
     /// Follows the options in `--help`.
     pub details: Vec<Part>,
-    /// When the exit status is 1; empty if it never is.
+    /// The cases with exit status 1; empty if there are none.
     pub fails: &'static str,
-    /// Output that follows `--lang`, apart from errors and messages; empty if there is none.
+    /// The output that follows `--lang`, apart from errors and messages; empty if there is none.
     pub speaks: &'static str,
 }
 
@@ -45,7 +45,7 @@ pub enum Part {
     Examples(Vec<(&'static str, &'static str)>),
 }
 
-/// The help of the command that these names lead to.
+/// Returns the help of the command with this path.
 fn of(path: &[&str]) -> Option<Help> {
     Some(match path {
         [] => args::help(),
@@ -86,12 +86,12 @@ fn of(path: &[&str]) -> Option<Help> {
     })
 }
 
-/// Heading of the options that every command has.
+/// The heading of the options that every command has.
 pub fn global() -> &'static str {
     both("全局选项", "Global options")
 }
 
-/// The command line with its texts, for completions and manual pages.
+/// Returns the command line with its texts, for completions and manual pages.
 pub fn described() -> Command {
     let version = flag("version", 'V', ArgAction::Version);
     let version = version.help(both("显示版本", "Print version"));
@@ -110,7 +110,7 @@ pub fn described() -> Command {
     command
 }
 
-/// A flag that clap would describe in English.
+/// Returns a flag. Without it, clap would describe the flag in English.
 fn flag(name: &'static str, short: char, action: ArgAction) -> Arg {
     Arg::new(name)
         .short(short)
@@ -119,10 +119,10 @@ fn flag(name: &'static str, short: char, action: ArgAction) -> Arg {
         .help_heading(global())
 }
 
-/// The command line with its texts, laid out for the terminal.
+/// Returns the command line with its texts, laid out for the terminal.
 pub fn dressed() -> Command {
     let mut command = described();
-    // The usage of a command begins with the names of those above it.
+    // The usage of a command begins with the names of its parent commands.
     command.build();
     let width = terminal::width();
     each(&mut command, &[], &mut |mut command, path| {
@@ -139,7 +139,7 @@ pub fn dressed() -> Command {
     command
 }
 
-/// Changes every command, those below it first. Clap repeats the commands below `help`; they are left out.
+/// Changes every command, its subcommands first. Skips the copies of commands that clap has below `help`.
 fn each(command: &mut Command, path: &[&str], change: &mut dyn FnMut(Command, &[&str]) -> Command) {
     if path.last() != Some(&"help") {
         for below in command.get_subcommands_mut() {
@@ -151,15 +151,15 @@ fn each(command: &mut Command, path: &[&str], change: &mut dyn FnMut(Command, &[
     *command = change(std::mem::take(command), path);
 }
 
-/// An argument as help shows it.
+/// An argument in the form for help.
 struct Shown<'c> {
-    /// `-q, --quiet`, `    --root <DIR>` or `[NAME]`.
+    /// The term, such as `-q, --quiet`, `    --root <DIR>` or `[NAME]`.
     term: String,
-    /// Its help without the default.
+    /// The help without the default.
     text: String,
-    /// Its default, as a value or in words.
+    /// The default, as a value or in words.
     default: Option<String>,
-    /// Its values, if they are known, with their help.
+    /// The known values with their help.
     values: Vec<(String, String)>,
     argument: &'c Arg,
 }
@@ -174,7 +174,7 @@ impl<'c> Shown<'c> {
         };
         let help = argument.get_help().map(ToString::to_string);
         let help = help.unwrap_or_default();
-        // A default that depends on the project is written in the help.
+        // The help of an argument contains a default that depends on the project.
         let label = format!(" [{}", default_label());
         let (text, default) = match help.split_once(&label) {
             Some((text, default)) => (text, Some(default.trim_end_matches(']').to_owned())),
@@ -203,7 +203,7 @@ impl<'c> Shown<'c> {
         }
     }
 
-    /// Its values, unless they say all themselves.
+    /// Returns the values with their help, or `None` if they have no help.
     fn described_values(&self) -> Option<(String, &[(String, String)])> {
         let is_described = self.values.iter().any(|(_, help)| !help.is_empty());
         let name = match self.argument.get_long() {
@@ -214,12 +214,12 @@ impl<'c> Shown<'c> {
     }
 }
 
-/// Begins a default in the help of an argument.
+/// The start of a default in the help of an argument.
 fn default_label() -> &'static str {
     both("默认：", "default: ")
 }
 
-/// The arguments of a command: its own ones by their order, then the global ones.
+/// Returns the arguments of a command: its own in their order, then the global ones.
 fn arguments(command: &Command) -> (Vec<Shown<'_>>, Vec<Shown<'_>>) {
     let visible = command.get_arguments().filter(|it| !it.is_hide_set());
     let (own, mut shared): (Vec<_>, Vec<_>) = visible
@@ -229,7 +229,7 @@ fn arguments(command: &Command) -> (Vec<Shown<'_>>, Vec<Shown<'_>>) {
     (own, shared)
 }
 
-/// How a command is called, without a title.
+/// Returns the usage of a command, without a title.
 fn usage(command: &mut Command) -> String {
     let usage = command.render_usage().to_string();
     let usage = usage.strip_prefix("Usage: ").unwrap_or(&usage);

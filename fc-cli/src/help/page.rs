@@ -30,7 +30,7 @@ pub fn run() -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// The page in the language of the run.
+/// Returns the page in the language of the run.
 fn page() -> String {
     let mut root = described();
     root.build();
@@ -88,7 +88,7 @@ fn head(help: &Help) -> String {
     let mut page = format!(
         "---\ntitle: {title}\noutline: [2, 2]\neditLink: false\n---\n\n<!-- {generated} -->\n\n# {title}\n\n{about}\n"
     );
-    // The examples are a tour of the commands, as the table is.
+    // The page has a table of the commands, so it needs no examples.
     let details = help.details.iter();
     page.extend(
         details
@@ -129,7 +129,7 @@ fn global(root: &Command) -> String {
     )
 }
 
-/// All of one command.
+/// Returns the section of a command.
 fn section(command: &mut Command, path: &[&str], help: &Help) -> String {
     let usage = usage(command);
     let (name, id) = (path.join(" "), path.join("-"));
@@ -143,7 +143,7 @@ fn section(command: &mut Command, path: &[&str], help: &Help) -> String {
     text
 }
 
-/// A table of arguments, and one for the values of each that needs it.
+/// Returns a table of arguments, and a table for the values of each argument that has described values.
 fn options(shown: &[&Shown<'_>]) -> String {
     if shown.is_empty() {
         return String::new();
@@ -203,7 +203,7 @@ fn details(part: &Part) -> String {
     }
 }
 
-/// A table of Markdown. Empty cells hold a dash.
+/// A Markdown table. Empty cells contain a dash.
 struct Table(String);
 
 impl Table {

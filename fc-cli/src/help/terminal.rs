@@ -1,4 +1,4 @@
-//! Help as the terminal and the manual pages show it.
+//! Help in the form for the terminal and the manual pages.
 
 use std::fmt::Write as _;
 
@@ -11,22 +11,22 @@ use super::{Help, Part, Shown, arguments, default_label, global};
 use crate::args::STYLES;
 use crate::lang::{both, said};
 
-/// Lines are not longer, and as long as this where there is no terminal.
+/// The maximum length of a line. It is also the length without a terminal.
 const WIDEST: usize = 100;
 
-/// Columns before a term, and between it and its text.
+/// The columns before a term, and between a term and its text.
 const GAP: usize = 2;
 
-/// A term with more columns has its text on the next line.
+/// The maximum length of a term with its text on the same line.
 const LONGEST_TERM: usize = 36;
 
-/// A text with fewer columns begins on a line of its own.
+/// The minimum width of a text. A narrower text starts on a new line.
 const NARROWEST: usize = 30;
 
-/// Columns before such a text.
+/// The columns before a text on a new line.
 const INDENT: usize = 8;
 
-/// Columns that help may fill.
+/// Returns the number of columns for help.
 pub fn width() -> usize {
     let columns = terminal_size().map(|(Width(columns), _)| usize::from(columns));
     let columns = columns.or_else(|| std::env::var("COLUMNS").ok()?.parse().ok());
@@ -34,7 +34,7 @@ pub fn width() -> usize {
     columns.unwrap_or(WIDEST).min(WIDEST)
 }
 
-/// Summary, usage and arguments, as a template for clap. Details follow it in `--help`.
+/// Returns the summary, the usage and the arguments as a template for clap. The details follow in `--help`.
 pub fn body(command: &Command, summary: &str, usage: &str, width: usize) -> String {
     let title = heading(both("用法：", "Usage: "));
     let mut text = format!("{summary}\n\n{title}{}\n", literal(usage));
@@ -62,7 +62,7 @@ pub fn body(command: &Command, summary: &str, usage: &str, width: usize) -> Stri
     text.trim_end().to_owned() + "{after-help}"
 }
 
-/// An argument on one line.
+/// Returns an argument as a term and its text.
 fn row(shown: &Shown<'_>) -> (String, String) {
     let mut text = shown.text.clone();
     if let Some(default) = &shown.default {
@@ -76,10 +76,10 @@ fn row(shown: &Shown<'_>) -> (String, String) {
     (shown.term.clone(), text)
 }
 
-/// Values of arguments, details, exit status and examples.
+/// Returns the values of arguments, the details, the exit status and the examples.
 pub fn details(command: &Command, help: &Help, width: usize) -> String {
     let (own, shared) = arguments(command);
-    // The values of global options are on their lines; only the program's own help has room for more.
+    // The values of global options are on their lines. Only the program's own help has room for more.
     let shared = shared.iter().filter(|_| command.get_version().is_some());
     let described = own.iter().chain(shared).filter_map(Shown::described_values);
     let mut parts = Vec::new();
@@ -91,13 +91,13 @@ pub fn details(command: &Command, help: &Help, width: usize) -> String {
     parts.concat().trim_matches('\n').to_owned()
 }
 
-/// The details without colors, and with each paragraph on one line.
+/// Returns the details without colors and with each paragraph on one line.
 pub fn plain(help: &Help) -> String {
     let text = sections(help, usize::MAX).concat();
     anstream::adapter::strip_str(text.trim_matches('\n')).to_string()
 }
 
-/// Details, exit status and examples.
+/// Returns the details, the exit status and the examples.
 fn sections(help: &Help, width: usize) -> Vec<String> {
     let is_example = |part: &&Part| matches!(part, Part::Examples(_));
     let (examples, others): (Vec<_>, Vec<_>) = help.details.iter().partition(is_example);
@@ -108,7 +108,7 @@ fn sections(help: &Help, width: usize) -> Vec<String> {
     sections
 }
 
-/// Exit statuses with their meaning.
+/// Returns the exit statuses with their meaning.
 pub fn statuses(help: &Help) -> Vec<(String, String)> {
     let mut statuses = vec![("0".to_owned(), both("成功", "Success").to_owned())];
     if !help.fails.is_empty() {
@@ -145,7 +145,7 @@ fn section(title: &str, lines: &str) -> String {
     format!("\n{}\n{lines}", heading(&title))
 }
 
-/// Terms in one column, their texts in another.
+/// Returns terms in one column and their texts in another.
 fn table(rows: &[(String, String)], width: usize) -> String {
     let terms = rows.iter().filter(|(_, text)| !text.is_empty());
     let terms = terms.map(|(term, _)| term.width());

@@ -10,12 +10,12 @@ use super::dressed;
 use crate::lang::{both, said};
 use crate::print;
 
-/// Shows the help that was asked for, or the error in the command line.
+/// Shows the requested help, or the error in the command line.
 pub fn told(error: Error) -> ExitCode {
-    // The command line with texts takes longer to build, and only help and errors need it.
+    // Building the command line with texts takes longer, and only help and errors need it.
     let error = dressed().try_get_matches().err().unwrap_or(error);
     let error = help_of_command(&error).unwrap_or(error);
-    // If the stream is closed, the exit status has to do.
+    // If the stream is closed, the exit status is the only signal.
     let _ = match described(&error) {
         Some(text) => print::message(&text),
         None => error.print(),
@@ -23,7 +23,7 @@ pub fn told(error: Error) -> ExitCode {
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
-/// The help that `help COMMAND --lang zh` asks for: clap has no options behind `help`.
+/// Returns the help for `help COMMAND --lang zh`. Clap accepts no options after `help`.
 fn help_of_command(error: &Error) -> Option<Error> {
     let is_option = word(error, ContextKind::InvalidSubcommand)?.starts_with('-');
     let mut words: Vec<_> = std::env::args_os().collect();
@@ -34,7 +34,7 @@ fn help_of_command(error: &Error) -> Option<Error> {
     (error.kind() == ErrorKind::DisplayHelp).then_some(error)
 }
 
-/// The whole text of a usage error; `None` for help, the version and errors that are not known here.
+/// Returns the text of a usage error. Returns `None` for help, the version and unknown errors.
 fn described(error: &Error) -> Option<String> {
     let message = message(error)?;
     let line = said!("错误：{message}\n", "error: {message}\n");
@@ -173,7 +173,7 @@ fn conflict(error: &Error) -> Option<String> {
     ))
 }
 
-/// What the user may have meant.
+/// Returns suggestions for the user.
 fn tips(error: &Error) -> Vec<String> {
     let kinds = [
         ContextKind::SuggestedSubcommand,
@@ -182,7 +182,7 @@ fn tips(error: &Error) -> Vec<String> {
     ];
     let near = kinds.into_iter().map(|kind| words(error, kind));
     let near = near.filter(|names| !names.is_empty()).map(|mut names| {
-        // Clap has the likeliest one last.
+        // Clap lists the best suggestion last.
         names.reverse();
         let names = listed(&names);
         said!("是否想写 {names}？", "did you mean {names}?")
@@ -192,7 +192,7 @@ fn tips(error: &Error) -> Vec<String> {
         .collect()
 }
 
-/// A tip that clap has only as a sentence, with its words between quotes.
+/// Converts a tip for which clap has only a sentence with its words between quotes.
 fn in_backticks(tip: &str) -> String {
     let quoted: Vec<&str> = tip.split('\'').skip(1).step_by(2).collect();
     match quoted.as_slice() {

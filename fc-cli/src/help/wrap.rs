@@ -1,15 +1,15 @@
-//! Line breaks in texts of both languages.
+//! Wraps texts of both languages.
 
 use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
 
-/// No line begins with one of these.
+/// The characters that cannot start a line.
 const CLOSING: &str = "，。、；：？！）》」』”’…,.;:?!)]}";
 
-/// No line ends with one of these.
+/// The characters that cannot end a line.
 const OPENING: &str = "（《「『“‘([{";
 
-/// Breaks a text into lines of up to `width` columns: at spaces, and between Chinese characters. Code between backticks
-/// stays on one line. A word that is longer gets a line to itself.
+/// Breaks a text into lines of up to `width` columns, at spaces and between Chinese characters. Code between backticks
+/// stays on one line. A longer word gets its own line.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
@@ -26,7 +26,7 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The parts that are not broken, each with whether a space comes before it.
+/// Returns the unbreakable parts, each with `true` if a space comes before it.
 fn words(text: &str) -> Vec<(bool, &str)> {
     let mut words = Vec::new();
     let (mut start, mut spaced) = (0, false);
@@ -49,7 +49,7 @@ fn words(text: &str) -> Vec<(bool, &str)> {
     words
 }
 
-/// Whether a line may end between two characters.
+/// Returns `true` if a line may end between two characters.
 fn breaks(before: char, now: char) -> bool {
     if before == ' ' || now == ' ' {
         return before == ' ' && now != ' ';

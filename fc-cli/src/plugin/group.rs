@@ -1,13 +1,13 @@
-//! A process with its children, which can be ended together.
+//! A process and its children, which can be ended together.
 
 use std::io;
 use std::process::{Child, Command};
 use std::sync::{Mutex, PoisonError};
 
-/// The group that runs.
+/// The running group.
 static RUNNING: Mutex<Option<u32>> = Mutex::new(None);
 
-/// Ends the group that runs.
+/// Ends the running group.
 pub fn end_running() {
     let running = *RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(leader) = running {
@@ -17,14 +17,15 @@ pub fn end_running() {
 
 /// A process with its children.
 pub struct Group {
-    /// Process ID of the first process.
+    /// The process id of the first process.
     leader: u32,
 }
 
 impl Group {
-    /// Starts a process as the first of a group.
+    /// Starts a process as the leader of a group.
     pub fn spawn(command: &mut Command) -> io::Result<(Child, Self)> {
-        // The terminal sends Ctrl-C to its own group only. The watch has set a handler that ends this one.
+        // The terminal sends Ctrl-C only to this program's group, so this handler ends the plugin's. With `--watch`,
+        // that handler does it.
         let _ = ctrlc::try_set_handler(|| {
             end_running();
             std::process::exit(INTERRUPTED);
@@ -37,7 +38,7 @@ impl Group {
         Ok((child, Self { leader }))
     }
 
-    /// Ends all of its processes.
+    /// Ends all processes of the group.
     pub fn end(&self) {
         kill(self.leader);
     }
@@ -49,7 +50,7 @@ impl Drop for Group {
     }
 }
 
-/// Exit status of a program that Ctrl-C ends.
+/// The exit status of a program that Ctrl-C ends.
 const INTERRUPTED: i32 = 130;
 
 #[cfg(unix)]
@@ -57,14 +58,14 @@ fn kill(leader: u32) {
     use nix::sys::signal::{Signal, killpg};
     use nix::unistd::Pid;
     if let Ok(leader) = i32::try_from(leader) {
-        // All of them may have ended meanwhile.
+        // The processes may have ended already.
         let _ = killpg(Pid::from_raw(leader), Signal::SIGKILL);
     }
 }
 
 #[cfg(not(unix))]
 fn kill(leader: u32) {
-    // All of them may have ended meanwhile.
+    // The processes may have ended already.
     let _ = Command::new("taskkill")
         .args(["/T", "/F", "/PID", &leader.to_string()])
         .stdout(std::process::Stdio::null())
