@@ -1,24 +1,24 @@
-//! For whom a thing is, on which machines and in which releases, in the words of a page.
+//! The limits of an item to audiences, machines and releases, as a page shows them.
 
 use fc_spec::model::Lang;
 use fc_spec::model::{Available, Declared, Model};
 use serde::Serialize;
 
-/// A limit, a sentence or a badge each.
+/// The limits as sentences or badges.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct AvailableView {
-    /// Names of the audiences, for the site's filter; empty for all.
+    /// The names of the audiences for the site's filter; empty for all audiences.
     names: String,
-    /// What they are called.
+    /// The titles of the audiences.
     audiences: Option<String>,
-    /// What the lines of machines are called.
+    /// The titles of the lines of machines.
     hardware: Option<String>,
     /// `ADP 3.8 and later`.
     releases: Vec<String>,
 }
 
 impl AvailableView {
-    /// `None` for what is for everyone.
+    /// Returns `None` for an item without limits.
     pub(super) fn of(model: &Model, available: Option<&Available>, lang: Lang) -> Option<Self> {
         let available = available?;
         let words = &model.availability;

@@ -1,4 +1,4 @@
-//! What the pages of both languages ask of the model, indexed once.
+//! Indexes the model for the pages of both languages.
 
 use super::links::{Anchor, Page};
 use super::tabs::{Tabs, TabsOf};
@@ -17,23 +17,23 @@ pub(crate) struct Book<'m> {
     pub(crate) model: &'m Model,
     pub(super) samples: Samples<'m>,
     pub(super) reflector: Reflector<'m>,
-    /// What shows an operation in each language, by its name.
+    /// The samples of operations in each language, by operation name.
     tabs: TabsOf,
     operations: HashMap<&'m str, &'m Operation>,
-    /// Answers by what they are about.
+    /// Answers by subject.
     answers: HashMap<&'m Subject, Vec<&'m Answer>>,
-    /// Types made for the bodies of an operation, by its name.
+    /// Types made for the bodies of an operation, by operation name.
     bodies: HashMap<&'m str, Vec<&'m TypeDef>>,
-    /// Where the page of its operation lists the fields of a type made for a body, by its name.
+    /// The place that lists the fields of a type made for a body, by type name.
     listed: HashMap<&'m str, (&'m Operation, Anchor)>,
-    /// Operations in whose bodies a shared type occurs, by the type's name.
+    /// Operations whose bodies contain a shared type, by type name.
     users: HashMap<&'m str, Vec<&'m Operation>>,
-    /// The words of the glossary, by [`Lang`].
+    /// The terms of the glossary, by [`Lang`].
     terms: [Terms<'m>; 2],
 }
 
 impl<'m> Book<'m> {
-    /// With what shows each operation in the languages of the packages, where the pages need it.
+    /// Indexes a model. `tabs` has the samples of operations.
     pub(crate) fn new(model: &'m Model, tabs: TabsOf) -> Self {
         let samples = Samples::new(model);
         let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
@@ -75,13 +75,13 @@ impl<'m> Book<'m> {
         }
     }
 
-    /// The words of the glossary in a language.
+    /// Returns the terms of the glossary in a language.
     pub(super) fn terms(&self, lang: Lang) -> &Terms<'m> {
         let [zh, en] = &self.terms;
         lang.pick(zh, en)
     }
 
-    /// What shows an operation in each language; nothing where it has no code.
+    /// Returns the samples of an operation, or `None` if it has no code.
     pub(super) fn tabs(&self, operation: &Operation) -> Option<&Tabs> {
         self.tabs.get(operation.name.as_str())
     }
@@ -90,17 +90,17 @@ impl<'m> Book<'m> {
         self.operations.get(name).copied()
     }
 
-    /// The type of a name that the spec's author has written.
+    /// Returns a type that the spec declares.
     fn type_named(&self, name: &str) -> Option<&'m TypeDef> {
         self.model.types.named(name)
     }
 
-    /// Answers that stand exactly there.
+    /// Returns the answers to exactly this subject.
     pub(super) fn answers_to(&self, subject: &Subject) -> &[&'m Answer] {
         self.answers.get(subject).map_or(&[], Vec::as_slice)
     }
 
-    /// Answers that stand at a type or one of its fields.
+    /// Returns the answers to a type and to its fields.
     pub(super) fn answers_in_type(&self, ty: &'m TypeDef) -> Vec<&'m Answer> {
         let mut answers = self.answers_to(&Subject::Type(ty.name.clone())).to_vec();
         if let TypeShape::Struct(shape) = &ty.shape {
@@ -119,24 +119,24 @@ impl<'m> Book<'m> {
         self.answers_to(&subject)
     }
 
-    /// Types made for an operation's bodies, outer before inner.
+    /// Returns the types made for an operation's bodies, outer before inner.
     pub(super) fn body_types(&self, operation: &Operation) -> &[&'m TypeDef] {
         self.bodies
             .get(operation.name.as_str())
             .map_or(&[], Vec::as_slice)
     }
 
-    /// All types that occur in the bodies of an operation, outer before inner.
+    /// Returns all types in the bodies of an operation, outer before inner.
     pub(super) fn types_of(&self, operation: &Operation) -> Vec<&'m TypeDef> {
         types_of(self.model, operation)
     }
 
-    /// Operations in whose bodies a shared type occurs.
+    /// Returns the operations whose bodies contain a shared type.
     pub(super) fn users(&self, ty: &TypeDef) -> &[&'m Operation] {
         self.users.get(ty.name.as_str()).map_or(&[], Vec::as_slice)
     }
 
-    /// The page that shows a type, and where on it.
+    /// Returns the page and the anchor of a type.
     pub(super) fn place_of_type(&self, ty: &'m TypeDef) -> (Page<'m>, Anchor) {
         match self.listed.get(ty.name.as_str()) {
             Some((operation, anchor)) => (Page::Operation(operation), anchor.clone()),
@@ -144,7 +144,7 @@ impl<'m> Book<'m> {
         }
     }
 
-    /// The page that shows what an answer is about, and where on it.
+    /// Returns the page and the anchor of the subject of an answer.
     pub(super) fn place_of(&self, subject: &'m Subject) -> (Page<'m>, Anchor) {
         let of_type = |name: &str| match self.type_named(name) {
             Some(ty) => self.place_of_type(ty),
@@ -187,7 +187,7 @@ impl<'m> Book<'m> {
         }
     }
 
-    /// What an answer is about, in words; on the page of an operation without that one's title.
+    /// Returns the title of the subject of an answer. On the page of an operation it leaves out that operation's title.
     pub(crate) fn name_of(&self, subject: &Subject, lang: Lang, page: Page<'_>) -> String {
         let title = |page: Page<'_>| page.title(lang).to_owned();
         match subject {
@@ -255,7 +255,7 @@ fn users(model: &Model) -> HashMap<&str, Vec<&Operation>> {
     users
 }
 
-/// All types that occur in the bodies of an operation, outer before inner.
+/// Returns all types in the bodies of an operation, outer before inner.
 fn types_of<'m>(model: &'m Model, operation: &Operation) -> Vec<&'m TypeDef> {
     let mut found = Vec::new();
     for body in operation.bodies() {
@@ -264,7 +264,7 @@ fn types_of<'m>(model: &'m Model, operation: &Operation) -> Vec<&'m TypeDef> {
     found
 }
 
-/// Adds where the fields of a type made for a body are listed, and those of all such types in it.
+/// Adds the places that list a type made for a body, and all such types in it.
 fn list<'m>(
     model: &'m Model,
     operation: &'m Operation,
@@ -296,7 +296,7 @@ fn list<'m>(
     }
 }
 
-/// Adds all types that occur in a type, itself first, each once.
+/// Adds a type and all types in it, each once.
 fn add_types_in<'m>(model: &'m Model, named: &TypeRef, found: &mut Vec<&'m TypeDef>) {
     let ty = model.types.get(named);
     if found.iter().any(|known| known.name == ty.name) {

@@ -1,4 +1,4 @@
-//! Frames for human eyes: the ruler of the header, the dump and the table of a real frame.
+//! Frames as people read them: the ruler of the header, and the dump and the table of a real frame.
 
 use super::words;
 use crate::emit::json::hex_digits;
@@ -9,19 +9,18 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// Bytes in a line of a dump.
+/// The number of bytes in a line of a dump.
 const PER_LINE: usize = 16;
 
-/// A real frame.
 #[derive(Debug, Serialize)]
 pub(super) struct FrameView {
-    /// Lines of offset, bytes and field name, or of offset, bytes and ASCII.
+    /// Lines of offset, bytes and field name for the header, and of offset, bytes and ASCII for the data.
     dump: String,
     parts: Vec<PartView>,
     length: usize,
 }
 
-/// One header field of a real frame, or its data.
+/// A header field of a real frame, or its data.
 #[derive(Debug, Serialize)]
 struct PartView {
     /// `0–1`.
@@ -29,12 +28,12 @@ struct PartView {
     /// Hexadecimal; empty for data.
     bytes: String,
     name: String,
-    /// What the value is, read as the field's type.
+    /// The value, read as the type of the field.
     value: Option<String>,
     text: String,
 }
 
-/// A frame as the pages show it; `None` of one that the limits of the spec do not allow.
+/// Returns the view of a frame, or `None` if the limits of the spec do not allow the frame.
 pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) -> Option<FrameView> {
     let layout = &reflector.model().frame;
     let frame = reflector.frame(bytes).ok()?;
@@ -83,7 +82,7 @@ pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) ->
     })
 }
 
-/// A ruler of the header: every byte under its offset, every field in brackets.
+/// Returns a ruler of the header. Every byte is under its offset, and every field is in brackets.
 pub(super) fn ruler(layout: &Layout) -> String {
     let header = layout.header_len();
     let mut cells = String::new();
@@ -108,7 +107,7 @@ pub(super) fn ruler(layout: &Layout) -> String {
     out
 }
 
-/// The letter that stands for a header field in the ruler.
+/// Returns the letter of a header field in the ruler.
 pub(super) fn letter(index: usize) -> String {
     let letters = 'A'..='Z';
     match letters.clone().nth(index) {
@@ -120,7 +119,7 @@ pub(super) fn letter(index: usize) -> String {
     }
 }
 
-/// Two hexadecimal digits a byte.
+/// Returns bytes as pairs of hexadecimal digits.
 pub(super) fn spaced(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len() * 3);
     for (index, byte) in bytes.iter().enumerate() {
@@ -159,7 +158,7 @@ fn ascii(bytes: &[u8]) -> String {
     format!("|{text}|")
 }
 
-/// What a header field says in this frame.
+/// Returns the meaning of a header field in this frame.
 fn value(
     layout: &Layout,
     header: &HeaderValue<'_>,

@@ -1,10 +1,9 @@
-//! JSON with a comment on every key: what it means, beside its value.
+//! JSON with a comment that explains each key.
 
 use super::rows::Row;
 use fc_spec::model::Value;
 
-/// The value, indented, with the meaning of each key behind its first occurrence. The comments are
-/// for readers alone; the wire carries none.
+/// Returns the value, indented, with the meaning of each key after its first occurrence. Messages have no comments.
 pub(super) fn commented(value: &Value, rows: &[Row]) -> String {
     let mut lines = Lines {
         out: String::new(),
@@ -18,12 +17,12 @@ pub(super) fn commented(value: &Value, rows: &[Row]) -> String {
 struct Lines<'r> {
     out: String,
     rows: &'r [Row],
-    /// Paths that have had their comment.
+    /// The paths that already have a comment.
     told: Vec<String>,
 }
 
 impl Lines<'_> {
-    /// `head` stands before the value on its line, `tail` behind its end.
+    /// Writes a value. `head` precedes it on its line, and `tail` follows its end.
     fn value(&mut self, value: &Value, path: &str, depth: usize, head: &str, tail: &str) {
         match value {
             Value::Object(entries) if !entries.is_empty() => {
@@ -38,7 +37,7 @@ impl Lines<'_> {
                 }
                 self.line(depth, &["}", tail], "");
             }
-            // Arrays of numbers and strings stay on their line.
+            // Arrays of numbers and strings are on one line.
             Value::Array(items) if items.iter().any(is_nested) => {
                 self.line(depth, &[head, "["], path);
                 for (index, item) in items.iter().enumerate() {
@@ -80,7 +79,7 @@ fn is_nested(value: &Value) -> bool {
     matches!(value, Value::Object(_) | Value::Array(_))
 }
 
-/// A sentence of Markdown as plain text on one line: links by their words, code without its marks.
+/// Returns a sentence of Markdown as plain text on one line: links as their labels, code without backticks.
 fn plain(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     let mut rest = source;

@@ -1,15 +1,15 @@
-//! Under which values of the fields beside it a field is there, as rows show it.
+//! Conditions of fields: the values of other fields that decide whether a field is present.
 
 use super::rows::{Place, Rows, scalar};
 use fc_spec::model::{Asked, Condition, Field, Scalar, StructType, TypeShape};
 use serde::Serialize;
 
-/// A condition: fields and values with links to where they are explained.
+/// A condition: fields and values with links to their descriptions.
 #[derive(Debug, Serialize)]
 pub(super) struct ConditionView {
-    /// Whether it is there where what is asked does not hold.
+    /// `true` if the field is present when the condition does not hold.
     is_unless: bool,
-    /// Whether it says when the field is there, and not when it is valid.
+    /// `true` if the condition decides the presence of the field, and not its validity.
     is_presence: bool,
     asked: Vec<AskedView>,
 }
@@ -25,7 +25,7 @@ struct AskedView {
 struct ValueView {
     /// JSON.
     wire: String,
-    /// Of a value of an enum: its name, and where the enum is shown.
+    /// The name of an enum value, and the place of the enum.
     known: Option<KnownValue>,
 }
 
@@ -36,7 +36,7 @@ struct KnownValue {
 }
 
 impl<'m> Rows<'_, 'm> {
-    /// The condition of a field of a struct that is listed at `place`.
+    /// Returns the condition of a field of the struct that is listed at `place`.
     pub(super) fn condition(
         &self,
         shape: &'m StructType,

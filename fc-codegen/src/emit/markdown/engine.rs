@@ -1,8 +1,8 @@
 //! The template engine, set up for Markdown.
 //!
-//! `t(zh, en, …)` in a template is a fixed phrase: both languages stand side by side, `{0}`, `{1}`
-//! are the further arguments. What is printed without a filter is escaped for a table cell, the
-//! strictest place, and is not taken for a sentence of the spec. Printing nothing, a list or an object is a fault of the template.
+//! `t(zh, en, …)` in a template is a fixed phrase in both languages. `{0}` and `{1}` are its further arguments. Output
+//! without a filter is escaped for a table cell, the strictest place, and does not count as a sentence of the spec.
+//! Printing nothing, a list or an object is an error of the template.
 
 use super::escape::{self, Place};
 use super::terms::marked;
@@ -37,7 +37,7 @@ const TEMPLATES: &[(&str, &str)] = templates! {
     "errors.md.j2"
 };
 
-/// Filters for sentences of the spec, which are marked.
+/// Filters for sentences of the spec. They mark their output.
 const SENTENCES: [(&str, Place<'_>); 4] = [
     ("text", Place::Line),
     ("cell", Place::Cell),
@@ -55,14 +55,13 @@ const NAMES: [(&str, Place<'_>); 6] = [
     ("target", Place::Target),
 ];
 
-/// Renders pages.
 pub(super) struct Engine {
     environment: Environment<'static>,
 }
 
 impl Engine {
-    /// Sets up what is the same in both languages. Syntax and escaping come before the templates: they are fixed at
-    /// loading.
+    /// Sets up the parts that both languages share. Syntax and escaping come before the templates, because loading a
+    /// template fixes them.
     pub(super) fn new() -> Result<Self, Error> {
         let mut environment = Environment::new();
         let mut syntax = SyntaxConfig::builder();
@@ -82,7 +81,7 @@ impl Engine {
         for (name, place) in NAMES {
             environment.add_filter(name, move |source: &str| safe(escape::write(source, place)));
         }
-        // The one space that Markdown keeps at the beginning of a cell.
+        // Markdown keeps only this space at the start of a cell.
         environment.add_filter("indent", |depth: usize| safe("\u{2003}".repeat(depth)));
         environment.add_filter("fence", |source: &str, language: &str| {
             safe(escape::write(source, Place::Fence(language)))
@@ -93,7 +92,7 @@ impl Engine {
         Ok(Self { environment })
     }
 
-    /// One that renders pages of one language.
+    /// Returns an engine for pages of one language.
     pub(super) fn speaking(&self, lang: Lang) -> Self {
         let mut environment = self.environment.clone();
         environment.add_function("t", move |zh: &str, en: &str, arguments: Rest<Value>| {
@@ -102,13 +101,13 @@ impl Engine {
         Self { environment }
     }
 
-    /// A page as its template lays it out, not yet [`tidy`]: what it shows, the spec's sentences marked.
+    /// Renders a page, before [`tidy`]. The spec's sentences are marked.
     pub(super) fn render<V: Serialize>(&self, template: &str, view: &V) -> Result<String, Error> {
         self.environment.get_template(template)?.render(Serde(view))
     }
 }
 
-/// One blank line where a template leaves several, none at the end; code stays as it is.
+/// Reduces several blank lines to one and removes those at the end. Code stays unchanged.
 pub(super) fn tidy(page: &str) -> String {
     let mut out = String::with_capacity(page.len());
     let mut fence: Option<&str> = None;
@@ -141,7 +140,7 @@ fn safe(markdown: String) -> Value {
     Value::from_safe_string(markdown)
 }
 
-/// A phrase with its arguments in place. A brace in an argument names no other.
+/// Returns a phrase with its arguments. Braces in an argument are not replaced.
 fn phrase(pattern: &str, arguments: &[Value]) -> Result<Value, Error> {
     let mut out = String::with_capacity(pattern.len());
     let mut rest = pattern;
@@ -167,7 +166,7 @@ fn print(out: &mut Output<'_>, _: &mut State<'_, '_>, value: &Value) -> Result<(
     out.write_str(&spelled(value)?).map_err(Error::from)
 }
 
-/// As JSON and Rust spell it; strings escaped unless they are Markdown already.
+/// Returns a value in the spelling of JSON and Rust. Strings are escaped unless they are Markdown already.
 fn spelled(value: &Value) -> Result<Cow<'_, str>, Error> {
     match (value.kind(), value.as_str()) {
         (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.into()),

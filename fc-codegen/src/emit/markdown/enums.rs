@@ -1,4 +1,4 @@
-//! Enums, as the pages show them.
+//! Views of enums.
 
 use super::available::AvailableView;
 use super::rows::{Rows, scalar};
@@ -6,7 +6,6 @@ use super::states::StateDiagram;
 use fc_spec::model::{EnumType, Operation, StateOrder, TypeDef, TypeShape};
 use serde::Serialize;
 
-/// An enum, as the pages show it.
 #[derive(Debug, Serialize)]
 pub(super) struct EnumView {
     pub(super) name: String,
@@ -14,7 +13,7 @@ pub(super) struct EnumView {
     pub(super) href: String,
     pub(super) repr: &'static str,
     pub(super) closed: bool,
-    /// `normal`, `complete`; of values that are no states there is none.
+    /// `normal` or `complete`; `None` if the values are not states.
     order: Option<&'static str>,
     states: StateDiagram,
     pub(super) values: Vec<EnumValueView>,
@@ -33,7 +32,7 @@ pub(super) struct EnumValueView {
 }
 
 impl<'m> Rows<'_, 'm> {
-    /// The enums that occur in the bodies of an operation, each once.
+    /// Returns the enums in the bodies of an operation, each once.
     pub(super) fn enums(&self, operation: &Operation) -> Vec<EnumView> {
         let types = self.book.types_of(operation).into_iter();
         let enums = types.filter_map(|ty| match &ty.shape {
@@ -43,7 +42,6 @@ impl<'m> Rows<'_, 'm> {
         enums.collect()
     }
 
-    /// An enum.
     pub(super) fn enum_view(&self, ty: &'m TypeDef, shape: &EnumType) -> EnumView {
         let values = shape.values.iter().map(|value| EnumValueView {
             wire: scalar(&value.wire),

@@ -1,9 +1,9 @@
-//! From the spec's texts to Markdown that is safe in a table, in `VitePress` and on its own.
+//! Escapes texts of the spec for Markdown in tables, in `VitePress` and elsewhere.
 //!
-//! The spec's texts are Markdown themselves, so code spans, emphasis and links in them stay. They cannot leave their
-//! place: `<` would open a Vue component, two braces a Vue expression, one brace the attributes of `VitePress`'s
-//! Markdown, `|` and a line break the next cell. `VitePress` also obeys `<!--@include: …-->` in front matter and code.
-//! Characters that do not show are spelled as `\u202e`.
+//! The texts are Markdown, so their code spans, emphasis and links stay. They cannot affect other parts of a page. `<`
+//! would open a Vue component, two braces a Vue expression, and one brace the attributes of `VitePress`'s Markdown. `|`
+//! and a line break would end the table cell. `VitePress` also obeys `<!--@include: …-->` in front matter and code.
+//! Invisible characters are written like `\u202e`.
 
 use fc_spec::model::{has_unprintable, is_hidden};
 use std::borrow::Cow;
@@ -16,11 +16,11 @@ pub(super) enum Place<'a> {
     Line,
     /// A table cell.
     Cell,
-    /// The words of a link, also in a table.
+    /// The label of a link, also in a table.
     Label,
-    /// Paragraphs and lists; fenced code in them stays.
+    /// Paragraphs and lists. Fenced code in them is kept.
     Prose,
-    /// A code span, outside of tables. Empty for an empty text: Markdown has no empty code span.
+    /// A code span outside of tables. An empty text gives nothing, because Markdown has no empty code span.
     Code,
     /// A code span in a table cell.
     CodeCell,
@@ -38,7 +38,7 @@ pub(super) enum Place<'a> {
     Data,
 }
 
-/// A text as the place spells it. Every text of a page goes through here.
+/// Returns a text in the spelling of the place. Every text of a page passes through here.
 #[must_use]
 pub(super) fn write(source: &str, place: Place<'_>) -> String {
     let source = &*visible(source);
@@ -58,7 +58,7 @@ pub(super) fn write(source: &str, place: Place<'_>) -> String {
     }
 }
 
-/// A text with every character that does not show, or turns the direction of others, spelled as JSON spells it.
+/// Returns a text in which invisible characters and direction marks are written as in JSON.
 fn visible(source: &str) -> Cow<'_, str> {
     if !has_unprintable(source) {
         return source.into();
@@ -91,7 +91,7 @@ fn cell(source: &str) -> String {
     out
 }
 
-/// Brackets that belong to no link would end the words of this one.
+/// Escapes brackets that belong to no link, because they would end this label.
 fn label(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     for piece in pieces(&cell(source)) {
@@ -112,7 +112,7 @@ fn label(source: &str) -> String {
     out
 }
 
-/// A bar would end the cell.
+/// Escapes bars, because they would end the cell.
 fn bars_escaped(markdown: String) -> String {
     if markdown.contains('|') {
         markdown.replace('|', "\\|")
@@ -149,7 +149,7 @@ fn prose(source: &str) -> String {
         }
     }
     out.push_str(&paragraphs(&paragraph));
-    // A fence that its author forgot to close would swallow the rest of the page.
+    // A fence without an end would continue to the end of the page.
     if let Some(open) = open_fence {
         fenced.push_str(open);
         out.push_str(&block(&fenced));
@@ -158,7 +158,7 @@ fn prose(source: &str) -> String {
     out
 }
 
-/// A fence that an author has written, or its code as HTML where `VitePress` would obey it.
+/// Returns a fence of the author. If `VitePress` would obey its code, returns HTML instead.
 fn block(fence: &str) -> String {
     if !is_obeyed(fence) {
         return fence.to_owned();
@@ -171,10 +171,10 @@ fn block(fence: &str) -> String {
     preformatted(code) + "\n"
 }
 
-/// Paragraphs and lists. No line of them begins another block, such as a heading or a container of `VitePress`.
+/// Returns paragraphs and lists. Their lines start no other block, such as a heading or a container of `VitePress`.
 fn paragraphs(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
-    // A code span ends with its paragraph, at the latest; one that goes on in the next line is text.
+    // A code span ends with its paragraph at the latest. A span that continues in the next line becomes text.
     for line in source.lines().map(inline) {
         let start = line.len() - line.trim_start().len();
         let (indent, text) = line.split_at(start);
@@ -192,7 +192,7 @@ fn paragraphs(source: &str) -> String {
     out
 }
 
-/// A line that begins no list, quotation, heading, fence or container.
+/// Returns a line that starts no list, quotation, heading, fence or container.
 fn unmarked_start(mut markdown: String) -> String {
     let first_word = markdown.split(' ').next().unwrap_or_default();
     let digits = first_word.trim_start_matches(|it: char| it.is_ascii_digit());
@@ -207,7 +207,7 @@ fn unmarked_start(mut markdown: String) -> String {
     } else if !first_word.is_empty() && (is_mark || begins) {
         markdown.insert(0, '\\');
     }
-    // Those at the end would close a heading.
+    // Number signs at the end would close a heading.
     let closed = markdown.trim_end_matches('#');
     if closed.len() < markdown.len() && closed.ends_with(' ') {
         let at = closed.len();
@@ -216,17 +216,17 @@ fn unmarked_start(mut markdown: String) -> String {
     markdown
 }
 
-/// Whether a line is nothing but a fence, as a closing one is.
+/// Returns `true` if a line consists only of a fence, as a closing one does.
 fn is_bare(fence: &str) -> bool {
     let mut characters = fence.trim_end().chars();
     let first = characters.next();
     characters.all(|character| Some(character) == first)
 }
 
-/// A code span.
+/// Returns a code span.
 ///
-/// Vue looks for its braces in code spans too, and `VitePress` for comments. Where such begins, one span ends and
-/// another begins, with a comment between them that does not show.
+/// Vue also interprets braces in code spans, and `VitePress` interprets comments. Where one begins, the span is split
+/// in two with an invisible comment between them.
 fn code(source: &str) -> String {
     let source = one_line(source);
     let mut out = String::with_capacity(source.len() + 2);
@@ -279,7 +279,7 @@ fn is_obeyed(source: &str) -> bool {
     comments.any(|comment| comment.trim_start().starts_with("@include"))
 }
 
-/// Code as HTML, which has another spelling for `<`.
+/// Returns code as HTML, where `<` has another spelling.
 fn preformatted(source: &str) -> String {
     format!("<pre v-pre><code>{}</code></pre>", html(source))
 }
@@ -289,7 +289,8 @@ fn html(source: &str) -> String {
     source.replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// JSON strings are YAML. `VitePress` writes them into a script, so that a tag in one would end that: it gets a wide `<`.
+/// Returns a JSON string, which is also YAML. `VitePress` writes it into a script, where a tag would end the script. So
+/// `<` becomes a wide character.
 fn front_matter(source: &str) -> String {
     let source = one_line(source);
     let mut out = String::with_capacity(source.len());
@@ -307,7 +308,7 @@ fn front_matter(source: &str) -> String {
     fc_spec::model::Value::String(out).to_string()
 }
 
-/// Paths and anchors of any letters; what would end the link is spelled in hexadecimal.
+/// Returns the target of a link. Characters that could end the link are escaped in hexadecimal.
 fn target(source: &str) -> String {
     let mut out = String::with_capacity(source.len());
     for character in source.chars() {
@@ -334,14 +335,13 @@ fn one_line(source: &str) -> String {
     out
 }
 
-/// A part of Markdown.
 enum Piece<'s> {
     /// A code span with its backticks.
     Code(&'s str),
     Text(&'s str),
 }
 
-/// The code spans of a text, and what is between them. An escaped backtick is text, and so is one that no other closes.
+/// Splits a text into code spans and the parts between them. An escaped or unclosed backtick is text.
 fn pieces(source: &str) -> Vec<Piece<'_>> {
     let mut pieces = Vec::new();
     let (mut from, mut at) = (0, 0);
@@ -366,7 +366,7 @@ fn pieces(source: &str) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// Escapes what is outside of code spans.
+/// Escapes the parts outside of code spans.
 fn inline(source: &str) -> String {
     if !has_any(source, b"{\\<&!`") {
         return source.to_owned();
@@ -381,7 +381,7 @@ fn inline(source: &str) -> String {
     out
 }
 
-/// Where the code span that `ticks` backticks opened ends, its closing backticks included.
+/// Returns the end of a code span that `ticks` backticks opened, after its closing backticks.
 pub(super) fn closing(inside: &str, ticks: usize) -> Option<usize> {
     let mut position = 0;
     loop {
@@ -398,14 +398,14 @@ pub(super) fn closing(inside: &str, ticks: usize) -> Option<usize> {
 
 /// Escapes a text without code spans.
 fn push_text(out: &mut String, source: &str) {
-    // The last character that a reader sees is a brace.
+    // `true` if the last visible character is a brace.
     let mut after_brace = false;
     let mut characters = source.chars().peekable();
     while let Some(character) = characters.next() {
         let next = characters.peek().copied();
         let is_brace = match (character, next) {
             ('{', _) => true,
-            // An escape of the author, which escapes once.
+            // An escape of the author.
             ('\\', Some('{')) => {
                 characters.next();
                 true
@@ -413,7 +413,7 @@ fn push_text(out: &mut String, source: &str) {
             _ => false,
         };
         if is_brace {
-            // The comment keeps Vue from seeing two braces; a reader of the page sees none.
+            // The comment prevents Vue from seeing two braces. Readers do not see it.
             out.push_str(if after_brace { "<!-- -->\\{" } else { "\\{" });
             after_brace = true;
             continue;
@@ -425,23 +425,23 @@ fn push_text(out: &mut String, source: &str) {
                 characters.next();
                 out.push_str("&lt;");
             }
-            // At an end it would escape the next character of the page.
+            // A backslash at the end would escape the next character of the page.
             ('\\', None | Some('\n')) => out.push_str("\\\\"),
             ('\\', Some(escaped)) if escaped.is_ascii_punctuation() => {
                 characters.next();
                 out.extend(['\\', escaped]);
             }
-            // An entity could spell braces, and a picture could take in any file.
+            // An entity could produce braces, and an image could include any file.
             ('&', Some(next)) if next == '#' || next.is_ascii_alphabetic() => out.push_str("&amp;"),
             ('!', Some('[')) => out.push_str("\\!"),
-            // It would end a code span of the page, or begin one.
+            // A backtick would start or end a code span of the page.
             ('`', _) => out.push_str("\\`"),
             (plain, _) => out.push(plain),
         }
     }
 }
 
-/// True if one of the ASCII marks occurs. Most text has none.
+/// Returns `true` if the text contains one of the ASCII marks. Most texts contain none.
 #[allow(
     clippy::needless_bitwise_bool,
     reason = "without branches it becomes vector instructions"
@@ -633,7 +633,7 @@ mod tests {
             assert_eq!(write(hostile, place), shown, "{place:?}");
         }
         assert_eq!(write(hostile, Place::Code), format!("`{shown}`"));
-        // YAML reads the spelling, and not the character.
+        // YAML decodes the spelling instead of the character.
         let spelled = shown.replace('\\', "\\\\");
         assert_eq!(write(hostile, Place::FrontMatter), format!("\"{spelled}\""));
     }

@@ -1,7 +1,7 @@
-//! The pages, where they lie, and links between them.
+//! The pages, their paths, and links between them.
 //!
-//! Anchors are `<a id="…"></a>` of our own: slugs of headings differ between renderers, and
-//! headings between languages.
+//! Anchors are explicit `<a id="…"></a>`. Slugs of headings differ between renderers, and headings differ between
+//! languages.
 
 use fc_spec::model::Lang;
 use fc_spec::model::{Kind, Location, Operation};
@@ -28,7 +28,7 @@ pub(crate) enum Page<'m> {
 }
 
 impl Page<'_> {
-    /// Pages beside those of the operations, in the order of the map.
+    /// The pages except those of operations, in the order of the overview.
     pub(super) const FIXED: [Page<'static>; 13] = [
         Page::Index,
         Page::Wire,
@@ -45,7 +45,7 @@ impl Page<'_> {
         Page::Errors,
     ];
 
-    /// Path below `reference/`.
+    /// Returns the path below `reference/`.
     pub(super) fn path(self) -> String {
         match self {
             Self::Index => "index.md".to_owned(),
@@ -72,7 +72,7 @@ impl Page<'_> {
         }
     }
 
-    /// Title, as other pages name it.
+    /// Returns the title that other pages use.
     pub(super) fn title(self, lang: Lang) -> &'static str {
         match self {
             Self::Index => lang.pick("协议总览", "Protocol overview"),
@@ -92,7 +92,7 @@ impl Page<'_> {
         }
     }
 
-    /// What it shows, for the overview.
+    /// Returns the description for the overview.
     pub(super) fn purpose(self, lang: Lang) -> &'static str {
         match self {
             Self::Index | Self::Operation(_) => "",
@@ -135,7 +135,7 @@ impl Page<'_> {
         }
     }
 
-    /// How to get from this page to `reference/`.
+    /// Returns the relative path from this page to `reference/`.
     fn up(self) -> &'static str {
         match self {
             Self::Operation(_) => "../",
@@ -143,7 +143,7 @@ impl Page<'_> {
         }
     }
 
-    /// Link to a place on another page, or on this one.
+    /// Returns a link to a place on this or another page.
     pub(super) fn link(self, (page, anchor): (Page<'_>, Anchor)) -> String {
         let (here, there) = (self.path(), page.path());
         if here == there && !anchor.0.is_empty() {
@@ -153,14 +153,15 @@ impl Page<'_> {
         format!("{}{there}{hash}{}", self.up(), anchor.0)
     }
 
-    /// Link to this page in the other language.
+    /// Returns a link to this page in the other language.
     pub(super) fn link_to_other(self, lang: Lang) -> String {
-        // `reference/` and `en/reference/` lie side by side but for `en/`.
+        // `reference/` and `en/reference/` differ only in `en/`.
         let reference = lang.pick("../en/reference/", "../../reference/");
         format!("{}{reference}{}", self.up(), self.path())
     }
 
-    /// Link to a place of the spec, by name: the site's page of the file has that anchor. The reference lies two directories below the root, English three.
+    /// Returns a link to a place of the spec by its name, which is the anchor on the site's page of the file. The
+    /// reference is two directories below the root, and three in English.
     pub(super) fn link_to_spec(self, location: &Location, lang: Lang) -> String {
         let to_root = lang.pick("../../", "../../../");
         format!("{}{to_root}{}#{}", self.up(), location.file, location.name)
@@ -172,7 +173,7 @@ impl Page<'_> {
 pub(super) struct Anchor(String);
 
 impl Anchor {
-    /// The top.
+    /// The top of the page.
     pub(super) fn none() -> Self {
         Self(String::new())
     }
@@ -182,12 +183,13 @@ impl Anchor {
         Self(name.to_owned())
     }
 
-    /// One of many: `type-Station`.
+    /// One of several similar places, such as `type-Station`.
     pub(super) fn of(kind: &str, name: &str) -> Self {
         Self(format!("{kind}-{name}"))
     }
 
-    /// A place within it: `request-data-name`. Keys may hold anything, ids and links may not.
+    /// A place within another one, such as `request-data-name`. Characters that ids and links cannot contain are
+    /// escaped.
     pub(super) fn step(&self, key: &str) -> Self {
         let mut id = format!("{}-", self.0);
         for character in key.chars() {
@@ -201,13 +203,13 @@ impl Anchor {
         Self(id)
     }
 
-    /// For the page that has it.
+    /// Returns the id for the page.
     pub(super) fn id(self) -> String {
         self.0
     }
 }
 
-/// A link of a page: what it says (Markdown) and where it leads.
+/// A link of a page: its label in Markdown and its target.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Link {
     pub(super) text: String,

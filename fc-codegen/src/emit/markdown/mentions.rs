@@ -1,23 +1,23 @@
-//! Names of operations in the spec's sentences become links to their pages.
+//! Turns names of operations in the spec's sentences into links to their pages.
 
 use super::book::Book;
 use super::links::{Anchor, Page};
 
-/// A sentence with links from every operation's name in it, bare or in a code span, but for the
-/// operation whose page it stands on. A sentence with links of its own stays as it is.
+/// Links every operation name in a sentence, bare or in a code span, except the operation of this page. A sentence that
+/// already has links stays unchanged.
 pub(super) fn linked(book: &Book<'_>, page: Page<'_>, source: &str) -> String {
     if source.contains("](") {
         return source.to_owned();
     }
     let link = |name: &str| {
-        // A name of one word may just be that word.
+        // A name of one word may be an ordinary word.
         let operation = name.contains('_').then(|| book.operation(name)).flatten()?;
         let here = matches!(page, Page::Operation(own) if own.name == operation.name);
         let href = page.link((Page::Operation(operation), Anchor::none()));
         (!here).then(|| format!("[`{name}`]({href})"))
     };
     let mut out = String::with_capacity(source.len());
-    // Odd parts stand between backticks.
+    // Odd parts are between backticks.
     let mut parts = source.split('`').peekable();
     let mut in_code = false;
     while let Some(part) = parts.next() {
@@ -46,7 +46,7 @@ fn words(text: &str, link: &dyn Fn(&str) -> Option<String>, out: &mut String) {
             .unwrap_or(from_word.len());
         let (word, after) = from_word.split_at(end);
         out.push_str(before);
-        // Part of a path or of a longer name.
+        // The word is part of a path or of a longer name.
         let joined = before.ends_with(['/', '.', '-']) || after.starts_with(['/', '-']);
         match link(word).filter(|_| !joined) {
             Some(link) => out.push_str(&link),

@@ -1,10 +1,10 @@
 //! The reference pages of the docs, in Chinese and English.
 //!
-//! A typed view per kind of page (`pages`) and a template that only lays it out (`templates`). Both
-//! languages share a template: a fixed phrase stands there in both, side by side, so that neither
-//! can be forgotten. The spec's own sentences are picked by language in the views.
+//! Each kind of page has a typed view (`pages`) and a template for its layout (`templates`). Both languages share a
+//! template, and each fixed phrase is in it in both languages, so that no translation is missing. The views choose the
+//! language of the spec's sentences.
 //!
-//! Pages are plain Markdown with explicit anchors, and render in `VitePress` as they stand.
+//! Pages are plain Markdown with explicit anchors. `VitePress` renders them unchanged.
 
 mod available;
 mod book;
@@ -38,12 +38,12 @@ use fc_spec::model::Model;
 use pages::Desk;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
-/// Every page, Chinese first, and what the site's sidebar lists.
+/// Returns every page, Chinese first, and the contents of the site's sidebar.
 ///
 /// # Panics
 ///
-/// If a template is wrong. Templates are source code: none of them depends on what the spec says
-/// beyond the types of the views, and tests render each of them.
+/// If a template is invalid. Templates are source code and depend only on the types of the views. Tests render each of
+/// them.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let press = Press::new(model, targets);
@@ -57,8 +57,8 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     languages.chain([press.navigation()]).collect()
 }
 
-/// Hands the artifacts of [`emit`] over one after the other, the pages of operations first, as long as they are wanted: for whoever
-/// looks for a difference. Whether all were.
+/// Passes the artifacts of [`emit`] to `wanted` one by one until it returns `false`, the pages of operations first. The
+/// search for a difference uses it. Returns `true` if all were passed.
 ///
 /// # Panics
 ///
@@ -72,11 +72,11 @@ pub fn emit_while(model: &Model, targets: &Targets, wanted: impl FnMut(Artifact)
         let languages = press.languages.iter();
         languages.map(move |(lang, engine)| press.page(*lang, engine, page))
     });
-    // What is not wanted any more is not made.
+    // Pages after the last wanted one are not rendered.
     in_all.chain([press.navigation()]).all(wanted)
 }
 
-/// What pages are made with.
+/// The input of all pages.
 struct Press<'m> {
     book: Book<'m>,
     targets: &'m Targets,

@@ -1,27 +1,27 @@
-//! In which coordinate system something is given, and where something is kept.
+//! Coordinate systems and stores of types, fields and operations.
 
 use super::links::{Anchor, Link, Page};
 use super::rows::Rows;
 use serde::Serialize;
 
-/// Where something is kept.
+/// The store of a value.
 #[derive(Debug, Serialize)]
 pub(super) struct Kept {
     #[serde(skip)]
     store: String,
     link: Link,
-    /// Whether it is still there after a restart; `None` where nothing is known.
+    /// `true` if the value survives a restart; `None` if this is unknown.
     survives_restart: Option<bool>,
 }
 
 impl Kept {
-    /// Name of the store.
+    /// Returns the name of the store.
     pub(super) fn store(&self) -> &str {
         &self.store
     }
 }
 
-/// In which coordinate system something is given.
+/// The coordinate system of a value.
 #[derive(Debug, Serialize)]
 pub(super) struct Given {
     #[serde(skip)]
@@ -30,14 +30,14 @@ pub(super) struct Given {
 }
 
 impl Given {
-    /// Name of the coordinate system.
+    /// Returns the name of the coordinate system.
     pub(super) fn system(&self) -> &str {
         &self.system
     }
 }
 
 impl Rows<'_, '_> {
-    /// Where something is kept, by the name of the store.
+    /// Returns the view of a store, by its name.
     pub(super) fn kept(&self, name: &str) -> Kept {
         let store = self.book.model.store(name);
         let title = store.map_or(name, |store| self.lang.text(&store.title));
@@ -51,7 +51,7 @@ impl Rows<'_, '_> {
         }
     }
 
-    /// In what something is given, by the name of the coordinate system.
+    /// Returns the view of a coordinate system, by its name.
     pub(super) fn given(&self, name: &str) -> Given {
         let system = self.book.model.coordinate_system(name);
         let title = system.map_or(name, |system| self.lang.text(&system.title));

@@ -1,4 +1,4 @@
-//! Bodies as rows of a table: every field on its own line, named by its path.
+//! Bodies as rows of a table. Every field has its own row, named by its path.
 
 use super::available::AvailableView;
 use super::book::Book;
@@ -15,58 +15,58 @@ use fc_spec::model::{
 use serde::Serialize;
 use std::collections::HashSet;
 
-/// A field of a body, or a form of a one-of.
+/// A field of a body, or a variant of a one-of.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
-    /// Where the comments of an example look for it; pages show the nesting instead.
+    /// The path for the comments of an example. Pages show the nesting instead.
     #[serde(skip)]
     path: String,
     anchor: String,
-    /// How many fields and forms it lies in.
+    /// The number of fields and variants around it.
     depth: usize,
-    /// Its key; of a form, the form's name.
+    /// The key, or the name of a variant.
     name: String,
     ty: TypeCell,
-    /// `required`, `optional`, `conditional`; `choice` for a form of a one-of.
+    /// `required`, `optional`, `conditional`; `choice` for a variant of a one-of.
     presence: &'static str,
     unit: Option<String>,
     /// `≥ 0`, `0 … 100`.
     range: Option<String>,
     text: String,
     note: Option<String>,
-    /// JSON of a leaf's example.
+    /// The example of a leaf as JSON.
     example: Option<String>,
-    /// A field of which this is said has it.
+    /// The rare properties, if the field has any.
     more: Option<Box<More>>,
 }
 
-/// What is said of few fields: a row of most has nothing of it, and costs nothing for it.
+/// Properties that few fields have. A separate box keeps the other rows small.
 #[derive(Debug, Default, Serialize)]
 struct More {
     length: Option<Length>,
     pattern: Option<String>,
-    /// JSON of each value of its enum that it takes; none where it takes all.
+    /// The allowed values of its enum as JSON; empty if all are allowed.
     only: Vec<String>,
-    /// JSON of the default.
+    /// The default as JSON.
     default: Option<String>,
     /// Sentences of Markdown.
     quirks: Vec<&'static str>,
     also: Vec<String>,
     sensitive: bool,
     deprecated: Option<DeprecationNote>,
-    /// Name in code, where the wire's spelling does not give it.
+    /// The name in code, if it does not follow from the wire key.
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
     condition: Option<ConditionView>,
     available: Option<AvailableView>,
-    /// What its value is the id of.
+    /// The entity that its value identifies.
     refers: Option<Reference>,
     given: Option<Given>,
     kept: Option<Kept>,
 }
 
-/// An entity to which a field refers.
+/// The entity that a field refers to.
 #[derive(Debug, Serialize)]
 struct Reference {
     entity: String,
@@ -77,11 +77,11 @@ struct Reference {
 struct TypeCell {
     name: String,
     href: Option<String>,
-    /// In which form it is sent, if that is not its type's own.
+    /// The form in messages, if it differs from the type.
     sent: Option<&'static str>,
 }
 
-/// What `length` counts depends on the type.
+/// A length. The type decides what it counts.
 #[derive(Debug, Serialize)]
 struct Length {
     /// `15` or `1 … 32`.
@@ -90,7 +90,7 @@ struct Length {
     of: &'static str,
 }
 
-/// Why something is withdrawn, and what to use instead.
+/// The reason for a deprecation, and the replacement.
 #[derive(Debug, Serialize)]
 pub(super) struct DeprecationNote {
     since: Option<String>,
@@ -99,7 +99,7 @@ pub(super) struct DeprecationNote {
     replaced_by: Option<Link>,
 }
 
-/// Makes rows for one page.
+/// Builds the rows of a page.
 pub(super) struct Rows<'b, 'm> {
     pub(super) book: &'b Book<'m>,
     pub(super) lang: Lang,
@@ -107,7 +107,7 @@ pub(super) struct Rows<'b, 'm> {
 }
 
 impl<'m> Rows<'_, 'm> {
-    /// The envelope's keys.
+    /// Returns the keys of the envelope.
     pub(super) fn envelope(&self, direction: Direction) -> Vec<Row> {
         let body = Place::top(Anchor::named(direction.name()));
         let envelope = self.book.samples.envelope(direction).iter();
@@ -116,7 +116,7 @@ impl<'m> Rows<'_, 'm> {
             .collect()
     }
 
-    /// The envelope's keys, then the fields of a struct type and of all objects in it.
+    /// Returns the keys of the envelope, then the fields of a struct and of all objects in it.
     pub(super) fn message(&self, direction: Direction, ty: &TypeRef) -> Vec<Row> {
         let body = Place::top(Anchor::named(direction.name()));
         let mut rows = self.envelope(direction);
@@ -125,15 +125,15 @@ impl<'m> Rows<'_, 'm> {
         rows
     }
 
-    /// The fields of a struct type, or of each variant of a one-of, and of all objects in it. Their
-    /// anchors begin with that of the place where they are listed.
+    /// Returns the fields of a struct or of each variant of a one-of, and of all objects in it. Their anchors start
+    /// with `anchor`.
     pub(super) fn of_type(&self, ty: &'m TypeDef, anchor: Anchor) -> Vec<Row> {
         let mut rows = Vec::new();
         self.shape(ty, &Place::top(anchor), &mut Vec::new(), &mut rows);
         rows
     }
 
-    /// Why something is withdrawn.
+    /// Returns the view of a deprecation.
     pub(super) fn deprecation(&self, deprecated: &Deprecation) -> DeprecationNote {
         let replaced_by = deprecated.replaced_by.as_deref().map(|name| {
             let operation = self.book.operation(name);
@@ -257,7 +257,7 @@ impl<'m> Rows<'_, 'm> {
             code_name,
             conflicts,
             since: details.since.clone(),
-            // What it asks stands beside it in its struct.
+            // [`Rows::condition`] fills this in, because it needs the other fields of the struct.
             condition: None,
             available: self.available(details.available.as_ref()),
             refers: details.refers.as_deref().map(|name| self.reference(name)),
@@ -296,7 +296,7 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    /// Link to a conflict on the open-questions page.
+    /// Returns a link to a conflict on the page of open questions.
     pub(super) fn conflict(&self, id: &str) -> Link {
         let place = (Page::OpenQuestions, Anchor::named(id));
         Link {
@@ -324,7 +324,7 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    /// A sentence of the spec with links to the operations that it names.
+    /// Returns a sentence of the spec with links to the operations that it names.
     fn sentence(&self, text: &Text) -> String {
         linked(self.book, self.page, self.lang.text(text))
     }
@@ -346,33 +346,33 @@ impl<'m> Rows<'_, 'm> {
 }
 
 impl Row {
-    /// `data.stations[].x`.
+    /// Returns the path, such as `data.stations[].x`.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
 
-    /// Where its page has it.
+    /// Returns the anchor on its page.
     pub(super) fn anchor(&self) -> &str {
         &self.anchor
     }
 
-    /// Name of the entity of which it holds an id.
+    /// Returns the name of the entity that the field refers to.
     pub(super) fn entity(&self) -> Option<&str> {
         let refers = self.more.as_ref()?.refers.as_ref();
         refers.map(|refers| refers.entity.as_str())
     }
 
-    /// Name of the coordinate system in which it is given.
+    /// Returns the name of the coordinate system of the field.
     pub(super) fn system(&self) -> Option<&str> {
         self.more.as_ref()?.given.as_ref().map(Given::system)
     }
 
-    /// Name of the store in which it is kept.
+    /// Returns the name of the store of the field.
     pub(super) fn store(&self) -> Option<&str> {
         self.more.as_ref()?.kept.as_ref().map(Kept::store)
     }
 
-    /// What it means, in Markdown.
+    /// Returns the meaning, in Markdown.
     pub(super) fn text(&self) -> &str {
         &self.text
     }
@@ -395,13 +395,13 @@ impl Row {
     }
 }
 
-/// Where in a body a row stands.
+/// The place of a row in a body.
 #[derive(Clone)]
 pub(super) struct Place {
     path: String,
     anchor: Anchor,
     name: String,
-    /// How many fields and forms lead to it, itself among them.
+    /// The number of fields and variants that lead to it, including itself.
     depth: usize,
 }
 
@@ -415,13 +415,13 @@ impl Place {
         }
     }
 
-    /// That of a field of what stands here.
+    /// Returns the place of a field below this one.
     pub(super) fn field(&self, key: &str) -> Self {
         let dot = if self.path.is_empty() { "" } else { "." };
         self.step(format!("{}{dot}{key}", self.path), key)
     }
 
-    /// What links lead to.
+    /// Returns the anchor for links.
     pub(super) fn anchor(self) -> Anchor {
         self.anchor
     }
@@ -458,12 +458,12 @@ fn presence(optional: bool, conditional: bool) -> &'static str {
     }
 }
 
-/// A scalar of the spec as JSON.
+/// Returns a scalar of the spec as JSON.
 pub(super) fn scalar(scalar: &Scalar) -> String {
     Value::from(scalar).to_string()
 }
 
-/// Objects and arrays are better read in the message's example.
+/// Returns the example of a leaf. Objects and arrays are easier to read in the example of the message.
 fn leaf_example(field: &Field) -> Option<String> {
     match &field.example {
         Example::Given(Value::Object(_) | Value::Array(_)) | Example::Derived | Example::Absent => {
@@ -473,7 +473,7 @@ fn leaf_example(field: &Field) -> Option<String> {
     }
 }
 
-/// The name in code, unless one reads it off the wire key.
+/// Returns the name in code, unless it follows from the wire key.
 pub(super) fn odd_name(wire: &str, name: &str) -> Option<String> {
     fn letters(name: &str) -> impl Iterator<Item = char> {
         let letters = name.chars().filter(|character| *character != '_');

@@ -1,12 +1,12 @@
-//! The diagram of an enum whose values are the states of a process.
+//! The diagram of an enum whose values are states of a process.
 
 use fc_spec::model::EnumType;
 use serde::Serialize;
 
-/// Boxes and arrows; empty where nothing is said of how the values follow each other.
+/// Boxes and arrows. The diagram is empty if the spec defines no order of the values.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct StateDiagram {
-    /// Only those that have an arrow.
+    /// The states with an arrow.
     states: Vec<State>,
     changes: Vec<Change>,
 }
@@ -17,17 +17,17 @@ struct State {
     name: String,
 }
 
-/// An arrow between two ids.
 #[derive(Debug, Serialize)]
 struct Change {
     from: String,
     to: String,
 }
 
-/// Where a process comes from that begins, and goes to when it ends.
+/// The start and the end of a process in the diagram.
 const OUTSIDE: &str = "[*]";
 
-/// Of the state at this place among the values: a name may be a word of the diagram's language.
+/// Returns the id of the state with this index. Names are not used, because they may be keywords of the diagram's
+/// language.
 fn id(place: usize) -> String {
     format!("s{place}")
 }

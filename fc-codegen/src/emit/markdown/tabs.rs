@@ -1,4 +1,4 @@
-//! The samples of an operation's page: how it is called and answered in each language that the project has a package of.
+//! The code samples of an operation's page, in each language for which the project has a package.
 
 use crate::emit::stub::context::Context;
 use crate::emit::stub::samples::Shown;
@@ -20,24 +20,23 @@ const SHOWN: [(Product, &Shown); 5] = [
     (Product::Cpp, &cpp::samples::SHOWN),
 ];
 
-/// What shows each operation, by its name; one without a code is not there.
+/// Samples by operation name. Operations without a code have none.
 pub(crate) type TabsOf = HashMap<String, Tabs>;
 
-/// What shows an operation: a tab for each language.
+/// The samples of an operation, with a tab for each language.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Tabs {
-    /// What an app does.
+    /// The samples for an app.
     app: Vec<Tab>,
-    /// What a robot does.
+    /// The samples for a robot.
     robot: Vec<Tab>,
-    /// The files that have the same code, in the order of the languages.
+    /// The files that contain the same code, in the order of the languages.
     files: Vec<File>,
 }
 
-/// A sample in one language.
 #[derive(Clone, Debug, Serialize)]
 struct Tab {
-    /// What its fence says: the language, and behind it the name of the tab.
+    /// The info string of the fence: the language, then the name of the tab.
     info: String,
     code: String,
 }
@@ -45,20 +44,20 @@ struct Tab {
 /// A file with the samples of all operations.
 #[derive(Clone, Debug, Serialize)]
 struct File {
-    /// Its language, by name.
+    /// The name of the language.
     language: &'static str,
-    /// From the project's root.
+    /// The path, relative to the project's root.
     path: String,
 }
 
-/// The tabs of all operations of a model.
+/// Returns the samples of all operations of a model.
 pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
     let mut all = TabsOf::new();
     for (product, shown) in SHOWN {
         let Some(place) = targets.place(product) else {
             continue;
         };
-        // What a package's audience does not have, it does not show.
+        // The samples of a package leave out operations for other audiences.
         let Ok(model) = part(model, targets.audience(product)) else {
             continue;
         };

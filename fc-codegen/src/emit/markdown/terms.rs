@@ -1,7 +1,7 @@
-//! The words of the glossary in the spec's sentences: where they are, and links from them to what they mean.
+//! Finds the terms of the glossary in the spec's sentences and links them to their entries.
 //!
-//! Which use is the first on a page is known when the page is. Until then the spec's sentences stand between marks,
-//! apart from the phrases of the templates, which mean what they say in any protocol.
+//! The first use of a term is known only when the page is complete. Until then, marks surround the spec's sentences.
+//! Phrases of the templates are not marked, because they mean the same in any protocol.
 
 use super::escape;
 use super::links::{Anchor, Page};
@@ -10,9 +10,9 @@ use fc_spec::model::Term;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
-/// The words of the glossary in one language.
+/// The terms of the glossary in one language.
 pub(super) struct Terms<'m> {
-    /// With their terms, by the first character in lower case; longer words first.
+    /// Words and their terms, by the first character in lower case. Longer words come first.
     words: HashMap<char, Vec<(&'m str, &'m Term)>>,
 }
 
@@ -35,7 +35,7 @@ impl<'m> Terms<'m> {
         Self { words }
     }
 
-    /// The terms in a text of the spec, each once. Code and links in it do not count.
+    /// Returns the terms in a text of the spec, each once. Code and links do not count.
     pub(super) fn of(&self, text: &str) -> Vec<&'m Term> {
         let mut found: Vec<&Term> = Vec::new();
         self.rewritten(text, &mut true, &mut |term, _| {
@@ -47,7 +47,7 @@ impl<'m> Terms<'m> {
         found
     }
 
-    /// A text of the spec with a link from the first use of each term but for one.
+    /// Links the first use of each term in a text of the spec, except for the term `but`.
     pub(super) fn linked(&self, page: Page<'_>, text: &str, but: &Term) -> String {
         let mut known = HashSet::from([but.id.as_str()]);
         self.rewritten(text, &mut true, &mut |term, word| {
@@ -55,18 +55,18 @@ impl<'m> Terms<'m> {
         })
     }
 
-    /// A page with a link from the first use of each term, without marks.
+    /// Links the first use of each term on a page and removes the marks.
     ///
-    /// Headings, the heads of tables, code and existing links stay as they are. Where a page gathers what many files
-    /// say, each of its sections is as a page of its own: a reader comes to it by its anchor, and what is added in
-    /// one place must change no line elsewhere, or two branches that each add something could not be merged.
+    /// Headings, table heads, code and existing links stay unchanged. On a page that collects texts from many files,
+    /// each section counts as a page. Readers arrive at a section by its anchor. A new term in one section must not
+    /// change lines elsewhere, because branches that each add one could not be merged.
     pub(super) fn first_uses(&self, page: Page<'_>, contents: &str) -> String {
         let each_section = match page {
             _ if self.words.is_empty() => return contents.replace(MARKS, ""),
             Page::Wire | Page::Codes | Page::Results | Page::Operation(_) => false,
             Page::Index | Page::Types | Page::Tables => true,
-            // Registers, in which every line is from somewhere else or only links; the language, in which a cell is one of a table;
-            // and the glossary, which links its own.
+            // Most of these pages are lists whose lines come from other pages or are links. The page of the language
+            // consists of separate cells. The glossary has its own links.
             Page::Entities
             | Page::Places
             | Page::Changelog
@@ -97,7 +97,8 @@ impl<'m> Terms<'m> {
         out
     }
 
-    /// A text in which words of terms are replaced by what `replace` makes of them, if anything, where it is marked.
+    /// Replaces the words of terms in marked parts of a text. `replace` returns the replacement, or `None` to keep a
+    /// word.
     fn rewritten(
         &self,
         text: &str,
@@ -107,7 +108,7 @@ impl<'m> Terms<'m> {
         let mut out = String::with_capacity(text.len());
         let mut rest = text;
         loop {
-            // Most of a text is none of this.
+            // Most characters start none of these.
             let at = rest.find(|character: char| {
                 let begins_word = || self.words.contains_key(&character.to_ascii_lowercase());
                 MARKUP.contains(&character)
@@ -132,7 +133,7 @@ impl<'m> Terms<'m> {
             let (piece, behind) = rest
                 .split_at_checked(len.unwrap_or(first.len_utf8()))
                 .unwrap_or((rest, ""));
-            // A link would keep the asterisks beside it from opening or closing emphasis in Chinese.
+            // In Chinese, a link next to asterisks would break the emphasis.
             let is_emphasised = before == Some('*') || behind.starts_with('*');
             let replaced = word.filter(|_| !is_emphasised);
             match replaced.and_then(|(_, term)| replace(term, piece)) {
@@ -143,12 +144,12 @@ impl<'m> Terms<'m> {
         }
     }
 
-    /// The longest word with which a text begins: its length, and its term.
+    /// Returns the length and the term of the longest word at the start of a text.
     fn word(&self, before: Option<char>, text: &str) -> Option<(usize, &'m Term)> {
         let first = text.chars().next()?;
         let words = self.words.get(&first.to_ascii_lowercase())?;
         let found = words.iter().find(|(word, _)| {
-            // Case matters from the second letter on.
+            // Case matters after the first character.
             let rest = (text.get(first.len_utf8()..)).zip(word.get(first.len_utf8()..));
             let behind = rest.and_then(|(text, word)| text.strip_prefix(word));
             behind.is_some_and(|behind| is_whole(word, before, behind.chars().next()))
@@ -157,10 +158,10 @@ impl<'m> Terms<'m> {
     }
 }
 
-/// Around a sentence of the spec in a page that is being made. They are no characters of any text.
+/// The marks around a sentence of the spec. They are noncharacters of Unicode, so no text contains them.
 const MARKS: [char; 2] = ['\u{FDD0}', '\u{FDD1}'];
 
-/// Marks Markdown that is the spec's.
+/// Marks Markdown of the spec.
 pub(super) fn marked(markdown: &str) -> String {
     let [open, close] = MARKS;
     if markdown.is_empty() {
@@ -169,7 +170,7 @@ pub(super) fn marked(markdown: &str) -> String {
     format!("{open}{markdown}{close}")
 }
 
-/// Adds a text without its marks; `is_marked` is whether it begins, and then whether it ends, between two.
+/// Adds a text without its marks. `is_marked` is `true` inside marks, before and after the call.
 fn unmarked(text: &str, is_marked: &mut bool, out: &mut String) {
     for character in text.chars() {
         if MARKS.contains(&character) {
@@ -180,7 +181,7 @@ fn unmarked(text: &str, is_marked: &mut bool, out: &mut String) {
     }
 }
 
-/// Whether a word is not part of a longer one, of a name or of a path. Chinese is written without spaces.
+/// Returns `true` if a word is not part of a longer word, a name or a path. Chinese has no spaces between words.
 fn is_whole(word: &str, before: Option<char>, behind: Option<char>) -> bool {
     let is_latin = |character: char| character.is_ascii_alphanumeric() || character == '_';
     let goes_on = |character: char| is_latin(character) || matches!(character, '/' | '-');
@@ -194,10 +195,10 @@ fn link(page: Page<'_>, term: &Term, word: &str) -> String {
     format!("[{word}]({href})")
 }
 
-/// With what [`markup`] begins.
+/// The characters that start [`markup`].
 const MARKUP: [char; 5] = ['`', '[', '<', '\\', '&'];
 
-/// Length of the code span, link, tag, entity or escaped character with which a text begins.
+/// Returns the length of the code span, link, tag, entity or escaped character at the start of a text.
 fn markup(text: &str) -> Option<usize> {
     match text.chars().next()? {
         '`' => {
@@ -220,7 +221,7 @@ fn markup(text: &str) -> Option<usize> {
                 .then(|| Some(end + link.find(')')? + 1))?
         }
         '<' => {
-            // What these hold is a link, or a word in a frame.
+            // These elements contain a link, or a word with a border.
             let closing = ["a", "span"]
                 .into_iter()
                 .find(|name| {
@@ -241,12 +242,12 @@ fn markup(text: &str) -> Option<usize> {
     }
 }
 
-/// A part of a page, its line breaks included.
+/// A part of a page, with its line breaks.
 enum Block<'p> {
     Heading(&'p str),
-    /// Front matter, code, the head of a table, a comment.
+    /// Front matter, code, a table head or a comment.
     Kept(&'p str),
-    /// A paragraph, an item of a list or a row of a table.
+    /// A paragraph, a list item or a table row.
     Prose(&'p str),
 }
 
@@ -258,7 +259,7 @@ fn blocks(page: &str) -> Vec<Block<'_>> {
         .unwrap_or(("", page));
     let mut blocks = vec![Block::Kept(front)];
     let mut fence: Option<&str> = None;
-    // Where the paragraph begins that is being read, and where the line.
+    // The start of the current paragraph, and of the current line.
     let (mut from, mut at) = (0, 0);
     let mut lines = body.split_inclusive('\n').peekable();
     while let Some(line) = lines.next() {
@@ -299,7 +300,7 @@ fn is_closing(line: &str, fence: &str) -> bool {
     line.trim_end().trim_end_matches(MARKS) == fence
 }
 
-/// What begins and ends the front matter.
+/// The delimiter of the front matter.
 const FRONT: &str = "---\n";
 
 #[cfg(test)]
@@ -307,7 +308,6 @@ mod tests {
     use super::*;
     use fc_spec::model::{Aliases, Location, Text};
 
-    /// `zh`, `en` and the other forms of both.
     fn term(zh: &str, en: &str, also_zh: &[&str], also_en: &[&str]) -> Term {
         let text = |zh: &str, en: &str| Text {
             zh: zh.to_owned(),
@@ -399,7 +399,7 @@ mod tests {
         }
     }
 
-    /// Each `@` makes a link of the word before it; each `#` does, too, where every section has links of its own.
+    /// Each `@` makes a link of the word before it. Each `#` does too, if every section has its own links.
     #[test]
     fn headings_code_and_heads_of_tables_stay() {
         const FRONT_MATTER: &str = "---
@@ -436,11 +436,11 @@ dock
         let source = format!("{FRONT_MATTER}{}", marked(&body));
         let plain = format!("{FRONT_MATTER}{body}");
         assert_eq!(first_uses(Lang::En, Page::Wire, &source), expected("dock"));
-        // A section of its own has links of its own.
+        // In separate sections, each section has its own links.
         let again = expected("[dock](glossary.md#term-dock)");
         assert_eq!(first_uses(Lang::En, Page::Types, &source), again);
         assert_eq!(first_uses(Lang::En, Page::Changelog, &source), plain);
-        // What the spec does not say is left alone.
+        // Text outside the marks stays unchanged.
         assert_eq!(first_uses(Lang::En, Page::Wire, &plain), plain);
     }
 

@@ -1,4 +1,4 @@
-//! The model's enums as words of the pages.
+//! Words of the pages for the enums of the model.
 
 use fc_spec::model::Lang;
 use fc_spec::model::{
@@ -7,12 +7,12 @@ use fc_spec::model::{
     Severity, Side, Type, TypeRef, Value, WireForm,
 };
 
-/// What a thing of the model is called on a page.
+/// The word for a value of the model on a page.
 pub(crate) trait Word {
     fn word(&self, lang: Lang) -> &'static str;
 }
 
-/// Declares the words of an enum, Chinese first. One that is left out does not compile.
+/// Declares the words of an enum, Chinese first. A missing value does not compile.
 macro_rules! words {
     ($Set:ident: $($Word:ident = $zh:literal, $en:literal;)+) => {
         impl Word for $Set {
@@ -140,7 +140,7 @@ words! { Quirk:
     LenientBool = "接收时，`true`/`false`、`\"true\"`/`\"false\"`、`0`/`1` 都接受", "received as `true`/`false`, `\"true\"`/`\"false\"` or `0`/`1`";
 }
 
-/// How a field is sent, where its type does not say it.
+/// Returns a note about the form of a field in messages, if it differs from the type.
 pub(super) fn sent(form: WireForm, lang: Lang) -> Option<&'static str> {
     match form {
         WireForm::Plain => None,
@@ -152,7 +152,7 @@ pub(super) fn sent(form: WireForm, lang: Lang) -> Option<&'static str> {
     }
 }
 
-/// What a message of an operation is called: a report is acknowledged, a command answered.
+/// Returns the word for a message of an operation. A report is acknowledged, and a command gets a response.
 pub(super) fn side(kind: Kind, direction: Direction, lang: Lang) -> &'static str {
     match (kind, direction) {
         (Kind::Command, Direction::Request) => lang.pick("请求", "request"),
@@ -163,7 +163,7 @@ pub(super) fn side(kind: Kind, direction: Direction, lang: Lang) -> &'static str
     }
 }
 
-/// What the body of a message of an operation is called.
+/// Returns the word for the body of a message of an operation.
 pub(super) fn body(kind: Kind, direction: Direction, lang: Lang) -> &'static str {
     match (kind, direction) {
         (Kind::Command, Direction::Request) => lang.pick("请求正文", "request body"),
@@ -173,7 +173,7 @@ pub(super) fn body(kind: Kind, direction: Direction, lang: Lang) -> &'static str
     }
 }
 
-/// Who sends to whom, such as `app → robot`.
+/// Returns the sender and the receiver, such as `app → robot`.
 pub(super) fn direction(sender: Side, robot: &str, app: &str) -> String {
     match sender {
         Side::App => format!("{app} → {robot}"),
@@ -181,7 +181,7 @@ pub(super) fn direction(sender: Side, robot: &str, app: &str) -> String {
     }
 }
 
-/// A type as the spec spells it, but for types that `inline` knows another word for.
+/// Returns a type in the spelling of the spec. `inline` can replace the name of a type.
 pub(super) fn type_name(ty: &Type, inline: &dyn Fn(&TypeRef) -> Option<&'static str>) -> String {
     match ty {
         Type::Array(item) => format!("[{}]", type_name(item, inline)),
@@ -190,7 +190,7 @@ pub(super) fn type_name(ty: &Type, inline: &dyn Fn(&TypeRef) -> Option<&'static 
     }
 }
 
-/// Who has confirmed an answer, when, and what else is known of that.
+/// Returns a sentence with the person, the date and the details of a confirmation.
 pub(crate) fn confirmed(confirmation: &Confirmation, lang: Lang) -> String {
     let Confirmation {
         by,
@@ -211,7 +211,7 @@ pub(crate) fn confirmed(confirmation: &Confirmation, lang: Lang) -> String {
     word + &reference.unwrap_or_default() + &reply.unwrap_or_default()
 }
 
-/// What a number may be: `≥ 0`, `0 … 100`.
+/// Returns a range, such as `≥ 0` or `0 … 100`.
 pub(super) fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
     let number = |number: &Number| Value::Number(number.clone()).to_string();
     match (min, max) {

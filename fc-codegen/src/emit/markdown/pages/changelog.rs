@@ -1,4 +1,4 @@
-//! Everything that has a date, newest first.
+//! All dated entries, newest first.
 
 use super::shared::Desk;
 use crate::emit::markdown::book::Book;
@@ -7,11 +7,10 @@ use fc_spec::model::{Change, Deprecation, Operation, Subject, TypeShape};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ChangelogView {
     years: Vec<Year>,
-    /// Withdrawn at an unknown date.
+    /// Entries without a date. They are all deprecations.
     undated: Vec<Entry>,
 }
 
@@ -31,7 +30,7 @@ struct Day {
 struct Entry {
     /// `changed`, `added`, `deprecated`.
     what: &'static str,
-    /// `None` for the protocol as a whole.
+    /// The subject; `None` for the whole protocol.
     about: Option<Link>,
     text: Option<String>,
 }
@@ -91,7 +90,7 @@ impl<'m> Log<'_, 'm> {
         }
     }
 
-    /// What has been there from the beginning is no entry.
+    /// Adds an entry for a new item. Items from the start of the protocol get none.
     fn added(&mut self, since: Option<&String>, about: &Link, text: Option<String>) {
         if since.is_some() {
             let entry = Entry {
@@ -122,7 +121,7 @@ impl<'m> Log<'_, 'm> {
         self.deprecated(operation.deprecated.as_ref(), &link);
     }
 
-    /// Types, their fields and their values.
+    /// Adds the entries of types, their fields and their values.
     fn types(&mut self, book: &Book<'m>) {
         let lang = self.desk.lang;
         for ty in &book.model.types {
@@ -138,7 +137,7 @@ impl<'m> Log<'_, 'm> {
                 TypeShape::Struct(shape) => {
                     for field in &shape.fields {
                         let details = field.details();
-                        // Most have no date of their own, and so need no name.
+                        // Most fields have no date, so the name is not computed for them.
                         if details.since.is_none() && details.deprecated.is_none() {
                             continue;
                         }

@@ -1,4 +1,4 @@
-//! The map of command codes.
+//! The codes of operations.
 
 use super::shared::{AnswerView, Desk, OperationEntry};
 use crate::codes::purpose;
@@ -6,7 +6,6 @@ use crate::emit::markdown::links::{Anchor, Page};
 use fc_spec::model::{CodeRange, Declared, Subject};
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct CodesView {
     ranges: Vec<RangeView>,
@@ -27,7 +26,6 @@ struct RangeView {
     text: String,
 }
 
-/// An audience, a line of machines or a series of releases.
 #[derive(Debug, Serialize)]
 struct WordView {
     name: String,
@@ -43,8 +41,8 @@ struct RetiredView {
 
 pub(in crate::emit::markdown) fn codes(desk: Desk<'_, '_>) -> CodesView {
     let model = desk.book.model;
-    // Without the codes in use, which the overview lists, and without the next free one: a line that every new
-    // operation moves keeps two branches from being merged. The site lists them here by code, and computes what is free.
+    // The page lists neither the codes in use nor the next free code. Every new operation would move a line for them,
+    // and branches could not be merged. The overview lists the codes in use, and the site shows both here at run time.
     let operations = model.operations.iter();
     let unassigned = operations.filter(|operation| operation.code.value.is_none());
     let retired = model.retired.iter().map(|retired| RetiredView {

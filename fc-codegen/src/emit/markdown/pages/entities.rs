@@ -1,4 +1,4 @@
-//! What ids stand for: for each entity, where its ids come from and where they are asked for.
+//! Entities, and the messages that contain their ids.
 
 use super::shared::{Desk, MessageView};
 use crate::emit::markdown::links::{Anchor, Link};
@@ -8,7 +8,6 @@ use fc_spec::model::{Direction, Entity, Operation, Side, Type};
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct EntitiesView {
     entities: Vec<EntityView>,
@@ -19,11 +18,11 @@ struct EntityView {
     anchor: String,
     name: String,
     title: String,
-    /// Type of its ids.
+    /// The type of its ids.
     ty: Option<String>,
-    /// Messages that bring its ids to an app.
+    /// Messages that give an app its ids.
     sources: Vec<MessageView>,
-    /// Messages in which an app names it.
+    /// Messages in which an app uses its ids.
     users: Vec<MessageView>,
     spec: Link,
 }
@@ -48,7 +47,7 @@ pub(in crate::emit::markdown) fn entities(desk: Desk<'_, '_>) -> EntitiesView {
     }
 }
 
-/// The messages that the robot sends and those that apps send, by the entity whose ids they hold.
+/// Returns the messages from the robot and those from apps, by the entity whose ids they contain.
 fn messages(desk: Desk<'_, '_>) -> HashMap<String, [Vec<MessageView>; 2]> {
     let mut found: HashMap<String, [Vec<MessageView>; 2]> = HashMap::new();
     let model = desk.book.model;

@@ -1,18 +1,16 @@
-//! The errors that the checks of the spec report, and the rules of the lint: the texts of `fcproto explain` as a page.
+//! The errors of the spec's checks and the rules of the lint, with the texts of `fcproto explain`.
 
 use super::shared::Desk;
 use fc_spec::diagnostic::FaultCode;
 use fc_spec::lint;
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ErrorsView {
     errors: Vec<ErrorView>,
     rules: Vec<RuleView>,
 }
 
-/// A rule of the lint.
 #[derive(Debug, Serialize)]
 struct RuleView {
     code: &'static str,
@@ -52,8 +50,8 @@ pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
     }
 }
 
-/// A text whose examples say which is wrong and which right: outside of the terminal, the words behind the
-/// language of a fence are not seen.
+/// Adds a heading for right or wrong to the examples of a text. Outside of the terminal, the words after the language
+/// of a fence are invisible.
 fn told(text: &str, wrong: &str, right: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {

@@ -1,4 +1,4 @@
-//! The words of the protocol: what they mean, and where they occur.
+//! The terms of the protocol, their meanings and their uses.
 
 use super::shared::Desk;
 use crate::emit::markdown::links::{Anchor, Link, Page};
@@ -7,7 +7,6 @@ use fc_spec::model::{Operation, Term, Text, TypeDef, TypeShape};
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct GlossaryView {
     terms: Vec<TermView>,
@@ -22,7 +21,7 @@ struct TermView {
     /// Other forms of the word.
     also: Vec<String>,
     means: String,
-    /// Operations and types whose texts have it.
+    /// The operations and types whose texts contain it.
     uses: Vec<Link>,
     spec: Link,
 }
@@ -30,7 +29,7 @@ struct TermView {
 pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> GlossaryView {
     let lang = desk.lang;
     let mut terms: Vec<&Term> = desk.book.model.glossary.iter().collect();
-    // In Chinese they stay in the spec's order, which is by subject.
+    // Chinese terms keep the spec's order, which is by subject.
     if lang == Lang::En {
         terms.sort_by_key(|term| term.word.en.to_lowercase());
     }
@@ -49,7 +48,7 @@ pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> GlossaryView {
     }
 }
 
-/// Where the texts of operations and shared types have a word of a term, by its id.
+/// Returns the places where texts of operations and shared types contain a term, by the term's id.
 fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
     let book = desk.book;
     let operations = book.model.operations.iter().map(|operation| {
@@ -78,7 +77,7 @@ fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
     uses
 }
 
-/// What is said of an operation itself.
+/// Returns the texts of an operation.
 fn of_operation(operation: &Operation) -> Vec<&Text> {
     let bodies = operation.bodies();
     std::iter::once(&operation.title)
@@ -88,7 +87,7 @@ fn of_operation(operation: &Operation) -> Vec<&Text> {
         .collect()
 }
 
-/// What is said of a type and of what it is made of, but for its title: that of a made one is its operation's.
+/// Returns the texts of a type and its parts, without its title. A type made for a body has the title of its operation.
 fn of_type(ty: &TypeDef) -> Vec<&Text> {
     let mut texts: Vec<&Text> = ty.about.iter().collect();
     match &ty.shape {

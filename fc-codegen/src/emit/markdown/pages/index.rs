@@ -1,11 +1,10 @@
-//! The map of the protocol.
+//! The overview of the protocol.
 
 use super::shared::{AnswerView, Desk, OperationEntry, PortView};
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use fc_spec::model::{Party, Subject};
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct IndexView {
     id: String,

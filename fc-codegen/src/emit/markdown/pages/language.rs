@@ -1,11 +1,10 @@
-//! The language that the spec is written in: its keys, as the grammar declares them.
+//! The keys of the spec language, from its grammar.
 
 use super::shared::Desk;
 use fc_spec::diagnostic::FaultCode;
 use fc_spec::language::{self, Key, Part, Takes, Word};
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct LanguageView {
     parts: Vec<PartView>,
@@ -14,11 +13,11 @@ pub(in crate::emit::markdown) struct LanguageView {
 #[derive(Debug, Serialize)]
 struct PartView {
     link: PartLink,
-    /// The name that errors print, on the page in Chinese.
+    /// The name in errors, for the Chinese page.
     printed: Option<String>,
     text: String,
     example: Option<&'static str>,
-    /// What can be wrong with it as a whole.
+    /// The errors about the part as a whole.
     faults: Vec<&'static str>,
     keys: Vec<KeyView>,
     words: Vec<WordView>,
@@ -99,7 +98,7 @@ pub(in crate::emit::markdown) fn language(desk: Desk<'_, '_>) -> LanguageView {
     }
 }
 
-/// The numbers of faults, which are their anchors on the page of the faults.
+/// Returns the codes of errors, which are their anchors on the page of errors.
 fn numbers(faults: &[FaultCode]) -> Vec<&'static str> {
     faults.iter().map(|fault| fault.as_str()).collect()
 }

@@ -1,4 +1,4 @@
-//! One view per kind of page: what it shows, ready for its template.
+//! A view for each kind of page, with the data for its template.
 
 mod changelog;
 mod codes;

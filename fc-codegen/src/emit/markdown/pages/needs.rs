@@ -1,4 +1,4 @@
-//! What has to hold before a command is accepted, and when a report is sent.
+//! The conditions for accepting a command, and the times of a report.
 
 use super::shared::Desk;
 use crate::emit::markdown::links::Link;
@@ -8,14 +8,14 @@ use fc_spec::model::{
 };
 use serde::Serialize;
 
-/// What has to hold before a command is accepted.
+/// The conditions for accepting a command.
 #[derive(Debug, Serialize)]
 pub(super) struct AcceptedView {
-    /// Any state will do.
+    /// `true` if every state is accepted.
     any: bool,
-    /// Enums whose values matter.
+    /// The enums whose values matter.
     states: Vec<StatesView>,
-    /// Commands that come first.
+    /// The commands that must come first.
     after: Vec<Link>,
     note: Option<String>,
 }
@@ -33,12 +33,12 @@ struct StateView {
     name: String,
 }
 
-/// When a report is sent.
+/// The times of a report.
 #[derive(Debug, Serialize)]
 pub(super) struct CadenceView {
-    /// The field on which it depends.
+    /// The field that triggers it.
     field: Option<Link>,
-    /// How far a number moves between two reports.
+    /// The change of a number between two reports.
     step: Option<String>,
     every_ms: Option<u32>,
     within_ms: Option<u32>,
@@ -80,14 +80,14 @@ fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> StatesView {
     }
 }
 
-/// Goes by the rows of the report's own table of fields, to link one of them.
+/// Returns the times of a report. `rows` is the table of its fields, for a link to one of them.
 pub(super) fn cadence<'r>(
     operation: &Operation,
     mut rows: impl Iterator<Item = &'r Row>,
 ) -> Option<CadenceView> {
     let cadence = operation.cadence()?;
     let field = cadence.field().map(|path| {
-        // A row marks the items of lists, which the path of a cadence passes over.
+        // The rows mark items of lists, and the path of a cadence does not.
         let row = rows.find(|row| row.path().replace("[]", "") == path);
         Link {
             text: format!("`{}`", row.map_or(path, Row::path)),

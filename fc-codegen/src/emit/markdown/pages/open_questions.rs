@@ -1,4 +1,4 @@
-//! Every gap of the source document and what the spec answers.
+//! All gaps of the source document, and the answers of the spec.
 
 use super::shared::{AnswerView, Desk};
 use crate::emit::markdown::links::{Anchor, Link};
@@ -9,22 +9,21 @@ use fc_spec::model::{
 };
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct OpenQuestionsView {
     counts: Vec<Count>,
     total: usize,
-    /// How many are open.
+    /// The number of open questions.
     open: usize,
     held: Vec<Held>,
     settled: Vec<QuestionView>,
     sections: Vec<SectionView>,
     categories: Vec<Category>,
-    /// Answers to nothing that has an id.
+    /// Answers to subjects without an id.
     others: Vec<AnswerView>,
 }
 
-/// Conflicts of one severity, by how they are answered.
+/// Conflicts of one severity, by the kinds of their answers.
 #[derive(Debug, Serialize)]
 struct Count {
     severity: &'static str,
@@ -35,29 +34,28 @@ struct Count {
     questions: usize,
 }
 
-/// Open questions that hold up the same.
+/// Open questions with the same impact.
 #[derive(Debug, Serialize)]
 struct Held {
     /// `no_code`, `no_body`, …
     key: &'static str,
     impact: &'static str,
-    /// What the tools do until they are settled.
+    /// The behaviour of the tools until the questions are settled.
     meanwhile: &'static str,
     questions: Vec<QuestionView>,
 }
 
-/// A question for the owner.
 #[derive(Debug, Serialize)]
 struct QuestionView {
     anchor: String,
     id: String,
-    /// The conflicts it is about besides that of its name.
+    /// The related conflicts, except that of its name.
     ids: Vec<Link>,
     about: Option<Link>,
     text: String,
     /// The lines to edit.
     edit: String,
-    /// What to run instead, but for the answer.
+    /// The command that writes the answer, with a placeholder for the answer.
     command: String,
     confirmed: Option<String>,
     spec: Link,
@@ -83,7 +81,7 @@ struct ConflictView {
     severity: &'static str,
     /// `high`, `medium`, `low`.
     severity_key: &'static str,
-    /// How it is answered: `decision`, `quirk`, `note`, `question`, with spaces between.
+    /// The kinds of its answers, with spaces between: `decision`, `quirk`, `note`, `question`.
     kinds: String,
     text: String,
     answers: Vec<AnswerView>,
@@ -201,7 +199,7 @@ fn question<'m>(desk: Desk<'_, 'm>, question: &'m Question) -> QuestionView {
     }
 }
 
-/// What writes the answer down, but for what only the owner can say.
+/// Returns the command that writes the answer. Only the owner knows the parts that are left out.
 fn command(question: &Question) -> String {
     let asked = question.about.iter();
     let asked = asked.filter(|fact| fact.meanwhile != BodyState::Inferred.name());

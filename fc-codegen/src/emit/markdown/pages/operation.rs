@@ -21,7 +21,6 @@ use fc_spec::model::{
 };
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct OperationView {
     name: String,
@@ -35,38 +34,38 @@ pub(in crate::emit::markdown) struct OperationView {
     direction: String,
     code: CodeView,
     frame_kind: FrameKindView,
-    /// The header field that ties a response to its request.
+    /// The header field that pairs a response with its request.
     id_field: String,
     port: u16,
     /// `read`, `config`, `motion`, `unknown`.
     effect: Option<&'static str>,
     effect_word: Option<&'static str>,
-    /// The page then says so before what it says of the effect.
+    /// `true` if the effect is inferred. The page then says this before the effect.
     effect_inferred: bool,
-    /// Where what it reads and sets is kept.
+    /// The store of the values that it reads and sets.
     kept: Option<Kept>,
     since: Option<String>,
     available: Option<AvailableView>,
     deprecated: Option<DeprecationNote>,
     facts: Vec<FactRow>,
-    /// What has to hold before it is accepted.
+    /// The conditions for accepting it.
     accepted: Option<AcceptedView>,
-    /// When it is sent.
+    /// The times at which it is sent.
     cadence: Option<CadenceView>,
-    /// Reports that it sets off.
+    /// The reports that it triggers.
     followers: Vec<Follower>,
-    /// Commands that set it off.
+    /// The commands that trigger it.
     causes: Vec<Link>,
-    /// Of a stream.
+    /// The details of a stream.
     stream: Option<StreamView>,
-    /// Of a command that starts or stops any.
+    /// The streams that a command starts or stops.
     streams: Option<OwnStreams>,
     stage: StageView,
     sides: Vec<SideView>,
     enums: Vec<EnumView>,
     results: Vec<ResultLine>,
     ack: Option<AckView>,
-    /// How it is called and answered in each language.
+    /// The code samples in each language.
     samples: Option<Tabs>,
     history: Vec<HistoryItem>,
     answers: Vec<AnswerView>,
@@ -76,17 +75,17 @@ pub(in crate::emit::markdown) struct OperationView {
     spec: Link,
 }
 
-/// A report in the picture of a command.
+/// A report in the diagram of a command.
 #[derive(Debug, Serialize)]
 struct Follower {
     code: String,
     name: String,
     link: Link,
-    /// By which keys it belongs to the command; none where nothing ties them.
+    /// The keys that connect it to the command; empty if none do.
     ties: Vec<TieView>,
 }
 
-/// A key of a command and the key of a report that has the same value.
+/// A key of a command and the key of a report with the same value.
 #[derive(Debug, Serialize)]
 struct TieView {
     /// `request`, `response`.
@@ -95,14 +94,14 @@ struct TieView {
     report: String,
 }
 
-/// The keys of a report that say how far a process has come, and that something failed.
+/// The keys of a report for the progress of a process and its failures.
 #[derive(Debug, Default, Serialize)]
 struct StageView {
     state: Option<String>,
     failures: Vec<String>,
 }
 
-/// Value of the kind field.
+/// The value of the kind field.
 #[derive(Debug, Serialize)]
 struct FrameKindView {
     field: String,
@@ -110,7 +109,7 @@ struct FrameKindView {
     name: String,
 }
 
-/// How sure the type, the code, the effect or a body is.
+/// The certainty of the type, the code, the effect or a body.
 #[derive(Debug, Serialize)]
 struct FactRow {
     what: &'static str,
@@ -118,7 +117,7 @@ struct FactRow {
     /// `stated`, `inferred`, `open`.
     key: &'static str,
     note: Option<String>,
-    /// A badge of its own says it already.
+    /// `true` if another badge shows it already.
     badged: bool,
 }
 
@@ -140,9 +139,9 @@ struct ResultLine {
     name: String,
     text: String,
     about: String,
-    /// What it means for this operation.
+    /// The meaning for this operation.
     cause: Option<String>,
-    /// Declared by the operation itself, beside those that any may answer.
+    /// `true` if the operation declares it. The others are results that any operation can return.
     own: bool,
 }
 
@@ -247,7 +246,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
     }
 }
 
-/// The header field with a role, by its name on the wire.
+/// Returns the wire name of the header field with a role.
 fn header_field(desk: Desk<'_, '_>, role: HeaderRole) -> String {
     let field = desk.book.model.frame.field(role);
     field.map_or_else(String::new, |field| field.wire.clone())
@@ -305,7 +304,7 @@ fn facts(desk: Desk<'_, '_>, operation: &Operation) -> Vec<FactRow> {
     facts
 }
 
-/// Who has confirmed a fact that the source has lost.
+/// Returns the confirmation of a fact that the source lacks.
 fn confirmed(desk: Desk<'_, '_>, operation: &Operation, fact: Fact) -> Option<String> {
     let mut answers = desk.book.model.answers.iter();
     let answer = answers.find(|answer| {
@@ -320,7 +319,7 @@ fn confirmed(desk: Desk<'_, '_>, operation: &Operation, fact: Fact) -> Option<St
     Some(words::confirmed(word, desk.lang))
 }
 
-/// Why the type is known although the source prints none.
+/// Returns a note about a type that the source does not print.
 fn kind_note(desk: Desk<'_, '_>, operation: &Operation) -> Option<String> {
     if operation.kind_state != BodyState::Inferred {
         return None;
@@ -352,7 +351,7 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
         frame_view(reflector, &frame, desk.lang)
     };
     let rows = body.map_or_else(Vec::new, |body| match operation.kind() {
-        // It has no envelope.
+        // A stream has no envelope.
         Kind::Stream => {
             let ty = desk.book.model.types.get(&body.ty);
             desk.rows().of_type(ty, Anchor::named(direction.name()))
@@ -371,7 +370,7 @@ fn side(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Side
     }
 }
 
-/// The reports that a command sets off.
+/// Returns the reports that a command triggers.
 fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
     let all = operation.sets_off().iter();
     let follower = |set_off: &SetOff| {
@@ -391,7 +390,7 @@ fn followers(desk: Desk<'_, '_>, operation: &Operation) -> Vec<Follower> {
     all.filter_map(follower).collect()
 }
 
-/// Where a report says how far a process has come.
+/// Returns the keys of a report for the progress of a process.
 fn stage(operation: &Operation) -> StageView {
     let Exchange::Report {
         state, failures, ..
@@ -405,7 +404,8 @@ fn stage(operation: &Operation) -> StageView {
     }
 }
 
-/// Success, what the engine may answer to any operation, and the operation's own; none where no response carries one.
+/// Returns success, the results of the runtime and the operation's own results. Returns none if responses carry no
+/// result.
 fn results(desk: Desk<'_, '_>, operation: &Operation) -> Vec<ResultLine> {
     let is_sent = desk.book.model.envelope.result_code().is_some();
     if operation.kind() == Kind::Stream || !is_sent {
@@ -445,7 +445,7 @@ fn ack(operation: &Operation, default: Ack) -> Option<AckView> {
     })
 }
 
-/// Changes of the operation and of the types of its bodies, oldest first.
+/// Returns the changes of the operation and of the types of its bodies, oldest first.
 fn history(desk: Desk<'_, '_>, operation: &Operation) -> Vec<HistoryItem> {
     let types = desk.book.body_types(operation).iter();
     let changes = operation.changes.iter();
@@ -454,7 +454,7 @@ fn history(desk: Desk<'_, '_>, operation: &Operation) -> Vec<HistoryItem> {
     items
 }
 
-/// Answers that stand at the operation, at its bodies and at their fields.
+/// Returns the answers to the operation, its bodies and their fields.
 fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
     let subject = Subject::Operation(operation.name.clone());
     let mut answers = desk.book.answers_to(&subject).to_vec();
@@ -464,7 +464,7 @@ fn answers<'m>(desk: Desk<'_, 'm>, operation: &Operation) -> Vec<&'m Answer> {
     answers
 }
 
-/// Parts of which the source says nothing, by their names in the spec.
+/// Returns the parts that the source lacks, by their names in the spec.
 fn lost(desk: Desk<'_, '_>, operation: &Operation) -> Vec<&'static str> {
     let word = |part: &Fact| match part {
         Fact::Title => desk.lang.pick("标题", "title"),

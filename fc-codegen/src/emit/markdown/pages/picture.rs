@@ -1,12 +1,12 @@
-//! Rows of a table that each divide the same numbered parts among groups, such as the doors of a
-//! box among its compartments: one line of text a row, from which the site draws a grid.
+//! Tables that divide the same numbered parts among groups, such as the doors of a box among its compartments. Each row
+//! becomes a line of text, and the site draws it as a grid.
 
 use super::shared::Desk;
 use fc_spec::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, TypeShape, Value};
 use std::fmt::Write as _;
 
-/// `1: 左上 #1 = 1; 右上 #2 = 2`, a line a row. `None` unless the row type has one array of structs,
-/// those have one array of integers, and in every row these are the same numbers from 1 up.
+/// Returns a line for each row, such as `1: 左上 #1 = 1; 右上 #2 = 2`. The row type must have one array of structs, and
+/// these one array of integers. Every row must contain the same numbers from 1 up; otherwise the result is `None`.
 pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Option<String> {
     let TypeShape::Struct(row) = &row.shape else {
         return None;
@@ -81,7 +81,7 @@ pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Optio
     (!lines.is_empty()).then_some(lines)
 }
 
-/// The one field that `is` wants, if there is just one.
+/// Returns the field that `is` accepts, if there is exactly one.
 fn only<'m, T>(
     shape: &'m StructType,
     is: impl Fn(&'m Field) -> Option<T>,

@@ -1,4 +1,4 @@
-//! Coordinate systems and stores: what is given in each, and what is kept in each.
+//! Coordinate systems and stores, with the messages and types that use them.
 
 use super::shared::{Desk, MessageView};
 use crate::emit::markdown::links::{Anchor, Link, Page};
@@ -8,7 +8,6 @@ use fc_spec::model::{CoordinateSystem, Direction, Operation, Store, TypeDef, Typ
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct PlacesView {
     systems: Vec<SystemView>,
@@ -21,7 +20,7 @@ struct SystemView {
     name: String,
     title: String,
     about: Option<String>,
-    /// Shared structs that are given in it.
+    /// The shared structs in this coordinate system.
     types: Vec<Link>,
     messages: Vec<MessageView>,
     spec: Link,
@@ -44,7 +43,7 @@ pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> PlacesView {
     let model = desk.book.model;
     let mut systems = HashMap::new();
     let mut stores = HashMap::new();
-    // To lay out every message is work for nothing where there is nothing to find.
+    // Building all messages is unnecessary if the spec has no systems and no stores.
     if !model.coordinates.is_empty() {
         systems = messages(desk, Row::system);
     }
@@ -115,7 +114,7 @@ fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<MessageView>>) 
     }
 }
 
-/// The messages with fields that have a name from `key`, by these names.
+/// Returns the messages with fields for which `key` returns a name, by that name.
 fn messages(
     desk: Desk<'_, '_>,
     key: impl Fn(&Row) -> Option<&str>,

@@ -6,12 +6,11 @@ use crate::emit::markdown::words::Word as _;
 use fc_spec::model::Subject;
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct ResultsView {
-    /// Whether responses carry one.
+    /// `true` if responses carry a result code.
     is_sent: bool,
-    /// Other words for the key that holds a result code.
+    /// Other words for the key of a result code.
     aliases: Vec<String>,
     results: Vec<ResultView>,
     answers: Vec<AnswerView>,
@@ -24,16 +23,16 @@ struct ResultView {
     name: String,
     text: String,
     about: String,
-    /// When the engine itself answers with it.
+    /// The case in which the runtime returns it.
     role: Option<&'static str>,
-    /// Operations that declare it.
+    /// The operations that declare it.
     operations: Vec<Declaring>,
 }
 
 #[derive(Debug, Serialize)]
 struct Declaring {
     operation: Link,
-    /// What it means for the operation.
+    /// The meaning for the operation.
     cause: Option<String>,
 }
 

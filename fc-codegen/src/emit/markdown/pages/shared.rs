@@ -1,4 +1,4 @@
-//! What several pages show.
+//! Views that several pages share.
 
 use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::book::Book;
@@ -13,7 +13,7 @@ use fc_spec::model::{
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// A message, and some of its fields.
+/// A message and some of its fields.
 #[derive(Debug, Serialize)]
 pub(super) struct MessageView {
     pub(super) operation: Link,
@@ -21,7 +21,7 @@ pub(super) struct MessageView {
     pub(super) fields: Vec<Link>,
 }
 
-/// Where and for whom a view is made.
+/// The model, the language and the page of a view.
 #[derive(Clone, Copy)]
 pub(in crate::emit::markdown) struct Desk<'b, 'm> {
     pub(in crate::emit::markdown) book: &'b Book<'m>,
@@ -49,7 +49,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         }
     }
 
-    /// Link to an operation by its title.
+    /// Returns a link with the title of an operation.
     pub(super) fn operation(self, operation: &Operation) -> Link {
         Link {
             text: self.lang.text(&operation.title).to_owned(),
@@ -57,7 +57,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         }
     }
 
-    /// The fields of a message, by the name that each has from `key`.
+    /// Returns the fields of a message for which `key` returns a name, by that name.
     pub(super) fn fields_by(
         self,
         operation: &Operation,
@@ -93,7 +93,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         }
     }
 
-    /// Link to what something is about; `None` on the page that is about just that.
+    /// Returns a link to a subject, or `None` on the page of that subject.
     pub(super) fn about(self, subject: &'m Subject) -> Option<Link> {
         let own = match (subject, self.page) {
             (Subject::Operation(name), Page::Operation(operation)) => *name == operation.name,
@@ -111,7 +111,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         })
     }
 
-    /// A sentence of the spec with links to the operations that it names.
+    /// Returns a sentence of the spec with links to the operations that it names.
     pub(super) fn sentence(self, text: &Text) -> String {
         linked(self.book, self.page, self.lang.text(text))
     }
@@ -121,12 +121,12 @@ impl<'b, 'm> Desk<'b, 'm> {
         answers.map(|answer| self.answer(answer)).collect()
     }
 
-    /// Answers that stand exactly there.
+    /// Returns the answers to exactly this subject.
     pub(super) fn answers_to(self, subject: &Subject) -> Vec<AnswerView> {
         self.answers(self.book.answers_to(subject).iter().copied())
     }
 
-    /// Changes, in their order.
+    /// Returns changes in their order.
     pub(super) fn history<'c>(
         self,
         changes: impl IntoIterator<Item = &'c Change>,
@@ -138,7 +138,6 @@ impl<'b, 'm> Desk<'b, 'm> {
         changes.into_iter().map(item).collect()
     }
 
-    /// The ports.
     pub(super) fn ports(self) -> Vec<PortView> {
         let view = |port: &Port| PortView {
             number: port.number,
@@ -155,7 +154,7 @@ impl<'b, 'm> Desk<'b, 'm> {
             .collect()
     }
 
-    /// A line of a list of operations.
+    /// Returns an entry for a list of operations.
     pub(super) fn entry(self, operation: &Operation) -> OperationEntry {
         let protocol = &self.book.model.protocol;
         let robot = self.lang.text(&protocol.robot.title);
@@ -182,24 +181,24 @@ pub(super) struct AnswerView {
     ids: Vec<Link>,
     kind: &'static str,
     text: String,
-    /// `None` on the page that is about just that.
+    /// The subject; `None` on the page of that subject.
     about: Option<Link>,
-    /// Whether no value of the spec changes it.
+    /// `true` if the answer concerns the runtime, so that no value of the spec changes it.
     runtime: bool,
-    /// Who has confirmed it.
+    /// The confirmation.
     confirmed: Option<String>,
     spec: Link,
 }
 
 impl AnswerView {
-    /// Without a link to a conflict next to which it stands.
+    /// Removes the link to a conflict that the page already shows.
     pub(super) fn without(mut self, id: &str) -> Self {
         self.ids.retain(|link| link.text != id);
         self
     }
 }
 
-/// A line of a list of operations.
+/// An entry of a list of operations.
 #[derive(Debug, Serialize)]
 pub(super) struct OperationEntry {
     link: Link,
@@ -208,7 +207,7 @@ pub(super) struct OperationEntry {
     kind: &'static str,
     effect: Option<&'static str>,
     direction: String,
-    /// The least certain of all that is said of it; `None` where it is new and nothing is open.
+    /// The least certain fact about it; `None` if it is new and has no open facts.
     state: Option<&'static str>,
     deprecated: bool,
     available: Option<AvailableView>,
@@ -217,7 +216,7 @@ pub(super) struct OperationEntry {
 /// A command code.
 #[derive(Debug, Serialize)]
 pub(super) struct CodeView {
-    /// As the spec spells it.
+    /// The spelling of the spec.
     hex: String,
     decimal: Option<u16>,
 }

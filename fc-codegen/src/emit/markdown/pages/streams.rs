@@ -1,4 +1,4 @@
-//! What the page of a stream says of it alone, and the page of a command of the streams that it starts and stops.
+//! The streams of a page: the details of a stream, or the streams that a command starts and stops.
 
 use super::shared::Desk;
 use crate::emit::markdown::links::Link;
@@ -8,12 +8,12 @@ use serde::Serialize;
 /// A stream.
 #[derive(Debug, Serialize)]
 pub(super) struct StreamView {
-    /// Media type of its bytes, if that is stated.
+    /// The media type of its bytes, if it is stated.
     content: Option<String>,
     json: bool,
     started_by: Option<Link>,
     stopped_by: Option<Link>,
-    /// It has the code of the command that starts it.
+    /// `true` if it has the code of the command that starts it.
     shares_code: bool,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn stream(desk: Desk<'_, '_>, operation: &Operation) -> Option<Stream
     })
 }
 
-/// `None` where there are none.
+/// Returns `None` if the command has no streams.
 pub(super) fn of_command(desk: Desk<'_, '_>, operation: &Operation) -> Option<OwnStreams> {
     if operation.kind() != Kind::Command {
         return None;

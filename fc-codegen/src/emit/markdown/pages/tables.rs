@@ -1,4 +1,4 @@
-//! The published tables of constants.
+//! The tables of constants.
 
 use super::picture;
 use super::shared::{AnswerView, Desk};
@@ -8,7 +8,6 @@ use crate::emit::markdown::rows::Row;
 use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct TablesView {
     tables: Vec<TableView>,
@@ -22,11 +21,11 @@ struct TableView {
     about: String,
     row_type: Link,
     kept: Option<Kept>,
-    /// The rows as grids of parts, where they are such.
+    /// The rows as grids of parts, if the table has this form.
     picture: Option<String>,
-    /// Keys of which every value fits a cell; what nests is in the picture and the JSON.
+    /// The keys whose values fit a cell. The picture and the JSON show nested values.
     columns: Vec<Column>,
-    /// Cells as JSON, in the order of the columns; empty where a row lacks the key.
+    /// The cells as JSON, in the order of the columns; empty if the row lacks the key.
     rows: Vec<Vec<String>>,
     fields: Vec<Row>,
     json: String,

@@ -9,7 +9,6 @@ use crate::sample::Profile;
 use fc_spec::model::{TypeDef, TypeShape};
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct TypesView {
     sections: Vec<Section>,
@@ -30,7 +29,7 @@ struct TypeView {
     title: String,
     about: Option<String>,
     since: Option<String>,
-    /// In which coordinate system it is given.
+    /// The coordinate system of its values.
     given: Option<Given>,
     /// `struct`, `enum`, `one_of`.
     shape: &'static str,

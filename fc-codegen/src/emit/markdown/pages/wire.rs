@@ -14,7 +14,6 @@ use fc_spec::model::{
 };
 use serde::Serialize;
 
-/// All that its template shows.
 #[derive(Debug, Serialize)]
 pub(in crate::emit::markdown) struct WireView {
     host: String,
@@ -30,7 +29,7 @@ pub(in crate::emit::markdown) struct WireView {
     data: String,
     json_rules: Vec<JsonRuleView>,
     json_examples: Vec<JsonExampleView>,
-    /// What the digest is called.
+    /// The name of the digest.
     digest: Option<&'static str>,
     compresses: bool,
     has_plain_length: bool,
@@ -52,11 +51,11 @@ struct HeaderView {
     offset: usize,
     size: usize,
     wire: String,
-    /// Name in code, where the wire's spelling does not give it.
+    /// The name in code, if it does not follow from the wire name.
     code_name: Option<String>,
     ty: String,
     role: Option<&'static str>,
-    /// What is sent, for a field that only travels.
+    /// The fixed value, for a field that no role fills.
     value: Option<u64>,
     zero_when_plain: bool,
     text: String,
@@ -86,13 +85,13 @@ struct JsonRuleView {
     text: String,
 }
 
-/// What becomes of a body.
+/// An example of reading a body.
 #[derive(Debug, Serialize)]
 struct JsonExampleView {
     ty: &'static str,
-    /// As text, or as bytes where it is none that a page could show; empty if it has none.
+    /// The body as text, or as bytes if a page cannot show it; empty for no body.
     body: String,
-    /// The body written again, or the name of the error.
+    /// The body in canonical form, or the name of the error.
     outcome: String,
     refused: bool,
 }
@@ -114,7 +113,7 @@ struct RoleView {
     aliases: Vec<String>,
 }
 
-/// One command's request as it travels, plain and compressed.
+/// The request of one command, plain and compressed.
 #[derive(Debug, Serialize)]
 struct ExampleView {
     title: String,
@@ -264,7 +263,7 @@ fn example(desk: Desk<'_, '_>) -> Option<ExampleView> {
     })
 }
 
-/// Answers at the frame and at its header fields, under either of a field's names.
+/// Returns the answers to the frame and its header fields, for both names of a field.
 fn frame_answers<'m>(desk: Desk<'_, 'm>) -> Vec<&'m Answer> {
     let mut answers = desk.book.answers_to(&Subject::Frame(None)).to_vec();
     for field in &desk.book.model.frame.header {
