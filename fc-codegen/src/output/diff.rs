@@ -1,29 +1,28 @@
-//! How a stale file differs from what it has to be.
+//! Differences between stale files and their new contents.
 
 use super::plan::Plan;
 use similar::TextDiff;
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// Lines shown of one file.
+/// The maximum number of lines that are shown per file.
 const SHOWN: usize = 40;
 
-/// How long the search for the smallest difference of one file may take; what it finds until then
-/// is right as well, only longer.
+/// The time limit of the search for the smallest difference of a file. After it, the difference is still correct, but
+/// longer.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// How a stale file differs from what it has to be.
+/// The difference between a stale file and its new contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileDiff {
-    /// Path from the root.
+    /// The path, relative to the root.
     pub path: String,
-    /// Unified diff from the disk to what has to be, its end cut off if it is long.
+    /// A unified diff from the disk to the new contents, cut off if it is long.
     pub text: String,
 }
 
 impl Plan {
-    /// How every stale file differs from what it has to be, sorted by path. Files in the way are
-    /// not compared: they are somebody else's.
+    /// Returns the difference of every stale file, sorted by path. Foreign files are not compared.
     #[must_use]
     pub fn diffs(&self) -> Vec<FileDiff> {
         let created = self
@@ -44,7 +43,7 @@ impl Plan {
     }
 }
 
-/// Unified diff from one text to another of a file, with both of its names above it; empty where they are the same.
+/// Returns a unified diff of two texts below two file names. Returns an empty string for equal texts.
 #[must_use]
 pub fn unified(old_name: &str, new_name: &str, old: &str, new: &str) -> String {
     let diff = TextDiff::configure().timeout(PATIENCE).diff_lines(old, new);

@@ -1,17 +1,18 @@
-//! Reading, replacing and removing single files.
+//! Reads, replaces and removes single files.
 
 use super::OutputError;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-/// A byte order mark at the start of a file in UTF-8.
+/// The byte order mark of a UTF-8 file.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// How many names are tried for a temporary file.
+/// The maximum number of further names that are tried for a temporary file.
 const ATTEMPTS: u32 = 100;
 
-/// All of a file; `None` if there is none. The caller opens no pipe: that would wait for a writer.
+/// Returns the contents of a file, or `None` if it does not exist. Refuses pipes, because opening one would wait for a
+/// writer.
 pub fn read(place: &Path, path: &str) -> Result<Option<Vec<u8>>, OutputError> {
     if fs::metadata(place).is_ok_and(|found| !found.is_file()) {
         let path = path.to_owned();
@@ -24,7 +25,7 @@ pub fn read(place: &Path, path: &str) -> Result<Option<Vec<u8>>, OutputError> {
     }
 }
 
-/// Replaces the text of a file that people edit: its byte order mark stays, and so does a link to it.
+/// Replaces the text of a file that people edit. Keeps its byte order mark and a link to it.
 pub fn edit(place: &Path, path: &str, text: &str) -> Result<(), OutputError> {
     let place = match fs::canonicalize(place) {
         Ok(place) => place,
@@ -39,7 +40,7 @@ pub fn edit(place: &Path, path: &str, text: &str) -> Result<(), OutputError> {
     replace(&place, path, &[mark, text.as_bytes()].concat())
 }
 
-/// Writes a file so that nobody ever sees half of it: beside its place, then renamed.
+/// Replaces a file atomically: writes a temporary file in the same directory, then renames it.
 pub fn replace(place: &Path, path: &str, contents: &[u8]) -> Result<(), OutputError> {
     if let Some(folder) = place.parent() {
         fs::create_dir_all(folder).map_err(|source| fault("create the folder of", path, source))?;
@@ -53,13 +54,13 @@ pub fn replace(place: &Path, path: &str, contents: &[u8]) -> Result<(), OutputEr
         fs::rename(&temporary, place)
     });
     written.map_err(|source| {
-        // The fault to tell of is the first one.
+        // The first error is reported.
         let _ = fs::remove_file(&temporary);
         fault("write", path, source)
     })
 }
 
-/// A new file beside `place`.
+/// Creates a new file in the directory of `place`.
 fn temporary(place: &Path) -> io::Result<(PathBuf, fs::File)> {
     let name = place.file_name().unwrap_or_default().to_string_lossy();
     let mut attempt = 0;
@@ -79,7 +80,7 @@ fn temporary(place: &Path) -> io::Result<(PathBuf, fs::File)> {
     }
 }
 
-/// Removes a file, and the folders below the root that are empty without it.
+/// Removes a file, and the folders below the root that become empty.
 pub fn remove(root: &Path, place: &Path, path: &str) -> Result<(), OutputError> {
     match fs::remove_file(place) {
         Ok(()) => {}

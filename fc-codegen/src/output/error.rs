@@ -1,11 +1,10 @@
-//! What keeps output from being written.
+//! The reasons why output cannot be written.
 
 use super::manifest::MANIFEST;
 use fc_spec::model::Text;
 use std::io;
 
-/// What keeps output from being written. Unless it is an [`Io`](Self::Io) fault half-way, nothing
-/// has been changed.
+/// The reason why output cannot be written. Only an [`Io`](Self::Io) error can leave part of the changes on the disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutputError {
@@ -14,13 +13,13 @@ pub enum OutputError {
     BadPath {
         /// The path.
         path: String,
-        /// What is wrong with it.
+        /// The reason why the path is bad.
         why: Text,
     },
-    /// Two artifacts have one path, or paths that differ in case alone.
+    /// Two artifacts have the same path, or paths that differ only in case.
     #[error("two artifacts are called `{path}`; rename one of the things they are made from")]
     Duplicate {
-        /// The path of the second.
+        /// The path of the second artifact.
         path: String,
     },
     /// A part of a path below the root is a symbolic link.
@@ -35,7 +34,7 @@ pub enum OutputError {
         /// The path.
         path: String,
     },
-    /// Files stand where artifacts belong, hold something else, and are not the generator's.
+    /// Files with other contents are in the places of artifacts, and the manifest does not list them.
     #[error(
         "{} would have to be overwritten, but `{MANIFEST}` does not list {}: move or delete {} and \
          run `fcproto generate` again",
@@ -44,7 +43,7 @@ pub enum OutputError {
         if .paths.len() == 1 { "it" } else { "them" },
     )]
     Foreign {
-        /// Their paths, sorted.
+        /// The paths, sorted.
         paths: Vec<String>,
     },
     /// The manifest cannot be read.
@@ -53,23 +52,23 @@ pub enum OutputError {
          generated files that are up to date are then taken over, others have to be deleted first"
     )]
     Manifest {
-        /// What is wrong with it.
+        /// The reason why it cannot be read.
         why: String,
     },
     /// The operating system refused.
     #[error("cannot {action} `{path}`: {source}")]
     Io {
-        /// What was tried, as a verb.
+        /// The failed action, as a verb.
         action: &'static str,
-        /// On which path.
+        /// The path.
         path: String,
-        /// Its reason.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
 
 impl OutputError {
-    /// The sentence for the user.
+    /// Returns a sentence for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         let zh = match self {
@@ -102,7 +101,7 @@ impl OutputError {
     }
 }
 
-/// Up to three paths by name, the rest by number.
+/// Returns up to three paths by name, and the number of the others.
 fn list(paths: &[String]) -> String {
     let named: Vec<String> = paths
         .iter()

@@ -1,22 +1,22 @@
-//! Which files are the generator's.
+//! The list of generated files.
 
 use fc_spec::model::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Path of the manifest from the root.
+/// The path of the manifest, relative to the root.
 pub const MANIFEST: &str = "fc-manifest.json";
 
-/// Layout of the manifest; a reader of another one must not guess.
+/// The format of the manifest. Other formats are refused.
 const FORMAT: i64 = 1;
 
-/// Owned paths by product name. Names of products that this version does not make are kept.
+/// Paths by product name. Names of products that this version does not know are kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Manifest {
     products: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// The text of a manifest that two branches have changed, which began with `base`: whatever either has added, without what
-/// either has taken away. `None` if one of them cannot be read; an empty `base` is none.
+/// Merges two versions of a manifest with their common `base`. The result has all additions of both sides, and none of
+/// their removals. Returns `None` if one of them cannot be read. An empty `base` is an empty manifest.
 #[must_use]
 pub fn merge_manifests(base: &str, ours: &str, theirs: &str) -> Option<String> {
     let base = if base.is_empty() {
@@ -29,7 +29,6 @@ pub fn merge_manifests(base: &str, ours: &str, theirs: &str) -> Option<String> {
     Some(Manifest::merge(&base, ours, &theirs).print())
 }
 
-/// The file as JSON.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
@@ -40,10 +39,10 @@ struct Document {
 }
 
 impl Manifest {
-    /// Reads the file.
+    /// Reads a manifest.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The reason why it cannot be read.
     pub fn parse(text: &str) -> Result<Self, String> {
         let document: Document = serde_json::from_str(text).map_err(|error| error.to_string())?;
         if document.format != FORMAT {
@@ -54,7 +53,7 @@ impl Manifest {
         })
     }
 
-    /// The file's text, one path to a line so that it merges well.
+    /// Returns the text of the file. Each path is on its own line, so that it merges well.
     pub fn print(&self) -> String {
         let text = |text: &str| Value::String(text.to_owned());
         let products = self.products.iter().map(|(product, paths)| {
@@ -79,12 +78,12 @@ impl Manifest {
         document.pretty() + "\n"
     }
 
-    /// Whether some product owns a path.
+    /// Returns `true` if a product owns the path.
     pub fn owns(&self, path: &str) -> bool {
         self.products.values().any(|paths| paths.contains(path))
     }
 
-    /// Owned paths with the names of their products.
+    /// Returns the paths with the names of their products.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.products.iter().flat_map(|(product, paths)| {
             paths
@@ -93,7 +92,7 @@ impl Manifest {
         })
     }
 
-    /// What both sides say that began with the same one: whatever either has added, without what either has taken away.
+    /// Merges two versions. The result has all additions of both sides, and none of their removals.
     fn merge(base: &Self, ours: Self, theirs: &Self) -> Self {
         let has = |manifest: &Self, product: &str, path: &str| {
             let paths = manifest.products.get(product);
@@ -112,7 +111,7 @@ impl Manifest {
         merged
     }
 
-    /// Gives a path to a product.
+    /// Adds a path to a product.
     pub fn add(&mut self, product: &str, path: &str) {
         self.products
             .entry(product.to_owned())
@@ -120,7 +119,7 @@ impl Manifest {
             .insert(path.to_owned());
     }
 
-    /// Takes a path from every product but this one.
+    /// Removes a path from every product except this one.
     pub fn leave_to(&mut self, product: &str, path: &str) {
         for (name, paths) in &mut self.products {
             if name != product {

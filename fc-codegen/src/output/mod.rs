@@ -1,9 +1,8 @@
-//! The only writer: compares artifacts with the disk, then makes the disk agree.
+//! The only writer of generated files: compares artifacts with the disk, then updates the disk.
 //!
-//! **Architecture invariant.** A file belongs to the generator only if its manifest,
-//! `fc-manifest.json` at the project's root, says so. It never changes another file, removes those
-//! of its own that are no longer made, and leaves what is right alone, times included. Nothing is
-//! written outside the root, and nothing through a symbolic link.
+//! **Architecture invariant.** A file belongs to the generator only if its manifest lists it: `fc-manifest.json` at the
+//! project's root. The writer never changes other files. It removes listed files that are no longer generated, and does
+//! not touch files that are up to date. It writes only inside the root, and never through a symbolic link.
 //!
 //! ```
 //! use fc_codegen::product::Artifact;
@@ -36,7 +35,7 @@ pub use plan::{NewFile, OldFile, Plan, UpdatedFile, plan};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Paths of the files below `root` that are the generator's, from there, each once.
+/// Returns the paths of the generated files, relative to `root`, each once.
 ///
 /// # Errors
 /// If the manifest cannot be read.
@@ -52,12 +51,12 @@ pub fn generated(root: &Path) -> Result<Vec<String>, OutputError> {
     Ok(paths.into_iter().map(str::to_owned).collect())
 }
 
-/// Replaces the text of a spec file; nobody ever sees half of it. `path` leads there from `root`.
+/// Replaces the text of a spec file atomically. `path` is relative to `root`.
 ///
-/// The file keeps its byte order mark, which `text` does not have. A link stays, and the file that it leads to changes.
+/// The file keeps its byte order mark, which `text` does not have. If the path is a link, its target is replaced.
 ///
 /// # Errors
-/// If it cannot be written.
+/// If the file cannot be written.
 pub fn replace_spec_file(root: &Path, path: &str, text: &str) -> Result<(), OutputError> {
     disk::edit(&root.join(path), path, text)
 }

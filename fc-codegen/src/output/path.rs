@@ -1,11 +1,11 @@
-//! Paths that stay below the root.
+//! Checks that paths stay below the root.
 
 use super::OutputError;
 use fc_spec::text;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The place of a root-relative path, if it is plain and no part of it is a symbolic link.
+/// Returns the place of a root-relative path, if the path is plain and no part of it is a symbolic link.
 ///
 /// # Errors
 /// `BadPath`, `Symlink`.
@@ -24,7 +24,7 @@ pub fn resolve(root: &Path, path: &str) -> Result<PathBuf, OutputError> {
     Ok(place)
 }
 
-/// Whether a path names a file below the root on every system.
+/// Returns `Ok` if a path names a file below the root on every system.
 fn check(path: &str) -> Result<(), OutputError> {
     let bad = |why| {
         Err(OutputError::BadPath {

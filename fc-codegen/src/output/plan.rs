@@ -1,4 +1,4 @@
-//! What has to change on the disk, found out before anything does.
+//! Plans all changes on the disk before the first one.
 
 use super::OutputError;
 use super::disk;
@@ -9,56 +9,56 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// What has to change on the disk. Every list is sorted by path; the manifest is among the files.
+/// The planned changes on the disk. The lists are sorted by path. The manifest is in one of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     root: PathBuf,
-    /// To be written where nothing is.
+    /// New files.
     pub created: Vec<NewFile>,
-    /// To be written over an older state of the generator's own.
+    /// Generated files with other contents.
     pub updated: Vec<UpdatedFile>,
-    /// Right as they are.
+    /// Files that are up to date.
     pub unchanged: Vec<String>,
-    /// The generator's own that it no longer makes.
+    /// Generated files that are no longer needed.
     pub orphaned: Vec<OldFile>,
-    /// In the way of artifacts and not the generator's.
+    /// Files in the places of artifacts that are not generated.
     pub foreign: Vec<String>,
 }
 
-/// A file to be written where nothing is.
+/// A new file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NewFile {
-    /// Path from the root.
+    /// The path, relative to the root.
     pub path: String,
-    /// All of it.
+    /// The contents.
     pub contents: String,
 }
 
 /// A file to be overwritten.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UpdatedFile {
-    /// Path from the root.
+    /// The path, relative to the root.
     pub path: String,
-    /// What is on the disk.
+    /// The contents on the disk.
     pub before: Vec<u8>,
-    /// What has to be.
+    /// The new contents.
     pub contents: String,
 }
 
 /// A file to be removed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OldFile {
-    /// Path from the root.
+    /// The path, relative to the root.
     pub path: String,
-    /// What is on the disk.
+    /// The contents on the disk.
     pub before: Vec<u8>,
 }
 
-/// Compares artifacts with the disk below `root`. With `only`, the files of all other targets and
-/// what the manifest says of them stay as they are; without, every target counts.
+/// Compares artifacts with the disk below `root`. With `only`, the files and manifest entries of all other targets stay
+/// unchanged. An empty `only` means all targets.
 ///
 /// # Errors
-/// All of [`OutputError`] but `Foreign`: files in the way are listed in the plan.
+/// All of [`OutputError`] except `Foreign`. The plan lists foreign files.
 pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[String]) -> Result<Plan, OutputError> {
     let chosen = |target: &str| only.is_empty() || only.iter().any(|name| name == target);
     let manifest_place = resolve(root, MANIFEST)?;
@@ -118,7 +118,7 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[String]) -> Result<Pl
 }
 
 impl Plan {
-    /// Whether the disk is as it has to be.
+    /// Returns `true` if the disk is up to date.
     #[must_use]
     pub fn is_fresh(&self) -> bool {
         self.created.is_empty()
@@ -127,11 +127,10 @@ impl Plan {
             && self.foreign.is_empty()
     }
 
-    /// Makes the disk agree, the manifest last.
+    /// Updates the disk, and the manifest last.
     ///
     /// # Errors
-    /// `Foreign`, and nothing has been changed; `Symlink` or `Io`, and then running again finishes
-    /// the work.
+    /// `Foreign`, before any change. After `Symlink` or `Io`, running again completes the work.
     pub fn write(&self) -> Result<(), OutputError> {
         if !self.foreign.is_empty() {
             return Err(OutputError::Foreign {
@@ -143,7 +142,7 @@ impl Plan {
         let (last, first): (Vec<_>, Vec<_>) = created
             .chain(updated)
             .partition(|(path, _)| *path == MANIFEST);
-        // Much of the time is the system's, which can be had twice.
+        // Most of the time is spent in the system, which can do several writes at once.
         let replace = |&(path, contents): &(&String, &String)| {
             disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())
         };
@@ -154,7 +153,7 @@ impl Plan {
         last.iter().try_for_each(replace)
     }
 
-    /// Puts a file on the list that it belongs to.
+    /// Adds a file to its list.
     fn compare(
         &mut self,
         place: &Path,

@@ -1,4 +1,4 @@
-//! Questions as text and as Markdown.
+//! Renders questions as text and as Markdown.
 
 use super::{By, List, facts};
 use crate::emit::markdown::{Word as _, confirmed};
@@ -6,7 +6,7 @@ use fc_spec::model::Question;
 use std::fmt::Write as _;
 
 impl List<'_> {
-    /// For a terminal.
+    /// Returns the questions for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -36,14 +36,14 @@ impl List<'_> {
         text
     }
 
-    /// The lines that an answer to each of them changes.
+    /// Returns the lines that the answers change.
     #[must_use]
     pub fn edits(&self) -> String {
         let open = self.questions.iter().filter(|it| it.is_open());
         open.map(|it| it.edit.as_str()).collect()
     }
 
-    /// To send to the owner.
+    /// Returns the questions as a document for the owner.
     #[must_use]
     pub fn markdown(&self) -> String {
         let mut text = format!(
@@ -73,7 +73,7 @@ impl List<'_> {
         text
     }
 
-    /// By what they are gathered, in the order of the first of each.
+    /// Returns the questions by section, in the order of their first questions.
     fn gathered(&self) -> Vec<(String, Vec<&Question>)> {
         let mut gathered: Vec<(String, Vec<&Question>)> = Vec::new();
         for question in &self.questions {
@@ -103,7 +103,7 @@ impl List<'_> {
         }
     }
 
-    /// Who has settled it, and when.
+    /// Returns the confirmation of a question.
     fn word(&self, question: &Question) -> Option<String> {
         let word = question.confirmed.as_ref()?;
         Some(confirmed(word, self.lang))

@@ -1,5 +1,4 @@
-//! What the owner of the protocol has still to say: as lists for people, and as a sheet that goes to the owner and
-//! comes back.
+//! Questions for the owner of the protocol: lists for people, and a sheet that the owner fills in.
 
 mod list;
 mod sheet;
@@ -18,19 +17,19 @@ pub struct List<'m> {
     by: By,
 }
 
-/// By what questions are gathered.
+/// The sections of a list of questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
-    /// By what they hold up.
+    /// By impact.
     Impact,
-    /// By the group of operations in whose file they stand.
+    /// By the group of operations whose file has the question.
     Group,
     /// By whether they are open.
     State,
 }
 
 impl<'m> List<'m> {
-    /// The questions of which `wanted` is true.
+    /// Returns the questions for which `wanted` is true.
     #[must_use]
     pub fn new(model: &'m Model, lang: Lang, by: By, wanted: impl Fn(&Question) -> bool) -> Self {
         Self {
@@ -41,32 +40,32 @@ impl<'m> List<'m> {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of questions.
     #[must_use]
     pub fn len(&self) -> usize {
         self.questions.len()
     }
 
-    /// Whether there are none.
+    /// Returns `true` if there are no questions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.questions.is_empty()
     }
 
-    /// As they are in `fcproto inspect`, as one JSON document.
+    /// Returns the questions as one JSON document, in the form of `fcproto inspect`.
     #[must_use]
     pub fn json(&self) -> String {
-        // Nothing of a question has keys that are no texts, which is all that can fail.
+        // Serialization only fails for keys that are not strings, and questions have none.
         serde_json::to_string_pretty(&self.questions).unwrap_or_default() + "\n"
     }
 
-    /// What one is about, for people.
+    /// Returns the title of the subject of a question.
     fn about(&self, question: &Question) -> String {
         self.book.name_of(&question.subject, self.lang, Page::Index)
     }
 }
 
-/// The facts that a question governs and what is said of them until it is settled: `code: open`.
+/// Returns the facts that a question governs, each with its state until the question is settled: `code: open`.
 fn facts(about: &[Governed]) -> String {
     let facts = about
         .iter()

@@ -1,4 +1,4 @@
-//! Questions as a sheet of comma-separated values: the owner fills in a column and sends it back.
+//! Questions as a sheet of comma-separated values. The owner fills in a column and sends it back.
 
 use super::{List, facts};
 use crate::emit::markdown::{Lang, Word as _};
@@ -7,7 +7,7 @@ use fc_spec::model::{Confirmation, Governed, Model, Question, Text};
 use fc_spec::text;
 use std::fmt;
 
-/// A spreadsheet takes a text without it for one of its own encoding.
+/// Without this mark, spreadsheets assume another encoding.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// The columns, in Chinese and English.
@@ -23,7 +23,7 @@ const COLUMNS: [(Column, &str, &str); 9] = [
     (Column::Reference, "凭据", "reference"),
 ];
 
-/// What stands in `answer` where everything is right as it is.
+/// The values of `answer` that confirm the spec unchanged.
 const YES: [&str; 5] = ["ok", "yes", "确认", "是", "对"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,26 +39,26 @@ enum Column {
     Reference,
 }
 
-/// Why a sheet cannot be read.
+/// The reason why a sheet cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SheetError {
     /// It is not comma-separated, or not UTF-8.
     Malformed(String),
-    /// A column is missing, which is called this in English and in Chinese.
+    /// A column is missing. The values are its English and Chinese names.
     NoColumn(&'static str, &'static str),
     /// A line cannot be used.
     Line {
-        /// Counted from 1.
+        /// The number of the line, from 1.
         line: u64,
-        /// What its `id` says.
+        /// The value of its `id`.
         id: String,
-        /// Why, as a sentence without its end.
+        /// The reason, as a sentence without a full stop.
         why: Text,
     },
 }
 
 impl SheetError {
-    /// The same in both languages, as a sentence without its end.
+    /// Returns the reason in both languages, as a sentence without a full stop.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -90,7 +90,7 @@ impl fmt::Display for SheetError {
 impl std::error::Error for SheetError {}
 
 impl List<'_> {
-    /// As comma-separated values, with an empty column for the answers.
+    /// Returns comma-separated values with an empty column for the answers.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -122,13 +122,13 @@ impl List<'_> {
     }
 }
 
-/// What the owner has filled in; a line without an answer, or of a question that is settled, is left out. `by` and
-/// `date` hold for lines that do not say so themselves.
+/// Returns the answers of the owner. Skips lines without an answer and lines of settled questions. `by` and `date` are
+/// the defaults for lines without these values.
 ///
 /// # Errors
 ///
-/// Every line that cannot be used: it answers no question of the model, or one that has been reworded since, or says
-/// neither who answers nor when.
+/// The error of a malformed sheet or a missing column, or of every unusable line. A line is unusable if its question is
+/// unknown or has changed, if it names no person, or if its answer is invalid.
 pub fn read(
     sheet: &[u8],
     model: &Model,
@@ -140,7 +140,7 @@ pub fn read(
         .split(|byte| *byte == b'\n')
         .next()
         .unwrap_or_default();
-    // What a spreadsheet puts between values depends on the country it was set up for.
+    // The separator of a spreadsheet depends on its country settings.
     let count = |byte: &u8| first.split(|it| it == byte).count();
     let delimiter = [b',', b';', b'\t']
         .into_iter()
@@ -232,7 +232,7 @@ pub fn read(
     }
 }
 
-/// By path, what an answer says; or the answer in the owner's words, where no fact is asked for.
+/// The values of an answer by path, or the answer in the owner's words if it is about no fact.
 type Values = (Vec<(String, String)>, Option<String>);
 
 fn values(about: &[Governed], answer: &str) -> Result<Values, Text> {

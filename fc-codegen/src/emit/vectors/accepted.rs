@@ -1,4 +1,4 @@
-//! Messages that must be read, and written again as they were.
+//! Messages that a reader must accept and write back.
 
 use super::case::Case;
 use super::conditions;
@@ -56,7 +56,7 @@ pub(super) fn messages(case: &Case<'_, '_>) -> Vec<Value> {
     entries
 }
 
-/// A response for each error that the operation declares, where responses carry a result code.
+/// Returns a response for each error that the operation declares, if responses carry a result code.
 fn refusals(case: &Case<'_, '_>) -> Vec<(String, Value)> {
     let model = case.samples.model();
     let envelope = &model.envelope;
@@ -79,7 +79,7 @@ fn refusals(case: &Case<'_, '_>) -> Vec<(String, Value)> {
     model.results.iter().filter(declared).map(refusal).collect()
 }
 
-/// The message with every integer written as other languages may write it: `1.0`.
+/// Returns the message with integers in a form of other languages: `1.0`.
 fn with_points(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Value {
     let mut body = full.clone();
     let envelope = case.samples.envelope(case.direction).iter();
@@ -98,7 +98,7 @@ fn with_points(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Value {
     body
 }
 
-/// A message for each variant of a one-of but the first, which the example shows.
+/// Returns a message for each variant of a one-of except the first, which the example shows.
 fn variants(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<(String, Value)> {
     let mut messages = Vec::new();
     for site in sites(case.samples, ty, full) {

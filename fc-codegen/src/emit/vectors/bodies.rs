@@ -1,4 +1,4 @@
-//! `bodies.json`: JSON itself, whatever message it is.
+//! `bodies.json`: rules of JSON that hold for every message.
 
 use super::file::contents;
 use super::json_cases::{JsonCase, json_cases};
@@ -26,7 +26,7 @@ fn entry(case: &JsonCase) -> Value {
         ("name", text(&format!("{}_{}", case.rule.name(), case.name))),
         ("type", text(case.ty)),
         ("bytes", text(&hex(&case.body))),
-        // For people; not every body is text.
+        // For people. Some bodies are not text.
         ("text", text(&String::from_utf8_lossy(&case.body))),
         (key, text(outcome)),
     ])

@@ -1,4 +1,4 @@
-//! Bodies that must be refused, each by the one rule that it breaks.
+//! Bodies that a reader must refuse. Each breaks exactly one rule.
 
 use super::case::Case;
 use super::edit::{Path, doubled, get, removed, replaced};
@@ -14,7 +14,7 @@ use fc_spec::model::{
     EncodingRole, EnumType, Field, Number, OneOf, Quirk, Type, TypeShape, Value, WireForm,
 };
 
-/// Nesting past the limit is written out up to here; deeper limits have no vector.
+/// The maximum nesting that a vector contains. A larger limit has no vector.
 const DEEPEST: u32 = 1024;
 
 pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
@@ -68,7 +68,7 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
     entries
 }
 
-/// Texts that are no JSON object, or too deep a one.
+/// Returns texts that are not a JSON object, or are nested too deeply.
 fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
     let whole = full.to_string();
     let inside = whole.strip_prefix('{').unwrap_or_default();
@@ -96,7 +96,8 @@ fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
     }
     let limit = case.samples.model().limits.json_depth;
     if limit <= DEEPEST {
-        // Well past the limit, so that it does not matter whether the outermost object counts.
+        // The depth exceeds the limit by several levels, so that it does not matter whether the outermost object
+        // counts.
         let depth = usize::try_from(limit).unwrap_or(0) + 8;
         texts.push((
             "too_deep",
@@ -111,7 +112,7 @@ fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
 
 type Broken = (&'static str, &'static str, Value);
 
-/// Values that break one rule of a place: the error, a suffix for the name, the value.
+/// Returns values that break one rule of a place: the error, a suffix for the name, and the value.
 fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     let mut values = Vec::new();
     if *site.ty != Type::Json {
@@ -141,7 +142,7 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
             values.extend(bad_pattern(site.field, sample));
             values.extend(wrong_lengths(site, |count| {
                 let wrong = cycled(sample, count);
-                // With a pattern that this breaks as well, either error would do.
+                // If the value also breaks the pattern, readers may report either error.
                 pattern_takes(site.field, &wrong).then(|| text(&wrong))
             }));
         }
@@ -160,7 +161,7 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     values
 }
 
-/// No type but `json` takes this.
+/// Returns a value that only the type `json` accepts.
 fn wrong_type(ty: &Type) -> Value {
     match ty {
         Type::Array(_) | Type::Named(_) => Value::Bool(true),
@@ -168,7 +169,7 @@ fn wrong_type(ty: &Type) -> Value {
     }
 }
 
-/// Forms of a value that the `wire` of its field rules out, and that no quirk of it lets in again.
+/// Returns forms of a value that neither the `wire` of its field nor a quirk allows.
 fn other_forms(site: &Site<'_>, value: &Value) -> Vec<Broken> {
     let quirks = &site.field.details().quirks;
     let is_strict = !quirks
@@ -199,7 +200,7 @@ fn unknown_value(shape: &EnumType, field: &Field) -> Option<Broken> {
     Some(("unknown_value", "", on_the_wire(value, field.wire_form)))
 }
 
-/// Values that the `only` of a field leaves out: one that the enum has, and one that it would keep.
+/// Returns values that the `only` of a field excludes: a known one, and an unknown one that the enum alone would keep.
 fn not_taken(shape: &EnumType, field: &Field) -> Vec<Broken> {
     let only = &field.details().only;
     if only.is_empty() {
@@ -220,12 +221,12 @@ fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {
     (!taken).then_some(("no_variant", "", nothing_known))
 }
 
-/// Just below and just above what a number field takes.
+/// Returns values just below and just above the range of a number field.
 fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
     match ty {
         Type::Int(kind) => {
             let (least, most) = int_range(*kind, field);
-            // The ends of 64 bits are left out: not every JSON reader can tell them apart.
+            // The ends of 64 bits are left out, because some JSON readers round them.
             let exact = |edge: i128| edge.unsigned_abs() < 1 << 53;
             let below = exact(least).then(|| ("_below", int(least - 1)));
             let above = exact(most).then(|| ("_above", int(most + 1)));
@@ -244,8 +245,8 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// Values just too short and just too long, made by `value`. A length counts the items of an
-/// array, not what is in them.
+/// Returns values just too short and just too long, which `value` makes. A length counts the items of an array, not
+/// their contents.
 fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<Broken> {
     let length = site.field.details().length.filter(|_| !site.is_item);
     let Some((least, most)) = length else {
@@ -262,7 +263,7 @@ fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<B
     broken.collect()
 }
 
-/// The sample with one character changed so that the pattern does not take it.
+/// Returns the sample with one character changed so that it breaks the pattern.
 fn bad_pattern(field: &Field, sample: &str) -> Option<Broken> {
     field.details().pattern.as_ref()?;
     let stem: String = sample

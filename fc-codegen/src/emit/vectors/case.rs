@@ -1,4 +1,4 @@
-//! The entries of one side of an operation.
+//! The entries for one side of an operation.
 
 use crate::emit::json::{hex, object, text};
 use crate::emit::packed;
@@ -6,7 +6,7 @@ use crate::sample::{Profile, SAMPLE_ID, Samples};
 use fc_reflect::{FrameId, Reflector};
 use fc_spec::model::{Direction, EncodingRole, Operation, StructRef, Value};
 
-/// One side of an operation, and what its entries have in common.
+/// One side of an operation, with the context of its entries.
 pub(super) struct Case<'a, 'm> {
     pub(super) reflector: &'a Reflector<'m>,
     pub(super) samples: &'a Samples<'m>,
@@ -15,30 +15,30 @@ pub(super) struct Case<'a, 'm> {
 }
 
 impl Case<'_, '_> {
-    /// The struct of the body; `None` for raw bytes.
+    /// Returns the struct of the body, or `None` for raw bytes.
     pub(super) fn body_type(&self) -> Option<&StructRef> {
         Some(&self.operation.body(self.direction)?.ty)
     }
 
-    /// A whole message.
+    /// Returns a whole message.
     pub(super) fn message(&self, profile: Profile) -> Value {
         self.samples
             .message(self.operation, self.direction, profile)
     }
 
-    /// What frames of this side say; `None` without a code.
+    /// Returns the header fields of frames of this side, or `None` without a code.
     pub(super) fn id(&self) -> Option<FrameId> {
         self.reflector.id(self.operation, self.direction, SAMPLE_ID)
     }
 
-    /// Whether there are frames of this side that are packed so.
+    /// Returns `true` if this side has frames with this encoding.
     pub(super) fn packs(&self, encoding: EncodingRole) -> bool {
         let layout = &self.reflector.model().frame;
         let is_known = encoding == EncodingRole::Plain || layout.encoding(encoding).is_some();
         is_known && self.id().is_some()
     }
 
-    /// `frame` around the data, or `text` while there is no code.
+    /// Returns `frame` with a frame around the data, or `text` with the data if the operation has no code.
     pub(super) fn carrier(&self, data: &[u8], encoding: EncodingRole) -> (&'static str, Value) {
         match self.id() {
             Some(id) => {

@@ -1,4 +1,4 @@
-//! Fields that contradict their conditions: a receiver takes them as they are.
+//! Fields that contradict their conditions. A receiver accepts them unchanged.
 
 use super::case::Case;
 use super::edit::{get, removed, replaced};
@@ -6,8 +6,8 @@ use super::sites::{Site, sites};
 use crate::sample::constraint::on_the_wire;
 use fc_spec::model::{Asked, Condition, Field, StructRef, Type, TypeShape, Value};
 
-/// A message for each optional field with a condition in which that field is missing although it is asked for, or there
-/// although it is not. `full` has every field that is asked for.
+/// Returns a message for each optional field that contradicts its condition. The field is missing although the
+/// condition holds, or present although it does not. `full` has every field whose condition holds.
 pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<Value> {
     let mut entries = Vec::new();
     for site in sites(case.samples, ty, full) {
@@ -32,7 +32,7 @@ pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec
     entries
 }
 
-/// The message with another value of a field that is asked, so that the condition no longer holds.
+/// Returns the message with another value of a field in the condition, so that the condition no longer holds.
 fn contradicted(
     case: &Case<'_, '_>,
     site: &Site<'_>,
@@ -50,7 +50,7 @@ fn contradicted(
     })
 }
 
-/// The values that a field can have, where they can be counted.
+/// Returns all values of a field with a bool or an enum.
 fn values(case: &Case<'_, '_>, field: &Field) -> Vec<Value> {
     let only = &field.details().only;
     match &field.ty {

@@ -1,4 +1,4 @@
-//! Places in a JSON value, and changing one of them.
+//! Places in a JSON value, and changes at a place.
 
 use fc_reflect::Key;
 use fc_spec::model::Value;
@@ -9,17 +9,17 @@ use std::fmt;
 pub(super) struct Path(Vec<Key>);
 
 impl Path {
-    /// This path and one key more.
+    /// Returns this path with one more key.
     pub(super) fn key(&self, key: &str) -> Self {
         self.with(Key::Name(key.to_owned()))
     }
 
-    /// This path and one item more.
+    /// Returns this path with one more item.
     pub(super) fn item(&self, index: usize) -> Self {
         self.with(Key::Item(index))
     }
 
-    /// What holds the end of this path.
+    /// Returns the path of the parent.
     pub(super) fn parent(&self) -> Self {
         let (_, steps) = self.0.split_last().unzip();
         Self(steps.map(<[Key]>::to_vec).unwrap_or_default())
@@ -32,7 +32,7 @@ impl Path {
     }
 }
 
-/// `data.stations[0].x`, as errors print it.
+/// Writes the path as in errors: `data.stations[0].x`.
 impl fmt::Display for Path {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, step) in self.0.iter().enumerate() {
@@ -46,7 +46,7 @@ impl fmt::Display for Path {
     }
 }
 
-/// The value at a place.
+/// Returns the value at a place.
 pub(super) fn get<'v>(value: &'v Value, path: &Path) -> Option<&'v Value> {
     path.0
         .iter()
@@ -57,8 +57,8 @@ pub(super) fn get<'v>(value: &'v Value, path: &Path) -> Option<&'v Value> {
         })
 }
 
-/// A copy with another value at a place; a key that is not there yet is added last.
-/// Unchanged where the way there is missing.
+/// Returns a copy with another value at a place. A new key is added last. If the parent does not exist, the copy is
+/// unchanged.
 pub(super) fn replaced(value: &Value, path: &Path, new: Value) -> Value {
     changed(value, path, |parent, step| match (parent, step) {
         (Value::Array(items), Key::Item(index)) => {
@@ -71,14 +71,14 @@ pub(super) fn replaced(value: &Value, path: &Path, new: Value) -> Value {
     })
 }
 
-/// A copy without the key at the end of a path.
+/// Returns a copy without the key at the end of a path.
 pub(super) fn removed(value: &Value, path: &Path) -> Value {
     with_keys(value, path, |entries, key| {
         entries.retain(|(name, _)| name != key);
     })
 }
 
-/// A copy in which the key at the end of a path comes again behind all others, with the same value.
+/// Returns a copy in which the key at the end of a path is repeated after all other keys.
 pub(super) fn doubled(value: &Value, path: &Path) -> Value {
     with_keys(value, path, |entries, key| {
         let entry = entries.iter().find(|(name, _)| name == key);
@@ -86,7 +86,7 @@ pub(super) fn doubled(value: &Value, path: &Path) -> Value {
     })
 }
 
-/// A copy in which the key at the end of a path is spelled otherwise.
+/// Returns a copy in which the key at the end of a path has another name.
 pub(super) fn renamed(value: &Value, path: &Path, new: &str) -> Value {
     with_keys(value, path, |entries, key| {
         if let Some((name, _)) = entries.iter_mut().find(|(name, _)| name == key) {
@@ -95,7 +95,7 @@ pub(super) fn renamed(value: &Value, path: &Path, new: &str) -> Value {
     })
 }
 
-/// A copy in which the keys beside the one at the end of a path, itself among them, are changed.
+/// Returns a copy in which `change` changes the object that contains the end of a path.
 fn with_keys(
     value: &Value,
     path: &Path,
@@ -108,7 +108,7 @@ fn with_keys(
     })
 }
 
-/// A copy in which what holds the end of a path is changed.
+/// Returns a copy in which `change` changes the parent of the end of a path.
 fn changed(value: &Value, path: &Path, change: impl FnOnce(&mut Value, &Key)) -> Value {
     let mut copy = value.clone();
     if let Some((last, steps)) = path.0.split_last() {

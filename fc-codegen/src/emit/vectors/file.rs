@@ -1,13 +1,13 @@
-//! What every file of vectors has.
+//! The common keys of all files of vectors.
 
 use crate::emit::json::{int, text};
 use fc_spec::model::{Operation, Value};
 
-/// Version of the files' format.
+/// The version of the format.
 const FORMAT: i128 = 1;
 
-/// The contents of a file about one operation, or about none. The version of the protocol is for one file alone, so that a release does
-/// not change all of them.
+/// Returns the contents of a file about one operation or none. Only one file has the version of the protocol, so that a
+/// release does not change all files.
 pub(super) fn contents(
     version: Option<&str>,
     operation: Option<&Operation>,

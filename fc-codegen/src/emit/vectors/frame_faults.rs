@@ -1,4 +1,4 @@
-//! Frames of an operation that must be refused before their body is looked at.
+//! Frames of an operation that a reader must refuse before it reads the body.
 
 use super::case::Case;
 use crate::emit::json::{hex, text};
@@ -6,7 +6,7 @@ use crate::emit::packed;
 use fc_reflect::Reflector;
 use fc_spec::model::{EncodingRole, HeaderRole, Value};
 
-/// One refused frame per fault; nothing while the operation has no code.
+/// Returns a refused frame for each error. Returns none if the operation has no code.
 pub(super) fn of_operation(case: &Case<'_, '_>, data: &[u8]) -> Vec<Value> {
     let reflector = case.reflector;
     let Some(id) = case.id() else {
@@ -34,7 +34,7 @@ pub(super) fn of_operation(case: &Case<'_, '_>, data: &[u8]) -> Vec<Value> {
     faults.into_iter().map(entry).collect()
 }
 
-/// The first byte is that of neither head.
+/// Changes the first byte, so that it starts neither head.
 pub(super) fn bad_head(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8> {
     let layout = &reflector.model().frame;
     let heads = [layout.request_head.first(), layout.response_head.first()];
@@ -45,7 +45,7 @@ pub(super) fn bad_head(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8>
     frame
 }
 
-/// The total length does not even reach the end of the header.
+/// Sets the total length to less than that of the header.
 pub(super) fn short(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8> {
     let header = reflector.model().frame.header_len();
     let length = u64::try_from(header.saturating_sub(1)).unwrap_or(0);
@@ -53,13 +53,13 @@ pub(super) fn short(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8> {
     frame
 }
 
-/// The input ends one byte early.
+/// Removes the last byte.
 pub(super) fn truncated(mut frame: Vec<u8>) -> Vec<u8> {
     frame.pop();
     frame
 }
 
-/// An encoding that the spec does not list.
+/// Sets an encoding that the spec does not have.
 pub(super) fn unknown_encoding(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8> {
     let encodings = &reflector.model().frame.encodings;
     let known = |value: &u8| encodings.iter().any(|encoding| encoding.value == *value);
@@ -69,7 +69,7 @@ pub(super) fn unknown_encoding(reflector: &Reflector<'_>, mut frame: Vec<u8>) ->
     frame
 }
 
-/// One bit of the digest is wrong.
+/// Changes one bit of the digest.
 pub(super) fn bad_digest(reflector: &Reflector<'_>, mut frame: Vec<u8>) -> Vec<u8> {
     let digest = reflector.model().frame.field(HeaderRole::Digest);
     if let Some(byte) = digest.and_then(|field| frame.get_mut(field.offset)) {

@@ -1,4 +1,4 @@
-//! `frames.json`: the frame itself, whatever operation it carries.
+//! `frames.json`: rules of frames that hold for every operation.
 
 use super::file::contents;
 use super::frame_faults;
@@ -17,14 +17,14 @@ pub(super) fn file(reflector: &Reflector<'_>) -> Value {
     contents(Some(version), None, frames.accepted(), frames.rejected())
 }
 
-/// Takes a frame that must be refused: the error, a name, all of the input.
+/// Adds a frame that must be refused: the error, a name, and the whole input.
 type Push<'p> = &'p mut dyn FnMut(&str, &str, &[u8]);
 
 struct Frames<'a, 'm> {
     reflector: &'a Reflector<'m>,
     model: &'m Model,
     layout: &'m Frame,
-    /// A request without keys of its own.
+    /// A request with only an envelope.
     request: Vec<u8>,
     response: Vec<u8>,
     unknown_code: u16,
@@ -58,7 +58,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         }
     }
 
-    /// A request that nobody knows, plain.
+    /// Returns an uncompressed request with an unknown code.
     fn command(&self) -> Vec<u8> {
         let id = self.id(Kind::Command, Direction::Request);
         frame(self.reflector, id, EncodingRole::Plain, &self.request)
@@ -70,7 +70,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         reflector.seal_as_sent(id, EncodingRole::Gzip, packed, plain_len)
     }
 
-    /// The same with one integer of its header changed.
+    /// Returns the request with another integer in its header.
     fn command_with(&self, role: HeaderRole, value: u64) -> Vec<u8> {
         let mut frame = self.command();
         self.reflector.overwrite(&mut frame, role, value);
@@ -134,7 +134,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         entries
     }
 
-    /// Lengths that lie, and input that ends too soon.
+    /// Adds wrong lengths and truncated input.
     fn length_faults(&self, push: Push<'_>) {
         let good = self.command();
         let end = u64::try_from(good.len()).unwrap_or(u64::MAX);
@@ -177,7 +177,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         }
     }
 
-    /// Digests, plain lengths and gzip members that do not fit the data.
+    /// Adds digests, plain lengths and gzip members that do not match the data.
     fn data_faults(&self, push: Push<'_>) {
         let good = self.command();
         if self.has(HeaderRole::Digest) {
@@ -199,7 +199,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         }
     }
 
-    /// Gzip members that are none, or do not fit the plain length.
+    /// Adds invalid gzip members, and members that do not match the plain length.
     fn gzip_faults(&self, push: Push<'_>) {
         let packed = gzip(&self.request);
         let len = self.request.len();
@@ -226,7 +226,7 @@ impl<'a, 'm> Frames<'a, 'm> {
         push("bad_gzip", "gzip_bad_checksum", &gzipped(&checksum, len));
         push("bad_gzip", "gzip_without_data", &gzipped(&[], 0));
         if let Some(too_long) = self.model.limits.inflated_bytes.checked_add(1) {
-            // Refused by what the header says: a decoder need not inflate it to know.
+            // The header is enough to refuse it, so a decoder need not decompress the data.
             let mut frame = gzipped(&packed, len);
             let role = HeaderRole::PlainLength;
             self.reflector.overwrite(&mut frame, role, too_long.into());
@@ -242,14 +242,14 @@ impl<'a, 'm> Frames<'a, 'm> {
         self.layout.encoding(EncodingRole::Gzip).is_some()
     }
 
-    /// `None` of a frame that the limits of the spec do not allow.
+    /// Returns `None` for a frame that the limits of the spec do not allow.
     fn accepted_entry(&self, name: &str, bytes: &[u8]) -> Option<Value> {
         let frame = self.reflector.frame(bytes).ok()?;
         let content = |role: HeaderRole| {
             let field = frame.field(role)?;
             let value = match &field.content {
                 HeaderContent::Int(value) if role != HeaderRole::Digest => int(*value),
-                // Of a digest, the bytes as they are sent.
+                // A digest is shown as its bytes in the frame.
                 _ => text(&hex(bytes.get(field.span.clone()).unwrap_or_default())),
             };
             Some((role.name().to_owned(), value))
@@ -279,14 +279,14 @@ impl<'a, 'm> Frames<'a, 'm> {
     }
 }
 
-/// The ranges whose codes are passed through.
+/// Returns the ranges of pass-through codes.
 fn passed_through(model: &Model) -> impl Iterator<Item = RangeInclusive<u16>> {
     let ranges = model.ranges.iter();
     let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
     ranges.map(|range| range.first..=range.last)
 }
 
-/// A code that no operation has, outside every range that is passed through; the largest.
+/// Returns the largest code without an operation outside all pass-through ranges.
 fn unknown_code(model: &Model) -> u16 {
     let taken = model.taken_codes();
     let is_passed = |code: &u16| passed_through(model).any(|range| range.contains(code));
@@ -295,7 +295,7 @@ fn unknown_code(model: &Model) -> u16 {
     free.unwrap_or(u16::MAX)
 }
 
-/// A code that is passed through and that no operation has.
+/// Returns a pass-through code without an operation.
 fn pass_through_code(model: &Model) -> Option<u16> {
     let taken = model.taken_codes();
     passed_through(model)
@@ -303,7 +303,7 @@ fn pass_through_code(model: &Model) -> Option<u16> {
         .find(|code| !taken.contains(code))
 }
 
-/// A copy with a bit changed `from_end` bytes before the end.
+/// Returns a copy with one bit changed, `from_end` bytes before the end.
 fn flipped(bytes: &[u8], from_end: usize) -> Vec<u8> {
     let mut copy = bytes.to_vec();
     if let Some(byte) = bytes

@@ -1,29 +1,28 @@
-//! Bodies at the edges of JSON, and what every reader makes of them.
+//! Bodies at the edges of JSON, with the result of every reader.
 //!
-//! Each is read as a message of one key, `value`, which may be missing, and which keeps unknown keys.
-//! They depend on no spec: all types of the spec language are among them.
+//! Each body is read as a message with one optional key, `value`. The message keeps unknown keys. The cases use all
+//! types of the spec language and depend on no spec.
 
 use fc_spec::model::{IntKind, JsonRule};
 
-/// A body, and what becomes of it.
+/// A body and the result of reading it.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::emit) struct JsonCase {
     /// The rule that it shows.
     pub(in crate::emit) rule: JsonRule,
-    /// Its name, of which each rule has one.
+    /// The name, unique within the rule.
     pub(in crate::emit) name: String,
-    /// Type of `value`, as the spec language spells it; `object` is a message of the same one key of
-    /// type `i32`, which may be missing, and keeps unknown keys as well.
+    /// The type of `value` in the spec language. `object` is a message like the outer one, whose `value` is an `i32`.
     pub(in crate::emit) ty: &'static str,
-    /// The bytes received.
+    /// The received bytes.
     pub(in crate::emit) body: Vec<u8>,
-    /// The text of the message written again, or the name of the error.
+    /// The text of the message after writing it back, or the name of the error.
     pub(in crate::emit) outcome: Result<String, &'static str>,
-    /// Whether pages show it.
+    /// `true` if pages show it.
     pub(in crate::emit) shown: bool,
 }
 
-/// Every case, by rule.
+/// Returns every case, by rule.
 pub(in crate::emit) fn json_cases() -> Vec<JsonCase> {
     let tables = [
         (JsonRule::Text, TEXT),
@@ -48,7 +47,6 @@ pub(in crate::emit) fn json_cases() -> Vec<JsonCase> {
     cases
 }
 
-/// A row of a table.
 struct Row {
     name: &'static str,
     ty: &'static str,
@@ -69,14 +67,14 @@ impl Row {
         }
     }
 
-    /// The row, shown on pages.
+    /// Returns the row, shown on pages.
     const fn shown(mut self) -> Self {
         self.shown = true;
         self
     }
 }
 
-/// A body that is read, and written so.
+/// A body that is accepted, and its text after writing it back.
 const fn read(
     name: &'static str,
     ty: &'static str,
@@ -92,7 +90,7 @@ const fn read(
     }
 }
 
-/// A body that is read, and written as it came.
+/// A body that is accepted and written back unchanged.
 const fn kept(name: &'static str, ty: &'static str, body: &'static str) -> Row {
     read(name, ty, body.as_bytes(), body)
 }
@@ -113,7 +111,7 @@ const fn refused(
     }
 }
 
-// One row a line.
+// Each row is on one line.
 
 #[rustfmt::skip]
 const TEXT: &[Row] = &[
@@ -125,7 +123,7 @@ const TEXT: &[Row] = &[
     refused("other_white_space", "i32", b"\x0C{}", "bad_json"),
     refused("two_values", "i32", b"{}{}", "bad_json"),
     refused("text_behind", "i32", b"{} x", "bad_json").shown(),
-    // What a program in C sends that counts the end of its string.
+    // C programs that count the end of a string send this.
     refused("zero_byte_behind", "i32", b"{}\0", "bad_json"),
     refused("cut_off", "i32", br#"{"value":1"#, "bad_json"),
     refused("comma_at_the_end", "i32", br#"{"value":1,}"#, "bad_json"),
@@ -155,7 +153,7 @@ const KNOWN_KEYS: &[Row] = &[
     refused("other_type", "i32", br#"{"value":1,"value":"x"}"#, "duplicate_key"),
     refused("inside", "object", br#"{"value":{"value":1,"value":1}}"#, "duplicate_key"),
     refused("objects", "object", br#"{"value":{},"value":{}}"#, "duplicate_key"),
-    // Whatever else is wrong, a text that is no JSON is that.
+    // Invalid JSON is reported before any other error.
     refused("no_json", "i32", br#"{"value":1,"value":1"#, "bad_json"),
     // Each object has its own keys.
     kept("of_two_objects", "object", r#"{"value":{"value":1},"x":{"value":2}}"#),
@@ -194,7 +192,7 @@ const INTEGERS: &[Row] = &[
     read("negative_zero", "i32", br#"{"value":-0}"#, r#"{"value":0}"#).shown(),
     read("negative_zero_with_a_point", "u8", br#"{"value":-0.0}"#, r#"{"value":0}"#),
     read("zero_with_an_exponent", "i32", br#"{"value":0e400}"#, r#"{"value":0}"#),
-    // Exact: a double would make it its neighbour.
+    // The value is exact. A double would round it to a neighbour.
     read("past_double_precision", "i64", br#"{"value":9007199254740993.0}"#, r#"{"value":9007199254740993}"#).shown(),
     read("exponent_of_64_bits", "u64", br#"{"value":1e19}"#, r#"{"value":10000000000000000000}"#),
     refused("fraction", "i32", br#"{"value":1.5}"#, "wrong_type").shown(),
@@ -219,7 +217,7 @@ const FLOATS: &[Row] = &[
     read("negative_zero", "f64", br#"{"value":-0.0}"#, r#"{"value":-0.0}"#),
     read("nearest", "f64", br#"{"value":0.1000000000000000055}"#, r#"{"value":0.1}"#),
     read("integer_past_double_precision", "f64", br#"{"value":9007199254740993}"#, r#"{"value":9007199254740992.0}"#).shown(),
-    // Each is one that some library reads as the number beside it.
+    // Some libraries round each of these to a neighbouring number.
     read("more_than_half_way", "f64", br#"{"value":9007199254740993.00000000000000000000001}"#, r#"{"value":9007199254740994.0}"#),
     read("last_bit", "f64", br#"{"value":-6.879770673665752e-301}"#, r#"{"value":-6.879770673665752e-301}"#),
     read("below_the_normal_ones", "f64", br#"{"value":2.2250738585072011e-308}"#, r#"{"value":2.225073858507201e-308}"#),
@@ -267,10 +265,10 @@ const STRINGS: &[Row] = &[
     refused("number", "string", br#"{"value":1}"#, "wrong_type"),
 ];
 
-/// Past it, a double does not have every integer: 2⁵³.
+/// 2⁵³. A double does not represent every integer above it.
 const DOUBLE: i128 = 1 << 53;
 
-/// Integers at the edges of a type and around those of double precision.
+/// Adds integers at the ends of a type and around the limit of a double.
 fn edges(ty: &'static str, (least, most): (i128, i128), cases: &mut Vec<JsonCase>) {
     let mut push = |name: &str, number: String, value: Option<i128>| {
         cases.push(JsonCase {

@@ -1,35 +1,35 @@
-//! Golden frames: what every implementation of the protocol must accept and must refuse.
+//! Golden frames: the inputs that every implementation of the protocol must accept or refuse.
 //!
-//! One file per operation (`fc-generated/vectors/<operation>.json`), and `frames.json` and `bodies.json` for
-//! what no operation has to do with. Every file is
+//! Each operation has a file (`fc-generated/vectors/<operation>.json`). `frames.json` and `bodies.json` contain the
+//! rules that hold for all operations. Every file has these keys:
 //!
 //! ```json
 //! { "format": 1, "operation": "get_station", "kind": "command", "code": 2563,
 //!   "accepted": [ … ], "rejected": [ … ] }
 //! ```
 //!
-//! `frames.json` has the protocol's `version` as well, so that a copy of the files tells which release it holds peers to.
+//! `frames.json` also has the protocol's `version`, so that a copy of the files shows its release.
 //!
-//! **Accepted**, in an operation's file: `name`, `direction` (`request`, `response`), `case`
-//! (`plain`, `gzip`, `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `integral`, `variant_<name>`,
-//! `error_<result>`, `quirk_<field>_…`, `condition_<field>_missing`, `condition_<field>_unasked`), then
-//! - `frame`: the frame in hexadecimal; or, while the operation has no code, `text`: its JSON;
-//! - `body`: the JSON in the frame, envelope first. A typed reader that writes the message again
-//!   writes the same JSON (order of keys aside), or `canonical` where that is given: a quirk was
-//!   read, or an integer with a point, and is not sent. Streams have `data` instead: the bytes in hexadecimal.
+//! **Accepted**, in an operation's file: `name`, `direction` (`request`, `response`), `case` (`plain`, `gzip`,
+//! `unknown_keys`, `unknown_value`, `minimal`, `maximal`, `integral`, `variant_<name>`, `error_<result>`,
+//! `quirk_<field>_…`, `condition_<field>_missing`, `condition_<field>_unasked`), and:
+//! - `frame`: the frame in hexadecimal. An operation without a code has `text` instead: its JSON.
+//! - `body`: the JSON in the frame, envelope first. A typed reader that writes the message back produces the same JSON
+//!   in any order of keys. If the input uses a quirk or an integer with a point, it produces `canonical` instead.
+//!   Streams have `data` instead of `body`: the bytes in hexadecimal.
 //!
-//! **Rejected**: `name`, `direction`, `frame` (or `text`) and `error`, the name of the error.
-//! `frame` is all of the input: what ends inside a frame is `truncated`.
+//! **Rejected**: `name`, `direction`, `frame` (or `text`) and `error`, the name of the error. `frame` is the whole
+//! input, so an incomplete frame is `truncated`.
 //!
-//! In `frames.json`, `operation`, `kind` and `code` are null; accepted entries have `header` (what
-//! the header's fields hold, by role) and `data` (the data area, decompressed, in hexadecimal).
+//! In `frames.json`, `operation`, `kind` and `code` are null. Accepted entries have `header`, the values of the header
+//! fields by role, and `data`, the decompressed data in hexadecimal.
 //!
-//! `bodies.json` holds readers to the rules of JSON, whatever the spec; the same three are null. Each entry
-//! is a body to be read as a message of one key, `value`, which may be missing, and which keeps unknown
-//! keys: `name`, `type` (that of `value`, as the spec language has it; `object` is such a message again,
-//! whose `value` is an `i32`), `bytes` (the body in hexadecimal) and `text` (the same for people), then
-//! - accepted: `written`, the text of the message written again. Numbers of `f32` and `f64` and escapes of
-//!   strings may be spelled otherwise; integers and what stands under unknown keys may not.
+//! `bodies.json` contains the rules of JSON, independent of the spec. The same three keys are null. Each entry is a
+//! body to be read as a message with one optional key, `value`, which keeps unknown keys. It has `name`, `type`,
+//! `bytes` (the body in hexadecimal) and `text` (the body for people). `type` is that of `value` in the spec language.
+//! `object` is a message of the same form, whose `value` is an `i32`. The entry also has:
+//! - accepted: `written`, the text of the message after writing it back. Numbers of `f32` and `f64` and escapes in
+//!   strings may have another spelling. Integers and values of unknown keys may not.
 //! - rejected: `error`.
 
 mod accepted;
@@ -54,7 +54,7 @@ use fc_spec::model::{Kind, Model, Operation, Value};
 use file::contents;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
-/// A file per operation, one for the frames themselves and one for the bodies.
+/// Returns a file for each operation, a file for frames and a file for bodies.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let reflector = Reflector::new(model);

@@ -1,4 +1,4 @@
-//! Where the wire is odd: what a lenient decoder takes, beside what is sent instead.
+//! Forms that a lenient decoder accepts, with the canonical form.
 
 use super::case::Case;
 use super::edit::{get, removed, renamed, replaced};
@@ -6,7 +6,7 @@ use super::sites::{Site, sites};
 use crate::emit::json::{int, text};
 use fc_spec::model::{Number, Quirk, StructRef, Type, Value, WireForm};
 
-/// A message for every form of every quirk in the body. `full` has every field.
+/// Returns a message for every form of every quirk in the body. `full` has every field.
 pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<Value> {
     let mut entries = Vec::new();
     for site in sites(case.samples, ty, full) {
@@ -32,7 +32,7 @@ pub(super) fn messages(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec
     entries
 }
 
-/// Other keys of a field, and the values that count as its absence.
+/// Returns messages with other keys of a field, and with values that count as its absence.
 fn of_field(case: &Case<'_, '_>, full: &Value, site: &Site<'_>) -> Vec<Value> {
     let mut entries = Vec::new();
     for also in site.field.details().also.iter().filter(|_| site.present) {
@@ -92,7 +92,7 @@ fn bool_forms(site: &Site<'_>, value: &Value) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// The number that a text holds.
+/// Returns the number in a text.
 pub(super) fn number_in(text: &str) -> Option<Value> {
     let integer = text.parse::<i128>().map(int).ok();
     integer.or_else(|| Some(Value::Number(Number::Float(text.parse().ok()?))))

@@ -1,29 +1,29 @@
-//! Which type each place of a composed value has.
+//! Finds the type of each place in a composed value.
 
 use super::edit::Path;
 use crate::sample::Samples;
 use fc_spec::model::{Field, OneOf, StructRef, StructType, Type, TypeShape, Value};
 
-/// A place in a body at which the spec says what may stand.
+/// A place in a body, with its description in the spec.
 #[derive(Clone, Debug)]
 pub(super) struct Site<'m> {
-    /// Where.
+    /// The path of the place.
     pub(super) path: Path,
-    /// What may stand there.
+    /// The type of the value.
     pub(super) ty: &'m Type,
-    /// The field, or that of the array around an item: its constraints hold for its items too.
+    /// The field. For an item it is the field of the array, because its constraints also apply to the items.
     pub(super) field: &'m Field,
-    /// The struct that has the field.
+    /// The struct that contains the field.
     pub(super) beside: &'m StructType,
-    /// Whether this is an item of an array.
+    /// `true` for an item of an array.
     pub(super) is_item: bool,
-    /// Whether the value has something there; an absent optional field is a site too.
+    /// `true` if the value has the place. An absent optional field is a site too.
     pub(super) present: bool,
-    /// Whether the field belongs to a variant of a one-of, so that its absence chooses another.
+    /// `true` if the field belongs to a variant of a one-of. Its absence would select another variant.
     pub(super) in_variant: bool,
 }
 
-/// Every place of a value of a struct, outer before inner. Of an array's items only the first is looked into.
+/// Returns every place of a struct's value, outer before inner. Only the first item of an array is searched.
 pub(super) fn sites<'m>(samples: &Samples<'m>, ty: &StructRef, value: &Value) -> Vec<Site<'m>> {
     let mut walk = Walk {
         samples,

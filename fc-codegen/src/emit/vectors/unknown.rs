@@ -1,4 +1,4 @@
-//! What a newer peer may send: keys and enum values that this spec does not know.
+//! Messages of a newer peer, with keys and enum values that this spec does not have.
 
 use super::edit::{Path, get, replaced};
 use super::sites::sites;
@@ -6,11 +6,10 @@ use crate::emit::json::{int, object, text};
 use crate::sample::{Samples, constraint};
 use fc_spec::model::{EnumRepr, EnumType, Number, Scalar, StructRef, Type, TypeShape, Value};
 
-/// Stem of the unknown key; underscores are added where an object already has such a key.
+/// The name of the unknown key. Underscores are added if an object already has this key.
 pub(super) const UNKNOWN_KEY: &str = "unknownKey";
 
-/// A copy of a struct's value with an unknown key at the end of it and of every object in it that
-/// the spec describes.
+/// Returns a copy of a struct's value. It and every object of the spec in it get an unknown key at the end.
 pub(super) fn with_unknown_keys(samples: &Samples<'_>, ty: &StructRef, value: &Value) -> Value {
     let mut objects = vec![Path::default()];
     for site in sites(samples, ty, value) {
@@ -36,8 +35,8 @@ pub(super) fn with_unknown_keys(samples: &Samples<'_>, ty: &StructRef, value: &V
     })
 }
 
-/// A copy of a struct's value in which every open enum holds a value it does not know; `None` if
-/// there is no open enum in it. A field with `only` takes no such value.
+/// Returns a copy of a struct's value in which every open enum has an unknown value. Returns `None` if it has no open
+/// enum. A field with `only` accepts no unknown value.
 pub(super) fn with_unknown_values(
     samples: &Samples<'_>,
     ty: &StructRef,
@@ -67,14 +66,15 @@ pub(super) fn with_unknown_values(
     copy
 }
 
-/// A value that fits an enum's representation and is none of its values; `None` where all of a
-/// small integer's values have names.
+/// Returns a value that fits the representation of an enum and is not one of its values. Returns `None` if all values
+/// of a small integer have names.
 pub(super) fn unknown_enum_value(shape: &EnumType) -> Option<Value> {
     let taken = |wanted: &Scalar| shape.values.iter().any(|value| value.wire == *wanted);
     match shape.repr {
         EnumRepr::Int(kind) => {
             let (least, most) = kind.range();
-            // Small first, so that it reads well, and past every value that an author adds next.
+            // Small values come first because they are easy to read. They start above the values that an author adds
+            // next.
             let from = 99.min(most);
             let mut candidates = (from..=most).chain((least..from).rev()).take(1 << 16);
             candidates
