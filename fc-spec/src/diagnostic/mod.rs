@@ -73,7 +73,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// An error at `span`.
+    /// Creates an error at `span`.
     #[must_use]
     pub fn error(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
@@ -90,7 +90,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning at `span`.
+    /// Creates a warning at `span`.
     #[must_use]
     pub fn warning(code: FaultCode, span: Span, message: Text) -> Self {
         Self {
@@ -157,7 +157,7 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// An empty list.
+    /// Creates an empty list.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -191,12 +191,12 @@ impl Faults {
         &self.gaps
     }
 
-    /// Marks that an error hides a name or a thing. Afterwards no thing can be reported as missing.
+    /// Records that an error hides a name or a definition. After this, no definition is reported as missing.
     pub(crate) fn lose(&mut self) {
         self.nameless = true;
     }
 
-    /// Returns `true` if an error hides something with an unknown name.
+    /// Returns `true` if an error hides a definition with an unknown name.
     pub(crate) fn has_lost(&self) -> bool {
         self.nameless
     }

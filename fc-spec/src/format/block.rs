@@ -1,56 +1,56 @@
-//! A file as rows: what begins a line of its own, with the comments that go with it.
+//! A file as rows: everything that starts a line, with its comments.
 
 use super::comments::{Comments, Line, begins_line, column, indentation, line, on_one_line};
 use super::{flow, scalar};
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Node, NodeKind, Style, Tree};
 
-/// A mapping or list that goes over several lines.
+/// A mapping or list over several lines.
 #[derive(Clone, Debug)]
 pub(super) struct Block<'t> {
-    /// What it is.
+    /// The mapping or list.
     pub node: Node<'t>,
-    /// Its entries or items.
+    /// The entries or items.
     pub rows: Vec<Row<'t>>,
-    /// Comments behind the last of them.
+    /// The comments after the last row.
     pub tail: Vec<Line<'t>>,
 }
 
 /// An entry or item.
 #[derive(Clone, Debug)]
 pub(super) struct Row<'t> {
-    /// Comments above it.
+    /// The comments above the row.
     pub above: Vec<Line<'t>>,
-    /// Whether the line right above it, below its comments, is blank.
+    /// `true` if the line directly above the row, below its comments, is blank.
     pub blank: bool,
-    /// Key of an entry.
+    /// The key of an entry.
     pub key: Option<Node<'t>>,
-    /// What stands under the key, or the item.
+    /// The value of the entry, or the item.
     pub value: Value<'t>,
-    /// The comment on its line.
+    /// The comment on the same line.
     pub behind: Option<&'t str>,
 }
 
-/// What stands in a row.
+/// The content of a row.
 #[derive(Clone, Debug)]
 pub(super) enum Value<'t> {
-    /// A scalar, nothing, or an empty mapping or list.
+    /// A scalar, an empty value, or an empty mapping or list.
     Leaf(Node<'t>),
-    /// A mapping or list in brackets that could be on one line.
+    /// A mapping or list in brackets that can be on one line.
     Flow(Node<'t>),
-    /// One that goes over several lines.
+    /// A mapping or list over several lines.
     Block(Block<'t>),
 }
 
-/// What begins behind a node, whatever that is in.
+/// The start of the next part of the file.
 #[derive(Clone, Copy)]
 struct Next {
     start: usize,
-    /// Column at which its line begins.
+    /// The column of the first text on its line.
     column: Option<usize>,
 }
 
-/// The rows of a file.
+/// Returns the rows of a file.
 pub(super) fn build<'t>(tree: &'t Tree<'_>, file: &'t SourceFile) -> Block<'t> {
     let mut builder = Builder {
         file,
@@ -65,7 +65,7 @@ pub(super) fn build<'t>(tree: &'t Tree<'_>, file: &'t SourceFile) -> Block<'t> {
     root
 }
 
-/// The rows of a mapping or list without a comment in it.
+/// Returns the rows of a mapping or list without comments.
 pub(super) fn opened<'t>(node: Node<'t>, file: &'t SourceFile) -> Block<'t> {
     let mut builder = Builder {
         file,
@@ -84,7 +84,8 @@ struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    /// `floor`: columns before a comment, at the least, that is the last thing in it.
+    /// Returns the rows of a mapping or list. A comment at its end belongs to it only if it is at column `floor` or
+    /// further.
     fn block(&mut self, node: Node<'t>, floor: usize, next: Next) -> Block<'t> {
         let children: Vec<(Option<Node<'t>>, Node<'t>)> = match node.kind() {
             NodeKind::Mapping(entries) => entries
@@ -100,7 +101,7 @@ impl<'t> Builder<'t> {
         let begin = node.span().start;
         let is_below = node.as_sequence().is_some() && starts.first() == Some(&begin);
         let column = if is_below {
-            // A list no further in than its key begins behind its first dash.
+            // A list at the column of its key starts after its first dash.
             indentation(self.file, begin)
         } else {
             column(self.file, begin)
@@ -127,7 +128,7 @@ impl<'t> Builder<'t> {
                 behind: None,
             };
             if index == 0 {
-                // What was first is not below anything, wherever it goes.
+                // A first row has no blank line above it, wherever sorting moves it.
                 match row.above.first_mut() {
                     Some(line) => line.blank = false,
                     None => row.blank = false,
@@ -152,7 +153,7 @@ impl<'t> Builder<'t> {
         Block { node, rows, tail }
     }
 
-    /// Finds what stands in a row, in a mapping or list that begins at a column, in brackets or not.
+    /// Fills in the value of a row. The row is in a mapping or list at `column`, with or without brackets.
     fn fill(
         &mut self,
         row: &mut Row<'t>,
@@ -187,9 +188,9 @@ impl<'t> Builder<'t> {
         row.value = Value::Block(block);
     }
 
-    /// Takes the comments around a value that is in one piece: the last one stays on its line if it stands there. But not
-    /// where brackets are opened behind a text without quotes: there it was behind a comma, and would seem to cut the
-    /// text off.
+    /// Takes the comments around a value that is one piece. The last comment stays on the line of the value if it is
+    /// there. An exception is a plain scalar in brackets that are opened: its comment was after a comma, and would now
+    /// seem to cut it off.
     fn finish(&mut self, row: &mut Row<'t>, value: Node<'t>, in_brackets: bool, next: Next) {
         let span = value.span();
         let is_block = value

@@ -1,14 +1,14 @@
-//! Mappings and lists in brackets, on one line.
+//! Mappings and lists in brackets on one line.
 
 use super::{order, scalar};
 use crate::load::Inside;
 use crate::syntax::{Node, NodeKind};
 
-/// Columns that a line with brackets has at most.
+/// The maximum number of columns of a line with brackets.
 const COLUMNS: usize = 160;
 
-/// Whether a mapping or list is written in brackets. A list without may begin with one that has them, where its own
-/// span begins with its first item's.
+/// Returns `true` if a mapping or list is written in brackets. A list without brackets can start with an item in
+/// brackets. Then both spans start at the same byte.
 pub(super) fn is_flow(node: Node<'_>, text: &str) -> bool {
     let start = node.span().start;
     let rest = text.get(start..).unwrap_or_default();
@@ -16,8 +16,7 @@ pub(super) fn is_flow(node: Node<'_>, text: &str) -> bool {
     rest.starts_with(['{', '[']) && first.is_none_or(|first| first.span().start > start)
 }
 
-/// Whether all that is in it could be on one line, however long: what is empty and what goes over several lines could
-/// not.
+/// Returns `true` if a node can be on one line of any length. Empty values and scalars over several lines cannot.
 pub(super) fn may_close(node: Node<'_>, text: &str) -> bool {
     match node.kind() {
         NodeKind::Null | NodeKind::Scalar(_) => {
@@ -31,8 +30,8 @@ pub(super) fn may_close(node: Node<'_>, text: &str) -> bool {
     }
 }
 
-/// Whether it is short enough, as this text behind so many columns. Values of the protocol are rows of a table, and lists
-/// of scalars are one thing: neither is clearer on many lines.
+/// Returns `true` if a node may be on this line, after `before` columns. Values of the protocol are rows of a table,
+/// and a list of scalars is one unit. They have no limit, because more lines would not make them clearer.
 pub(super) fn fits(node: Node<'_>, inside: Inside, line: &str, before: usize) -> bool {
     let is_scalar = |item: Node<'_>| item.as_scalar().is_some() || item.is_null();
     inside.is_free()
@@ -40,7 +39,7 @@ pub(super) fn fits(node: Node<'_>, inside: Inside, line: &str, before: usize) ->
         || before + columns(line) <= COLUMNS
 }
 
-/// Columns that a text takes; a Chinese character takes two.
+/// Returns the width of a text in columns. A Chinese character has two.
 pub(super) fn columns(text: &str) -> usize {
     let wide = |character: char| {
         matches!(
@@ -61,7 +60,7 @@ pub(super) fn columns(text: &str) -> usize {
         .sum()
 }
 
-/// On one line, with the keys of what has an order in it.
+/// Returns a node on one line, with its declared keys in order.
 pub(super) fn line(node: Node<'_>, inside: Inside, text: &str) -> String {
     match node.kind() {
         NodeKind::Null | NodeKind::Scalar(_) => scalar::short(node, text),

@@ -1,11 +1,11 @@
-//! One layout for the text of a spec file: keys in the order of the grammar, two columns a level, one blank line at most.
+//! Formats spec files: keys in the order of the grammar, two columns per level, at most one blank line.
 //!
-//! Kept to the byte are comments and scalars; kept as they are the order of everything whose order says something (the
-//! keys of a body, the values of an enum, operations), and whether a mapping or list is in brackets: only where one
-//! does not fit its line, or has a comment in it, does it go over several.
+//! The formatter keeps comments and scalars byte for byte. It keeps every order that has a meaning: keys of a body,
+//! values of an enum, operations. It keeps brackets, and opens them only if their content does not fit on the line or
+//! has a comment.
 //!
-//! **Architecture invariant.** What comes out is read again and compared with what went in, thing by thing, before
-//! anybody sees it: see `same`.
+//! **Architecture invariant.** The formatter parses its output and compares it with the input, node by node, before it
+//! returns the output: see `same`.
 
 mod block;
 mod comments;
@@ -20,27 +20,27 @@ use crate::load::inside;
 use crate::source::{Edits, FileId, SourceFile, changed_lines};
 use crate::syntax::parse;
 
-/// Why a text stays as it is.
+/// The reason why a text is not formatted.
 #[derive(Clone, Debug)]
 pub enum Refused {
-    /// It cannot be read, or has keys that the language does not have; whose they are nobody knows.
+    /// The text has errors, or keys that the language does not have. The owner of such a key is unknown.
     Faults(Faults),
-    /// The new text would not have said the same.
+    /// The new text would have another meaning.
     NotTheSame,
 }
 
-/// The text of a file in its layout; the same text where it has it already.
+/// Formats the text of a file. A formatted text stays the same.
 ///
-/// Line ends become those of the first line.
+/// All line ends become those of the first line.
 ///
 /// # Errors
 ///
-/// For a text that stays as it is, and why.
+/// The reason why the text cannot be formatted.
 pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     let text = source.text.as_str();
     let newline = source.newline();
     let mut faults = Faults::new();
-    // Of the text as it is in the file, so that the places of faults are right.
+    // This parses the original text, so that errors have the right places.
     let tree = parse(file, text, &mut faults);
     let Some(tree) = tree.filter(|_| !faults.has_errors()) else {
         return Err(Refused::Faults(faults));
@@ -65,15 +65,15 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     Ok(new.replace('\n', newline))
 }
 
-/// A file with edits made in it.
+/// A file with edits.
 pub(crate) struct Edited {
-    /// Its text.
+    /// The new text.
     pub text: String,
-    /// The lines that change, as a diff without line numbers.
+    /// The changed lines, as a diff without line numbers.
     pub diff: String,
 }
 
-/// Makes edits in a file. A formatted file stays formatted.
+/// Applies edits to a file. A formatted file stays formatted.
 pub(crate) fn edited(source: &SourceFile, edits: &Edits) -> Edited {
     let text = edits.apply(source);
     let formatted = formatted_like(source, &text);
@@ -87,9 +87,9 @@ pub(crate) fn edited(source: &SourceFile, edits: &Edits) -> Edited {
     }
 }
 
-/// Formats the new text of a file. `None` if the old text was not formatted, or if the new one cannot be.
+/// Formats the new text of a file. Returns `None` if the old text was not formatted, or if the new one cannot be.
 fn formatted_like(before: &SourceFile, text: &str) -> Option<String> {
-    // Spans of faults are not shown.
+    // The spans of these errors are never shown.
     let file = FileId(0);
     if format(file, before).ok()? != before.text {
         return None;
@@ -97,7 +97,7 @@ fn formatted_like(before: &SourceFile, text: &str) -> Option<String> {
     format(file, &SourceFile::new(before.path.as_str(), text)).ok()
 }
 
-/// The tree of a text without errors.
+/// Parses a text, and fails if it has errors.
 fn read(file: FileId, text: &str) -> Result<crate::syntax::Tree<'_>, Faults> {
     let mut faults = Faults::new();
     match parse(file, text, &mut faults) {

@@ -1,4 +1,4 @@
-//! The order of keys, and what has room on one line.
+//! Sorts keys, and opens brackets that do not fit on one line.
 
 use super::block::{Block, Row, Value, opened};
 use super::comments::Line;
@@ -8,7 +8,7 @@ use crate::load::Inside;
 use crate::source::SourceFile;
 use crate::syntax::Node;
 
-/// Columns of a level.
+/// The columns per level.
 pub(super) const LEVEL: usize = 2;
 
 /// Reports every key that the language does not have.
@@ -22,7 +22,7 @@ pub(super) fn check(node: Node<'_>, inside: Inside, faults: &mut Faults) {
     }
 }
 
-/// Sorts what has declared keys by their order in the grammar.
+/// Sorts items by the order of their keys in the grammar, if the grammar declares the keys.
 pub(super) fn sort<'t, T>(things: &mut [T], inside: Inside, key: impl Fn(&T) -> Option<Node<'t>>) {
     if inside.is_declared() {
         things.sort_by_key(|thing| {
@@ -33,7 +33,7 @@ pub(super) fn sort<'t, T>(things: &mut [T], inside: Inside, key: impl Fn(&T) -> 
     }
 }
 
-/// Sorts the rows of a mapping or list whose rows begin at column `indent`, and opens brackets that do not fit.
+/// Sorts the rows of a mapping or list at column `indent`, and opens brackets that do not fit.
 pub(super) fn arrange<'t>(
     block: &mut Block<'t>,
     inside: Inside,
@@ -65,7 +65,7 @@ pub(super) fn arrange<'t>(
     }
 }
 
-/// The first row of an item stands on the line of its dash: what is above one is above both.
+/// Moves the comments of an item's first row above the item, because both share the line of the dash.
 fn share_line(item: &mut Row<'_>) {
     if let Some(behind) = item.behind.take() {
         item.above.push(Line {
@@ -88,8 +88,8 @@ fn share_line(item: &mut Row<'_>) {
     first.blank = false;
 }
 
-/// Takes from the first row of a file what is about the file: the comments above the last blank line, or else the line
-/// for editors.
+/// Takes the comments about the whole file from its first row. These are the comments above the last blank line,
+/// otherwise the line for editors.
 pub(super) fn head<'t>(root: &mut Block<'t>) -> Head<'t> {
     let Some(first) = root.rows.first_mut() else {
         return Head::default();
@@ -119,8 +119,7 @@ pub(super) fn head<'t>(root: &mut Block<'t>) -> Head<'t> {
 /// The comments at the head of a file.
 #[derive(Debug, Default)]
 pub(super) struct Head<'t> {
-    /// They.
     pub lines: Vec<Line<'t>>,
-    /// Whether a blank line follows.
+    /// `true` if a blank line follows.
     pub has_gap: bool,
 }

@@ -1,4 +1,4 @@
-//! Rows to text.
+//! Prints rows as text.
 
 use super::block::{Block, Row, Value};
 use super::comments::Line;
@@ -7,7 +7,7 @@ use super::{flow, scalar};
 use crate::load::Inside;
 use crate::syntax::{Node, Style};
 
-/// The text of a file whose rows are in order.
+/// Returns the text of a file whose rows are sorted.
 pub(super) fn print(head: &Head<'_>, root: &Block<'_>, inside: Inside, text: &str) -> String {
     let mut printer = Printer {
         text,
@@ -27,13 +27,13 @@ pub(super) fn print(head: &Head<'_>, root: &Block<'_>, inside: Inside, text: &st
 struct Printer<'t> {
     text: &'t str,
     out: String,
-    /// Whether a blank line may follow: not at the beginning of anything, not behind another one, and not where it
-    /// would be of the text above.
+    /// `true` if a blank line may follow. It may not follow the start of a block, another blank line, or a block scalar
+    /// to which it would belong.
     may_gap: bool,
 }
 
 impl Printer<'_> {
-    /// The top of a file: a blank line is between two of its keys, unless both are of one line.
+    /// Prints the top level of a file. A blank line separates two keys, unless both are on one line.
     fn sections(&mut self, root: &Block<'_>, inside: Inside) {
         let mut above_is_long = false;
         for (index, row) in root.rows.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Printer<'_> {
         self.lines(&root.tail, 0);
     }
 
-    /// `shared`: its first row goes on a line that has been begun.
+    /// Prints a block. With `shared`, its first row continues the current line.
     fn block(&mut self, block: &Block<'_>, inside: Inside, indent: usize, mut shared: bool) {
         for row in &block.rows {
             self.row(row, inside, indent, shared);
@@ -99,7 +99,8 @@ impl Printer<'_> {
         }
     }
 
-    /// A value in one piece. A comment stands on the first line of a block text, and on the last one of any other.
+    /// Prints a value that is one piece. A comment goes on the first line of a block scalar, or on the last line of any
+    /// other value.
     fn leaf(&mut self, node: Node<'_>, row: &Row<'_>, inside: Inside, indent: usize) {
         let scalar = node.as_scalar();
         let written = match scalar {
@@ -120,7 +121,7 @@ impl Printer<'_> {
             self.out.push_str(&written);
             self.end(row.behind);
         }
-        // Behind `|+` a blank line is one of the text.
+        // After `|+` a blank line would belong to the scalar.
         self.may_gap = !(is_block
             && written
                 .lines()
@@ -157,7 +158,7 @@ impl Printer<'_> {
         self.may_gap = true;
     }
 
-    /// A blank line, where there may be one.
+    /// Prints a blank line, if one may follow.
     fn gap(&mut self) {
         if self.may_gap {
             self.out.push('\n');

@@ -1,10 +1,10 @@
-//! The proof that a new text says what the old one says.
+//! Checks that a new text has the meaning of the old one.
 
 use crate::load::Inside;
 use crate::syntax::{Node, NodeKind, Tree};
 
-/// Whether two texts say the same: the same scalars in the same places, every list and every mapping whose order says
-/// something in the same order, and the same comments, each as often.
+/// Returns `true` if two texts have the same meaning. The scalars and comments must be the same, and each order that
+/// has a meaning.
 pub(super) fn same(
     (old, old_text): (&Tree<'_>, &str),
     (new, new_text): (&Tree<'_>, &str),
@@ -34,7 +34,7 @@ fn same_node(old: Node<'_>, new: Node<'_>, inside: Inside) -> bool {
         (NodeKind::Mapping(old), NodeKind::Mapping(new)) => {
             let (mut old, new): (Vec<_>, Vec<_>) = (old.collect(), new.collect());
             if inside.is_declared() {
-                // By name, not by the order that the layout has given them.
+                // The keys are matched by name, because the formatter may have changed their order.
                 let place = |name: &str| new.iter().position(|entry| entry.name() == name);
                 old.sort_by_key(|entry| place(entry.name()));
             }

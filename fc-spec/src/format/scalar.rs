@@ -1,20 +1,20 @@
-//! Scalars: to the byte, but for what indents the lines of one and for quotes that need not be single ones.
+//! Scalars. They stay unchanged, except for indentation and unnecessary single quotes.
 
 use super::order::LEVEL;
 use crate::syntax::{Node, Style, quoted};
 
-/// What stands in the file, of a scalar or of nothing.
+/// Returns a scalar or an empty value as in the file.
 pub(super) fn written<'t>(node: Node<'_>, text: &'t str) -> &'t str {
     let span = node.span();
     text.get(span.start..span.end).unwrap_or_default()
 }
 
-/// A key, or what is in brackets.
+/// Returns a key or a scalar in brackets.
 pub(super) fn short(node: Node<'_>, text: &str) -> String {
     laid_out(None, node, text, LEVEL)
 }
 
-/// A scalar under a key, or an item, as it is laid out where lines behind its first begin at column `indent`.
+/// Returns the formatted scalar under a key, or of an item. Its lines after the first start at column `indent`.
 pub(super) fn laid_out(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> String {
     let written = written(node, text);
     match node.as_scalar().map(|scalar| scalar.style) {
@@ -27,8 +27,8 @@ pub(super) fn laid_out(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent
     }
 }
 
-/// A text in single quotes in double ones, where it reads the same in them. What a slip of the quotes would turn into
-/// a number keeps the quotes it has.
+/// Returns a single-quoted text in double quotes, if it has the same meaning there. A text that would be a number
+/// without quotes keeps its quotes.
 fn double(node: Node<'_>, written: &str) -> Option<String> {
     let inside = written.strip_prefix('\'')?.strip_suffix('\'')?;
     let text = node.as_str().filter(|text| *text == inside)?;
@@ -38,7 +38,7 @@ fn double(node: Node<'_>, written: &str) -> Option<String> {
     (is_word && text.chars().all(is_plain)).then(|| quoted(text))
 }
 
-/// Lines behind the first one begin at column `indent`: white space there says nothing.
+/// Moves the lines after the first to column `indent`. White space at their start has no meaning.
 fn folded(written: &str, indent: usize) -> String {
     let mut lines = written.split('\n');
     let mut out = lines.next().unwrap_or_default().to_owned();
@@ -53,14 +53,14 @@ fn folded(written: &str, indent: usize) -> String {
     out
 }
 
-/// Where a block text begins in the file: at its `|` or `>`.
+/// Returns the start of a block scalar in the file: its `|` or `>`.
 pub(super) fn header(key: Option<Node<'_>>, node: Node<'_>, text: &str) -> usize {
     let start = node.span().start;
     let at = |start: usize| text.get(start..).unwrap_or_default();
     let from = match key {
         Some(key) => key.span().end,
         None if at(start).starts_with(['|', '>']) && has_no_text(node) => start,
-        // The last line with something on it above the text.
+        // The last line with content above the text.
         None => {
             let above = text.get(..line_start(text, start)).unwrap_or_default();
             line_start(text, above.trim_end().len())
@@ -81,8 +81,8 @@ fn has_no_text(node: Node<'_>) -> bool {
         .is_none_or(|text| text.trim_matches('\n').is_empty())
 }
 
-/// A block text: its first line without a comment, and its lines at column `indent`, or further in where it says by how
-/// much.
+/// Returns a block scalar: its first line without a comment, and its other lines at column `indent`. An indentation
+/// indicator in the first line adds columns.
 fn block(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> String {
     let rest = text.get(header(key, node, text)..).unwrap_or_default();
     let (first, body) = rest.split_once('\n').unwrap_or((rest, ""));
@@ -98,12 +98,12 @@ fn block(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> St
     let digit = digit.and_then(|digit| usize::try_from(digit).ok());
     let new = digit.map_or(indent, |digit| indent.saturating_sub(LEVEL) + digit);
 
-    // Its lines, the white space behind the last one included.
+    // The lines of the text, with the white space after the last one.
     let begin = text.len() - body.len();
     let last = text.get(span.end..).unwrap_or_default();
     let (last, behind) = last.split_once('\n').unwrap_or((last, ""));
     let kept = text.get(begin..span.end + last.len()).unwrap_or_default();
-    // Lines of white space behind it that count.
+    // The lines of white space after it that belong to the text.
     let behind = behind
         .split_inclusive('\n')
         .filter_map(|line| line.strip_suffix('\n'));
@@ -124,7 +124,7 @@ fn block(key: Option<Node<'_>>, node: Node<'_>, text: &str, indent: usize) -> St
     out
 }
 
-/// Start of the line that byte `at` is on, which has little before it.
+/// Returns the start of the line with byte `at`. It searches backwards, because lines are short.
 fn line_start(text: &str, at: usize) -> usize {
     let before = text.get(..at).unwrap_or_default();
     before.rfind('\n').map_or(0, |newline| newline + 1)

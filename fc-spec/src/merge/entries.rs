@@ -1,4 +1,4 @@
-//! The entries of a mapping.
+//! Merges the entries of a mapping.
 
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
@@ -6,26 +6,26 @@ use crate::language::grammar::{CHOICE, FIELD_KIND};
 use crate::load::Inside;
 use crate::syntax::{Entry, Node, Scalar};
 
-/// An entry in the end.
+/// An entry of the result.
 struct Merged<'t> {
     key: Scalar<'t>,
     value: Value<'t>,
-    /// The line of ours below which something that follows it is added.
+    /// The line of ours after which a following entry is added.
     line: usize,
-    /// Whether only ours has it.
+    /// `true` if only ours has the entry.
     is_own: bool,
 }
 
-/// How freely the entries of a mapping may be put together.
+/// The dependency between the entries of a mapping.
 #[derive(Clone, Copy, PartialEq)]
 enum Bond {
-    /// Each stands for itself.
+    /// The entries are independent.
     None,
-    /// What one entry says is said of the same thing as what the others say: only additions within both may meet.
+    /// All entries describe the same subject. Only additions inside their values can be merged.
     OneThing,
 }
 
-/// `None` where the order of the entries says something.
+/// Returns `None` if the order of the entries has a meaning.
 fn bond(above: Above<'_>, inside: Inside) -> Option<Bond> {
     match (above, inside) {
         (Above::File, _) => Some(Bond::None),
@@ -40,7 +40,7 @@ fn bond(above: Above<'_>, inside: Inside) -> Option<Bond> {
 }
 
 impl<'t> Merge<'t> {
-    /// What a mapping says in the end.
+    /// Returns the merged mapping.
     pub(super) fn entries(
         &mut self,
         above: Above<'t>,
@@ -73,7 +73,7 @@ impl<'t> Merge<'t> {
                     let theirs = (their, their_lines(self, &theirs, their_head, their));
                     self.of_both(bond, inside, base, (*entry, lines), theirs)?
                 }
-                // Theirs has removed what ours has not touched.
+                // Theirs has removed an entry that ours has not changed.
                 [Some(base), None] if bond == Bond::None && same(base, *entry) => {
                     self.edits.remove_lines(self.ours, lines.span(self.ours)?);
                     continue;
@@ -105,7 +105,7 @@ impl<'t> Merge<'t> {
             if bond == Bond::OneThing {
                 return None;
             }
-            // Behind what it stands behind, and what ours has added there.
+            // After the same entry as in theirs, and after the additions of ours there.
             let place = before.and_then(|key| merged.iter().position(|it| it.key == key));
             let mut at = place.map_or(0, |place| place + 1);
             while merged.get(at).is_some_and(|it| it.is_own) {
@@ -113,7 +113,7 @@ impl<'t> Merge<'t> {
             }
             let below = match at.checked_sub(1).and_then(|at| merged.get(at)) {
                 Some(before) => before.line,
-                // What stands at the top of a file belongs to the file.
+                // Text at the top of a file belongs to the file.
                 None if our_head == 0 => return None,
                 None => our_head,
             };
@@ -132,7 +132,7 @@ impl<'t> Merge<'t> {
         Some(Value::Map(entries.collect()))
     }
 
-    /// What an entry says in the end that both have.
+    /// Returns the merged value of an entry that both have.
     fn of_both(
         &mut self,
         bond: Bond,
@@ -170,7 +170,7 @@ fn same(one: Entry<'_>, other: Entry<'_>) -> bool {
     Value::of(one.value) == Value::of(other.value)
 }
 
-/// The lines of an entry of theirs.
+/// Returns the lines of an entry of theirs.
 fn their_lines(merge: &Merge<'_>, theirs: &[Entry<'_>], head: usize, entry: Entry<'_>) -> Lines {
     let at = entry.key.span().start;
     let above = theirs.iter().rfind(|it| it.key.span().start < at);

@@ -1,4 +1,4 @@
-//! The items of a list.
+//! Merges the items of a list.
 
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
@@ -6,7 +6,7 @@ use crate::language::grammar::{CODES, COMMON};
 use crate::source::SourceFile;
 use crate::syntax::Node;
 
-/// The lists of which each item stands for itself.
+/// The lists with independent items.
 const FREE: [&str; 4] = [
     CODES.ranges.name,
     CODES.retired.name,
@@ -18,13 +18,13 @@ const FREE: [&str; 4] = [
 struct Item<'t> {
     value: Value<'t>,
     lines: Lines,
-    /// Before which item of the base it stands; that item itself if it is not new.
+    /// The index of the base item that it precedes. An old item has its own index.
     gap: usize,
     is_new: bool,
 }
 
 impl<'t> Merge<'t> {
-    /// What a list says in the end to which both sides have added.
+    /// Returns the merged list, if both sides have only added items.
     pub(super) fn items(
         &mut self,
         above: Above<'t>,
@@ -65,7 +65,7 @@ impl<'t> Merge<'t> {
     }
 }
 
-/// The items of one side, if it has left all of the base as they were.
+/// Returns the items of one side, or `None` if it has changed an item of the base.
 fn items<'t>(
     file: &SourceFile,
     key: Node<'_>,

@@ -1,12 +1,11 @@
-//! Three versions of a file made into one, where two branches each add something at the same place.
+//! Merges three versions of a file, where two branches have added something at the same place.
 //!
-//! A merge line by line sees a conflict there: of two commands that were added behind the same one it cannot say which
-//! lines belong together. The tree can. Only what stands beside its neighbours without meaning anything to them is put
-//! together like that: entries under names of their own, values of an enum, and the lists of changes, answers and codes.
-//! Where both have changed the same thing, or the order says something, it is for people to decide.
+//! A merge by lines reports a conflict there. It does not know which lines belong together, and the syntax tree does.
+//! Only independent parts are merged: entries with names, values of an enum, and the lists of changes, answers and
+//! codes. If both branches changed the same part, or the order has a meaning, people must decide.
 //!
-//! **Architecture invariant.** What comes out is read again and compared with what it has to say, thing by thing and comment
-//! by comment, before anybody sees it.
+//! **Architecture invariant.** The merge parses its result and compares it with the intended content, including all
+//! comments, before it returns the result.
 
 mod entries;
 mod items;
@@ -19,11 +18,11 @@ use crate::source::{Edits, FileId, SourceFile, Span};
 use crate::syntax::{Node, Tree, parse};
 use value::Value;
 
-/// What both branches say, where `base` is what they began with: the text of `ours` with what `theirs` has added, changed
-/// or removed. Laid out if both are.
+/// Merges `ours` and `theirs`, which both started from `base`. Returns the text of `ours` with the additions, changes
+/// and removals of `theirs`. The result is formatted if both are.
 ///
-/// `None` if they have both changed the same thing, or if one of the three cannot be read. Line ends and the byte order
-/// mark are those of `ours`.
+/// Returns `None` if both have changed the same part, or if one of the three cannot be parsed. Line ends and the byte
+/// order mark are those of `ours`.
 #[must_use]
 pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
     let newline = SourceFile::new("", ours).newline();
@@ -70,10 +69,9 @@ pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
     })
 }
 
-/// A byte order mark at the start of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// The three are never in one list of files.
+/// The three files are never in one list, so they can share an id.
 const FILE: FileId = FileId(0);
 
 fn read(file: &SourceFile) -> Option<Tree<'_>> {
@@ -81,24 +79,24 @@ fn read(file: &SourceFile) -> Option<Tree<'_>> {
     parse(FILE, &file.text, &mut faults).filter(|_| !faults.has_errors())
 }
 
-/// What the entries of a mapping or the items of a list stand below.
+/// The parent of the entries of a mapping or the items of a list.
 #[derive(Clone, Copy)]
 enum Above<'t> {
-    /// They are the file's own.
+    /// The file.
     File,
-    /// Keys in ours and theirs.
+    /// The keys in ours and theirs.
     Keys(Node<'t>, Node<'t>),
 }
 
 struct Merge<'t> {
     ours: &'t SourceFile,
     theirs: &'t SourceFile,
-    /// Of ours.
+    /// The edits of ours.
     edits: Edits,
 }
 
 impl<'t> Merge<'t> {
-    /// What a place says in the end that each side has changed in its own way.
+    /// Returns the merged value of a place that both sides have changed.
     fn both(
         &mut self,
         above: Above<'t>,
@@ -117,15 +115,15 @@ impl<'t> Merge<'t> {
     }
 }
 
-/// Whether a mapping or list is written line by line.
+/// Returns `true` if a mapping or list is written line by line.
 fn is_block(file: &SourceFile, node: Node<'_>) -> bool {
     let is_some = node.as_mapping().is_some() || node.as_sequence().is_some();
     let text = file.text.get(node.span().start..).unwrap_or_default();
     is_some && !text.starts_with(['{', '['])
 }
 
-/// The lines of something in a file: with those above it down from `above`, the last line of what stands before it, but
-/// for blank ones. `blank` says whether there is one.
+/// The lines of a node, with the lines above it down from `above`, the last line of its predecessor. Blank lines at the
+/// start are left out, and `blank` is `true` if there are any.
 #[derive(Clone, Copy)]
 struct Lines {
     first: usize,
@@ -160,7 +158,7 @@ impl Lines {
     }
 }
 
-/// The last line on which something of the span stands.
+/// Returns the last line of a span.
 fn last_line(file: &SourceFile, span: Span) -> usize {
     file.line(span.end.saturating_sub(1).max(span.start))
 }

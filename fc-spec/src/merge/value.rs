@@ -1,9 +1,9 @@
-//! What a text says, without where it says it.
+//! The content of a text without its places.
 
 use crate::source::SourceFile;
 use crate::syntax::{Node, NodeKind, Scalar, Tree};
 
-/// What a node says: of a mapping also in which order.
+/// The content of a node. A mapping includes the order of its keys.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value<'t> {
     Null,
@@ -27,7 +27,7 @@ impl<'t> Value<'t> {
     }
 }
 
-/// The comments of a file, sorted.
+/// Returns the comments of a file, sorted.
 pub(super) fn comments<'t>(tree: &Tree<'_>, file: &'t SourceFile) -> Vec<&'t str> {
     let spans = tree.comments();
     let texts = spans.filter_map(|span| file.text.get(span.start..span.end));
@@ -36,8 +36,8 @@ pub(super) fn comments<'t>(tree: &Tree<'_>, file: &'t SourceFile) -> Vec<&'t str
     texts
 }
 
-/// The comments that are to be in the end: those of ours, with what theirs has added and without what theirs has removed.
-/// `None` if both have removed the same one.
+/// Returns the comments of the result: those of ours, with the additions and without the removals of theirs. Returns
+/// `None` if both have removed the same comment.
 pub(super) fn merged_comments<'t>(
     [base, ours, theirs]: [(&Tree<'_>, &'t SourceFile); 3],
 ) -> Option<Vec<&'t str>> {

@@ -1,11 +1,11 @@
-//! Replacements in the text of a file: everything else stays as it is, to the byte.
+//! Replacements in the text of a file. All other bytes stay unchanged.
 
 use super::{SourceFile, Span};
 use similar::{ChangeTag, TextDiff};
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// Longest search for the smallest difference of two texts.
+/// The time limit of the search for the smallest difference of two texts.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Replacements in one file.
@@ -13,17 +13,17 @@ const PATIENCE: Duration = Duration::from_secs(1);
 pub(crate) struct Edits(Vec<(Span, String)>);
 
 impl Edits {
-    /// Writes `text` in place of what stands there.
+    /// Replaces a span with `text`.
     pub fn replace(&mut self, span: Span, text: impl Into<String>) {
         self.0.push((span, text.into()));
     }
 
-    /// Writes `text` behind what stands there.
+    /// Inserts `text` after a span.
     pub fn insert_after(&mut self, span: Span, text: impl Into<String>) {
         self.replace(Span::point(span.file, span.end), text);
     }
 
-    /// Writes a line, or several, below that on which this span ends.
+    /// Adds one or more lines below the last line of a span.
     pub fn add_line(&mut self, file: &SourceFile, span: Span, line: &str) {
         let last = last_line(file, span);
         let (at, text) = match file.lines(last + 1, last + 1) {
@@ -34,7 +34,7 @@ impl Edits {
         self.replace(Span::point(span.file, at), text);
     }
 
-    /// Takes out all lines on which something of this span stands.
+    /// Removes all lines of a span.
     pub fn remove_lines(&mut self, file: &SourceFile, span: Span) {
         let (first, last) = (file.line(span.start), last_line(file, span));
         let start = file
@@ -46,18 +46,18 @@ impl Edits {
         self.replace(Span::new(span.file, start, end), String::new());
     }
 
-    /// A place of the file, for whoever has to find it.
+    /// Returns the place of the first replacement, for messages.
     pub fn place(&self) -> Option<Span> {
         self.0.first().map(|(span, _)| *span)
     }
 
-    /// The file's text with all replacements made.
+    /// Returns the text of the file with all replacements.
     pub fn apply(&self, file: &SourceFile) -> String {
         made(&self.sorted(file), &file.text, 0, file.text.len())
     }
 
-    /// The lines that change, as a diff without line numbers: removed ones behind `-`, added ones behind `+`, lines
-    /// that stay behind a blank, and `@@` where lines are left out.
+    /// Returns the changed lines as a diff without line numbers. Removed lines start with `-`, added lines with `+`,
+    /// and unchanged lines with a space. `@@` marks omitted lines.
     pub fn diff(&self, file: &SourceFile) -> String {
         let sorted = self.sorted(file);
         let mut hunks: Vec<(usize, usize)> = Vec::new();
@@ -89,7 +89,7 @@ impl Edits {
         diff
     }
 
-    /// In the order of their places, with the line ends of the file.
+    /// Returns the replacements by place, with the line ends of the file.
     fn sorted(&self, file: &SourceFile) -> Vec<(Span, String)> {
         let mut sorted = self.0.clone();
         for (_, text) in &mut sorted {
@@ -100,7 +100,7 @@ impl Edits {
     }
 }
 
-/// The lines that change from one text to another, in the form of [`Edits::diff`] and with one line around them.
+/// Returns the changed lines between two texts in the form of [`Edits::diff`], with one line around them.
 pub(crate) fn changed_lines(old: &str, new: &str) -> String {
     let changes = TextDiff::configure().timeout(PATIENCE).diff_lines(old, new);
     let mut diff = String::new();
@@ -122,7 +122,7 @@ pub(crate) fn changed_lines(old: &str, new: &str) -> String {
     diff
 }
 
-/// Whether something is added between two lines there, which belongs to the one above.
+/// Returns `true` for an insertion between two lines. It belongs to the line above.
 fn is_between_lines(file: &SourceFile, span: Span) -> bool {
     let line = file.line(span.start);
     span.start == span.end
@@ -132,7 +132,7 @@ fn is_between_lines(file: &SourceFile, span: Span) -> bool {
             .is_some_and(|(start, _)| start == span.start)
 }
 
-/// The last line on which something of the span stands.
+/// Returns the last line of a span.
 fn last_line(file: &SourceFile, span: Span) -> usize {
     let end = if span.end > span.start {
         span.end - 1
@@ -142,7 +142,7 @@ fn last_line(file: &SourceFile, span: Span) -> usize {
     file.line(end)
 }
 
-/// The part of a text with the replacements that lie in it.
+/// Returns a part of a text with the replacements inside it.
 fn made(sorted: &[(Span, String)], text: &str, start: usize, end: usize) -> String {
     let mut made = String::new();
     let mut at = start;
@@ -158,7 +158,7 @@ fn made(sorted: &[(Span, String)], text: &str, start: usize, end: usize) -> Stri
     made
 }
 
-/// Lines of a hunk: those that stay at its beginning and its end behind a blank, between them what goes and what comes.
+/// Adds the lines of a hunk. Common lines at both ends start with a space. Removed and added lines are between them.
 fn compare(diff: &mut String, old: &str, new: &str) {
     let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
     let same = |(a, b): &(&&str, &&str)| a == b;

@@ -6,19 +6,18 @@ use std::sync::Arc;
 /// A file of the spec.
 #[derive(Clone, Debug)]
 pub struct SourceFile {
-    /// Path from the project's root with `/` between its parts.
+    /// The path, relative to the project's root, with `/` as separator.
     pub path: String,
-    /// Its text, without a byte order mark at its start. Empty, or cut off at the first wrong byte, where
-    /// `whole` is false.
+    /// The text without a byte order mark. If `whole` is `false`, it is empty or cut off at the first invalid byte.
     pub text: String,
-    /// Whether all of the file is here. What is not has its own fault and is not parsed.
+    /// `true` if the whole file was read. Other files have an error and are not parsed.
     pub whole: bool,
-    /// Byte offset of the start of each line.
+    /// The byte offset of the start of each line.
     line_starts: Vec<usize>,
 }
 
 impl SourceFile {
-    /// A file with all of its text.
+    /// Creates a file with its whole text.
     #[must_use]
     pub fn new(path: impl Into<String>, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -33,7 +32,7 @@ impl SourceFile {
         }
     }
 
-    /// A file of which only the start could be read.
+    /// Creates a file without its end, which could not be read.
     #[must_use]
     pub(crate) fn partial(path: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
@@ -42,7 +41,7 @@ impl SourceFile {
         }
     }
 
-    /// Line end of the first line.
+    /// Returns the line end of the first line.
     pub(crate) fn newline(&self) -> &'static str {
         match self.text.split_once('\n') {
             Some((first, _)) if first.ends_with('\r') => "\r\n",
@@ -50,14 +49,14 @@ impl SourceFile {
         }
     }
 
-    /// Line of a byte offset, counted from 1.
+    /// Returns the line of a byte offset, counted from 1.
     #[must_use]
     pub fn line(&self, offset: usize) -> usize {
         let line = self.line_starts.partition_point(|start| *start <= offset);
         line.max(1)
     }
 
-    /// Line and column of a byte offset; the end of the file for an offset beyond it.
+    /// Returns the line and column of a byte offset. An offset beyond the end counts as the end of the file.
     #[must_use]
     pub fn line_col(&self, offset: usize) -> LineCol {
         let line = self.line(offset);
@@ -72,8 +71,8 @@ impl SourceFile {
         }
     }
 
-    /// Byte range of the lines `first` to `last`, counted from 1, both included, without the end of
-    /// the last one.
+    /// Returns the byte range of the lines `first` to `last`, both included and counted from 1. The range excludes the
+    /// line end of the last line.
     #[must_use]
     pub fn lines(&self, first: usize, last: usize) -> Option<(usize, usize)> {
         let start = *self.line_starts.get(first.checked_sub(1)?)?;
@@ -96,13 +95,13 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// No files yet.
+    /// Creates an empty list.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Files by path and text, sorted by path, for specs that do not come from a disk.
+    /// Creates files from paths and texts, sorted by path, for specs that are not on a disk.
     pub fn from_texts<P: Into<String>, T: Into<String>>(
         texts: impl IntoIterator<Item = (P, T)>,
     ) -> Self {
@@ -114,7 +113,8 @@ impl Sources {
         Self { files }
     }
 
-    /// The same files with their paths seen from a directory above the project's root, which is `prefix` from there.
+    /// Returns the same files with paths from a directory above the project's root. `prefix` is the path from there to
+    /// the root.
     #[must_use]
     pub fn below(&self, prefix: &str) -> Self {
         let mut files = self.files.clone();
@@ -143,29 +143,29 @@ impl Sources {
         }
     }
 
-    /// A file.
+    /// Returns a file.
     #[must_use]
     pub fn get(&self, file: FileId) -> Option<&SourceFile> {
         self.shared(file).map(Arc::as_ref)
     }
 
-    /// The same, for those who keep it.
+    /// Returns a file that the caller can keep.
     pub(crate) fn shared(&self, file: FileId) -> Option<&Arc<SourceFile>> {
         self.files.get(usize::try_from(file.0).ok()?)
     }
 
-    /// Every file, also those that are not whole.
+    /// Returns every file, including those that are not whole.
     pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
         (0..).map(FileId).zip(self.files.iter().map(Arc::as_ref))
     }
 
-    /// Path of the file of a span; empty for a file that is not of this list.
+    /// Returns the path of the file of a span. It is empty for a file that is not in the list.
     #[must_use]
     pub fn path(&self, span: Span) -> &str {
         self.get(span.file).map_or("", |file| file.path.as_str())
     }
 
-    /// Text of a span.
+    /// Returns the text of a span.
     #[must_use]
     pub fn slice(&self, span: Span) -> &str {
         self.get(span.file)
@@ -173,13 +173,13 @@ impl Sources {
             .unwrap_or_default()
     }
 
-    /// Line of a span's start.
+    /// Returns the line of a span's start.
     #[must_use]
     pub fn line(&self, span: Span) -> usize {
         self.get(span.file).map_or(1, |file| file.line(span.start))
     }
 
-    /// Line and column of a span's start.
+    /// Returns the line and column of a span's start.
     #[must_use]
     pub fn line_col(&self, span: Span) -> LineCol {
         self.get(span.file)
@@ -188,13 +188,13 @@ impl Sources {
             })
     }
 
-    /// Line and column of a span's end.
+    /// Returns the line and column of a span's end.
     #[must_use]
     pub fn end_line_col(&self, span: Span) -> LineCol {
         self.line_col(Span::point(span.file, span.end))
     }
 
-    /// Both ends of a span as people count them.
+    /// Returns the line and column of both ends of a span.
     pub(crate) fn ends(&self, span: Span) -> (LineCol, LineCol) {
         (self.line_col(span), self.end_line_col(span))
     }

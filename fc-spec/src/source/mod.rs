@@ -1,4 +1,4 @@
-//! Source text: files in memory, positions in them, and edits of them. It knows nothing of YAML.
+//! Source text: files in memory, positions in them, and edits of them. This module does not depend on YAML.
 
 mod edit;
 mod files;

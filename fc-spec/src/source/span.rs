@@ -1,34 +1,34 @@
 //! Places in the spec.
 
-/// A file of a [`Sources`](super::Sources), by its place in the list.
+/// The id of a file of [`Sources`](super::Sources): its index in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(pub u32);
 
-/// A stretch of a file: byte offsets, `end` not included. Both lie on character boundaries.
+/// A range of bytes in a file. It excludes `end`, and both ends are on character boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// The file.
     pub file: FileId,
     /// First byte.
     pub start: usize,
-    /// Byte after the last one.
+    /// The byte after the last one.
     pub end: usize,
 }
 
 impl Span {
-    /// A stretch of `file`.
+    /// Creates a range of `file`.
     #[must_use]
     pub fn new(file: FileId, start: usize, end: usize) -> Self {
         Self { file, start, end }
     }
 
-    /// The empty stretch before byte `at`.
+    /// Creates the empty range before byte `at`.
     #[must_use]
     pub fn point(file: FileId, at: usize) -> Self {
         Self::new(file, at, at)
     }
 
-    /// From the start of this one to the end of `last`, which stands in the same file.
+    /// Returns the range from the start of this one to the end of `last`, which is in the same file.
     #[must_use]
     pub fn to(self, last: Self) -> Self {
         Self::new(self.file, self.start, last.end.max(self.start))

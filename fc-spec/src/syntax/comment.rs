@@ -1,4 +1,4 @@
-//! Comments: what each is about, and those that swallow the rest of a text.
+//! Comments: the node that a comment belongs to, and comments that cut off a text.
 
 use super::quote::quoted;
 use crate::diagnostic::{Diagnostic, FaultCode};
@@ -6,8 +6,8 @@ use crate::source::{FileId, Span};
 use crate::text;
 use std::ops::Range;
 
-/// The comments about what begins at byte `at` of a text, of all its `comments`: on its line and on those right
-/// above. None where something else begins its line.
+/// Returns the comments that belong to the node at byte `at`: those on its line and directly above. Returns none if
+/// another node starts the line.
 pub(super) fn about(comments: &[Range<usize>], text: &str, at: usize) -> Range<usize> {
     let behind = comments.partition_point(|comment| comment.start < at);
     let Some(mut line) = opening(text, at) else {
@@ -30,13 +30,13 @@ pub(super) fn about(comments: &[Range<usize>], text: &str, at: usize) -> Range<u
     first..end
 }
 
-/// Start of the line that byte `at` is on, if there is nothing before it but white space and the dashes of lists.
+/// Returns the start of the line with byte `at`, if only white space and the dashes of lists precede it.
 fn opening(text: &str, at: usize) -> Option<usize> {
     let before = text.get(..at)?.trim_end_matches([' ', '-']);
     (before.is_empty() || before.ends_with('\n')).then_some(before.len())
 }
 
-/// The comment that follows a plain scalar on its last line.
+/// Returns the comment that follows a plain scalar on its last line.
 pub(super) fn behind(text: &str, scalar: Span) -> Option<Span> {
     let rest = text.get(scalar.end..)?.lines().next()?;
     let comment = rest.trim_start_matches([' ', '\t']);
@@ -45,8 +45,8 @@ pub(super) fn behind(text: &str, scalar: Span) -> Option<Span> {
         .then(|| Span::new(scalar.file, start, start + comment.trim_end().len()))
 }
 
-/// The fault of a text, which begins at byte `start`, that is cut off by the ` #` at byte `at`. In brackets the text
-/// was meant to end before the next comma or bracket.
+/// Returns the error for a text from byte `start` that the ` #` at byte `at` cuts off. In brackets, the intended text
+/// ends before the next comma or bracket.
 pub(super) fn cut(
     file: FileId,
     text: &str,

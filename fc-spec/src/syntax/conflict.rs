@@ -1,14 +1,14 @@
-//! What git leaves in a file where two branches changed the same lines.
+//! Conflict markers that git leaves in a file.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::source::{FileId, Span};
 use crate::text;
 
-/// The lines that begin, divide and end a conflict.
+/// The start, the divisions and the end of a conflict.
 const MARKERS: [&str; 4] = ["<<<<<<<", "|||||||", "=======", ">>>>>>>"];
 
-/// Faults every conflict of the file; whether there is any. A file with conflicts is two files at once, so nothing
-/// else is said of it.
+/// Reports every conflict in the file. Returns `true` if there is one. A file with conflicts is two files at once, so
+/// no other error is reported.
 pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) -> bool {
     if !MARKERS.iter().any(|marker| text.contains(marker)) {
         return false;
@@ -55,7 +55,7 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) -> bool {
     !conflicts.is_empty()
 }
 
-/// The marker with which a line begins, which has nothing or a space behind it.
+/// Returns the marker at the start of a line. Only a space or nothing may follow it.
 fn marker(line: &str) -> Option<&'static str> {
     MARKERS.into_iter().find(|marker| {
         let rest = line.strip_prefix(marker);

@@ -1,12 +1,12 @@
-//! Characters that do not show.
+//! Invisible characters.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::model::Text;
 use crate::source::{FileId, Span};
 use crate::text;
 
-/// Faults every character that a reader of the file cannot see but that changes what it says:
-/// control characters, line ends that editors disagree about, and marks that turn the direction of text.
+/// Reports every invisible character that changes the meaning of a file. These are control characters, line ends that
+/// editors treat differently, and marks that change the direction of text.
 pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
     let mut from = 0;
     while let Some(found) = text.as_bytes().get(from..).and_then(suspect) {
@@ -31,7 +31,7 @@ pub(super) fn check(file: FileId, text: &str, faults: &mut Faults) {
     }
 }
 
-/// The first byte with which a character may begin that has a [`name`].
+/// Returns the position of the first byte that can start a character with a [`name`].
 fn suspect(bytes: &[u8]) -> Option<usize> {
     let begins = |byte: &u8| {
         matches!(
@@ -42,7 +42,7 @@ fn suspect(bytes: &[u8]) -> Option<usize> {
     bytes.iter().position(begins)
 }
 
-/// A text without what [`check`] faults in it.
+/// Returns a text without the characters that [`check`] reports.
 pub(crate) fn visible(text: &str) -> String {
     let characters = text.chars();
     characters
@@ -50,7 +50,7 @@ pub(crate) fn visible(text: &str) -> String {
         .collect()
 }
 
-/// Whether [`check`] has faulted the character at byte `at` or the one before it.
+/// Returns `true` if [`check`] has reported the character at byte `at` or the one before it.
 pub(super) fn faulted(text: &str, at: usize) -> bool {
     let Some((before, behind)) = text.split_at_checked(at) else {
         return false;

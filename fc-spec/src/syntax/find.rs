@@ -1,4 +1,4 @@
-//! Which files a spec consists of.
+//! Finds the files of a spec.
 
 use crate::model::Text;
 use crate::text;
@@ -9,30 +9,30 @@ use std::path::{Path, PathBuf};
 use super::limits;
 use crate::diagnostic::nearest;
 
-/// The directory below the spec's own in which command groups stand.
+/// The directory for command groups, inside that of the spec.
 const GROUPS: &str = "commands";
 
-/// Something in the spec's directories.
+/// An entry of the spec's directories.
 pub(super) struct Item {
-    /// Path from the project's root with `/` between its parts.
+    /// The path, relative to the project's root, with `/` as separator.
     pub path: String,
-    /// What it is.
+    /// The kind of entry.
     pub found: Found,
 }
 
-/// What something in the spec's directories is.
+/// The kind of an entry in the spec's directories.
 pub(super) enum Found {
     /// A file of the spec.
     Spec(PathBuf),
-    /// A file, or a directory of files, that someone may take for one; what to do about it.
+    /// A file, or a directory with files, that looks like a part of the spec. The text is advice.
     Stray(Text),
-    /// A directory that is named like one.
+    /// A directory with the name of a spec file.
     Directory,
-    /// What cannot be looked at.
+    /// An entry that cannot be read.
     Error(io::Error),
 }
 
-/// Whether a file can be one of a spec, by its path from the spec's directory.
+/// Returns `true` if a file can belong to a spec. The path is relative to the spec's directory.
 #[must_use]
 pub fn is_spec_file(path: &Path) -> bool {
     let is_file = path
@@ -46,7 +46,7 @@ pub fn is_spec_file(path: &Path) -> bool {
     }
 }
 
-/// What there is in the spec's directories, sorted by path; at most one item more than a spec may have.
+/// Returns the entries of the spec's directories, sorted by path. It stops after one more than a spec may have.
 pub(super) fn find(root: &Path, spec: &Path) -> Vec<Item> {
     let mut found = Vec::new();
     Directory::new(root, spec).list(true, &mut found);
@@ -86,11 +86,11 @@ impl Directory {
         }
     }
 
-    /// Lists the spec files of this directory, and of `commands` where this is the `top`.
+    /// Lists the spec files of this directory. With `top`, lists those of `commands` as well.
     fn list(&self, top: bool, found: &mut Vec<Item>) {
         self.each(found, |name, is_dir, found| {
             if top && name == GROUPS {
-                // Also where it is no directory, which is an error.
+                // If `commands` is not a directory, this reports an error.
                 self.below(name).list(false, found);
             } else if !is_dir {
                 found.extend(self.file(name));
@@ -105,7 +105,7 @@ impl Directory {
         });
     }
 
-    /// A file directly in a spec directory.
+    /// Returns the entry of a file in a spec directory.
     fn file(&self, name: &str) -> Option<Item> {
         let (stem, extension) = name.rsplit_once('.')?;
         let found = match extension {
@@ -121,7 +121,7 @@ impl Directory {
         })
     }
 
-    /// A directory with YAML files that the spec does not look into.
+    /// Reports a directory with YAML files that the spec does not read.
     fn strays(&self, found: &mut Vec<Item>) {
         let mut files = 0_usize;
         self.each(found, |name, is_dir, _| {
@@ -162,7 +162,7 @@ impl Directory {
             let name = entry.file_name();
             let name = name.to_string_lossy();
             if !name.starts_with('.') {
-                // Through links: a linked file or directory counts as what it links to.
+                // A link counts as its target.
                 let is_dir = fs::metadata(entry.path()).is_ok_and(|meta| meta.is_dir());
                 visit(&name, is_dir, found);
             }

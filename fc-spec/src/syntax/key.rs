@@ -1,10 +1,10 @@
-//! What the keys of a mapping may be: words, each once.
+//! Checks the keys of a mapping: each is a word and occurs once.
 
 use super::node::{Entries, Node, NodeKind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::text;
 
-/// Whether a key is one the spec can have.
+/// Returns `true` if the spec can have this key. Reports the error otherwise.
 pub(super) fn check(key: Node<'_>, faults: &mut Faults) -> bool {
     match key.kind() {
         NodeKind::Scalar(_) if is_merge(key) => {
@@ -46,17 +46,17 @@ pub(super) fn check(key: Node<'_>, faults: &mut Faults) -> bool {
     }
 }
 
-/// Whether it is `<<`.
+/// Returns `true` for the merge key `<<`.
 pub(super) fn is_merge(key: Node<'_>) -> bool {
     key.as_plain() == Some("<<")
 }
 
-/// Faults keys that stand twice; the places of all entries that are not kept, which are all but the first of each.
+/// Reports repeated keys. Returns the places of all entries that are removed: each except the first one with its key.
 ///
-/// Keys that all stand before the first one that comes again are those of one entry, behind which another one begins: the
-/// line with its name is missing. That is one fault, and what is behind it belongs to that other entry.
+/// If each repeated key occurs once before the first repetition, another entry starts there and the line with its name
+/// is missing. This is one error, and all keys after it belong to that other entry.
 pub(super) fn repeated(entries: Entries<'_>, faults: &mut Faults) -> Vec<usize> {
-    // Other keys have had their fault.
+    // Other errors of keys have been reported already.
     let mut keys: Vec<(&str, Node<'_>)> = entries
         .clone()
         .filter(|entry| !is_merge(entry.key))

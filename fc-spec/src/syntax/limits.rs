@@ -1,14 +1,14 @@
-//! How much a spec may be. Nothing is read, kept or nested beyond these; each has its own fault.
+//! The limits of a spec. Larger input is not read or kept, and each limit has its own error.
 
-/// Longest file, in bytes.
+/// The maximum size of a file, in bytes.
 pub const FILE_BYTES: usize = 8 << 20;
-/// Longest spec, all files together, in bytes.
+/// The maximum size of all files together, in bytes.
 pub const SPEC_BYTES: usize = 64 << 20;
-/// Most files.
+/// The maximum number of files.
 pub const FILES: usize = 1024;
-/// Deepest nesting of mappings and lists.
+/// The maximum nesting of mappings and lists.
 pub const DEPTH: usize = 64;
-/// Longest scalar, in bytes of its text.
+/// The maximum length of a scalar's text, in bytes.
 pub const SCALAR_BYTES: usize = 1 << 20;
-/// Most nodes of one file.
+/// The maximum number of nodes in a file.
 pub const NODES: usize = 2_000_000;

@@ -1,12 +1,10 @@
-//! From YAML text to a spanned syntax tree.
+//! Parses YAML into a syntax tree with spans.
 //!
-//! **Architecture invariant.** This module alone knows the YAML parser, and it knows nothing of the
-//! spec language: what keys mean is the loader's business. Everything YAML offers beyond plain
-//! mappings, lists and scalars (anchors, aliases, tags, merge keys, directives, several documents) is a
-//! fault here, so that the rest of the crate never meets it.
+//! **Architecture invariant.** Only this module uses the YAML parser, and it contains no rule of the spec language. The
+//! loader defines the meaning of keys. Anchors, aliases, tags, merge keys, directives and several documents are errors
+//! here, so that the rest of the crate never sees them.
 //!
-//! Line ends may be LF or CRLF. A byte order mark at the start of a file is dropped; spans count from
-//! behind it.
+//! Line ends are LF or CRLF. A byte order mark at the start of a file is dropped, and spans do not count it.
 
 mod comment;
 mod conflict;

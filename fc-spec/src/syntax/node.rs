@@ -1,4 +1,4 @@
-//! The syntax tree: what the YAML says, with the place and the spelling of everything.
+//! The syntax tree, with the place and the spelling of every node.
 
 use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
@@ -11,15 +11,15 @@ use std::ops::Range;
 
 /// The tree of a file.
 ///
-/// Nodes lie in one list in the order in which they begin: a mapping or list before what is in it,
-/// a key before its value. A text that stands in the file as it is meant is not kept a second time.
+/// The nodes are in one list, ordered by their starts: a mapping or list before its content, a key before its value. A
+/// text that the file contains unchanged is not stored again.
 pub struct Tree<'s> {
     file: FileId,
     source: &'s str,
     parts: Cow<'s, Parts>,
 }
 
-/// A tree without its text.
+/// A tree without its source.
 #[derive(Clone)]
 struct Parts {
     nodes: Vec<Raw>,
@@ -28,7 +28,7 @@ struct Parts {
     comments: Vec<Range<usize>>,
 }
 
-/// What the list holds of a node.
+/// A node in the list.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Raw {
     start: u32,
@@ -36,17 +36,17 @@ pub(super) struct Raw {
     form: Form,
 }
 
-/// What a node is.
+/// The form of a node.
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Null,
-    /// All of its span is its text.
+    /// The text is the whole span.
     Plain,
-    /// Its span is its text and a quote at either end.
+    /// The text is the span without its quotes.
     Quoted,
-    /// Its text is the one of this index.
+    /// The text is in `texts`, with this index.
     Kept(Style, u32),
-    /// With the number of nodes in it, itself included.
+    /// The number is that of the nodes in it, including itself.
     Sequence(u32),
     Mapping(u32),
 }
@@ -58,30 +58,30 @@ pub struct Node<'t> {
     at: usize,
 }
 
-/// What a node is.
+/// The kind of a node.
 #[derive(Clone, Debug)]
 pub enum NodeKind<'t> {
-    /// Nothing, or a plain `~` or `null`.
+    /// An empty value, or a plain `~` or `null`.
     Null,
-    /// A text, number, truth value: YAML's other scalars are told apart where they are used.
+    /// A string, number or truth value. The code that uses it decides which.
     Scalar(Scalar<'t>),
     /// A list.
     Sequence(Items<'t>),
-    /// Keys and values in the order written. No key twice; every key is a [`NodeKind::Scalar`].
+    /// Keys and values in their order. Each key occurs once and is a [`NodeKind::Scalar`].
     Mapping(Entries<'t>),
 }
 
 /// A scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scalar<'t> {
-    /// Its text: as spelled where it is plain (`0x0A01` stays `0x0A01`), unescaped and with folded
-    /// lines otherwise.
+    /// The text. A plain scalar keeps its spelling (`0x0A01`). Other scalars have their escapes and line folding
+    /// resolved.
     pub text: &'t str,
-    /// How it is written.
+    /// The style.
     pub style: Style,
 }
 
-/// How a scalar is written.
+/// The style of a scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Style {
     /// Without quotes.
@@ -112,10 +112,10 @@ pub struct Items<'t> {
 #[derive(Clone, Debug)]
 pub struct Entries<'t>(Items<'t>);
 
-/// Bytes that a node takes in a file written as tightly as they are.
+/// The number of bytes per node in a dense file.
 const BYTES_PER_NODE: usize = 8;
 
-/// A tree without a node, for [`Node::nothing`].
+/// A tree without nodes, for [`Node::nothing`].
 static EMPTY: Tree<'static> = Tree {
     file: FileId(0),
     source: "",
@@ -127,7 +127,7 @@ static EMPTY: Tree<'static> = Tree {
 };
 
 impl<'s> Tree<'s> {
-    /// Without a node yet, with room for those of `bytes` bytes.
+    /// Creates an empty tree with room for the nodes of `bytes` bytes.
     pub(super) fn new(file: FileId, source: &'s str, bytes: usize) -> Self {
         Self {
             file,
@@ -140,13 +140,13 @@ impl<'s> Tree<'s> {
         }
     }
 
-    /// The outermost node.
+    /// Returns the outermost node.
     #[must_use]
     pub fn root(&self) -> Node<'_> {
         self.node(0)
     }
 
-    /// Every comment, from its `#` to its end, in the order in which they stand.
+    /// Returns the spans of all comments with their `#`, in their order.
     pub fn comments(&self) -> impl Iterator<Item = Span> {
         self.spans(&self.parts.comments)
     }
@@ -164,12 +164,12 @@ impl<'s> Tree<'s> {
         Node { tree: self, at }
     }
 
-    /// Number of nodes, which is the place of the next one.
+    /// Returns the number of nodes, which is the index of the next one.
     pub(super) fn len(&self) -> usize {
         self.parts.nodes.len()
     }
 
-    /// Every node, in the order in which they begin.
+    /// Returns all nodes, ordered by their starts.
     pub(super) fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
         (0..self.parts.nodes.len()).map(|at| self.node(at))
     }
@@ -194,7 +194,7 @@ impl<'s> Tree<'s> {
         self.push(span, form);
     }
 
-    /// A mapping or list that begins here and whose end is not known yet.
+    /// Adds a mapping or list with an unknown end.
     pub(super) fn open(&mut self) {
         self.parts.to_mut().nodes.push(Raw {
             start: 0,
@@ -203,8 +203,7 @@ impl<'s> Tree<'s> {
         });
     }
 
-    /// Says of the node at `at`, which was opened, where it lies and what it is. All nodes behind
-    /// it are in it.
+    /// Completes the opened node at `at`. All nodes after it become its content.
     pub(super) fn close(&mut self, at: usize, span: Span, is_mapping: bool) {
         let size = narrow(self.parts.nodes.len().saturating_sub(at));
         if let Some(node) = self.parts.to_mut().nodes.get_mut(at) {
@@ -220,7 +219,7 @@ impl<'s> Tree<'s> {
         }
     }
 
-    /// Entries of the mapping at `at`, which has not been closed yet.
+    /// Returns the entries of the open mapping at `at`.
     pub(super) fn open_entries(&self, at: usize) -> Entries<'_> {
         Entries(Items {
             next: self.node(at + 1),
@@ -228,8 +227,7 @@ impl<'s> Tree<'s> {
         })
     }
 
-    /// Takes out of the mapping at `at`, which has not been closed yet, entries by the places of
-    /// their keys, which are sorted.
+    /// Removes entries of the open mapping at `at`, by the sorted indices of their keys.
     pub(super) fn remove_entries(&mut self, at: usize, keys: &[usize]) {
         let mut kept = Vec::new();
         for entry in self.open_entries(at) {
@@ -246,7 +244,7 @@ impl<'s> Tree<'s> {
         self.parts.to_mut().nodes.truncate(end);
     }
 
-    /// The same tree over a text that says the same wherever it has a node.
+    /// Returns the same tree for another source, which is equal wherever the tree has a node.
     pub(super) fn of_source(self, source: &str) -> Tree<'_> {
         Tree {
             source,
@@ -255,7 +253,7 @@ impl<'s> Tree<'s> {
         }
     }
 
-    /// The same for the text that it was made of, which lies elsewhere now.
+    /// Returns the same tree for its source at another address.
     pub(crate) fn over<'a>(&'a self, source: &'a str) -> Tree<'a> {
         Tree {
             source,
@@ -264,12 +262,12 @@ impl<'s> Tree<'s> {
         }
     }
 
-    /// Without its text, so that it can be kept beside that.
+    /// Returns the tree without its source, so that both can be stored together.
     pub(crate) fn bare(self) -> Tree<'static> {
         self.of_source("")
     }
 
-    /// Gives back the room that further nodes would have had.
+    /// Frees the unused capacity.
     pub(super) fn finish(mut self) -> Self {
         let parts = self.parts.to_mut();
         parts.nodes.shrink_to_fit();
@@ -286,7 +284,7 @@ impl<'s> Tree<'s> {
     }
 }
 
-/// Offsets and counts of a file, whose size is limited.
+/// Converts offsets and counts. They fit, because the size of a file is limited.
 fn narrow(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
@@ -296,13 +294,13 @@ fn widen(number: u32) -> usize {
 }
 
 impl<'t> Entry<'t> {
-    /// Text of the key.
+    /// Returns the text of the key.
     #[must_use]
     pub fn name(self) -> &'t str {
         self.key.as_str().unwrap_or_default()
     }
 
-    /// Key and value.
+    /// Returns the span of the key and the value.
     #[must_use]
     pub fn span(self) -> Span {
         self.key.span().to(self.value.span())
@@ -310,7 +308,7 @@ impl<'t> Entry<'t> {
 }
 
 impl<'t> Node<'t> {
-    /// A null that stands nowhere.
+    /// Returns a null without a place.
     #[must_use]
     pub fn nothing() -> Self {
         EMPTY.root()
@@ -324,12 +322,12 @@ impl<'t> Node<'t> {
         })
     }
 
-    /// Its place in the tree's list.
+    /// Returns the index in the tree's list.
     pub(super) fn at(self) -> usize {
         self.at
     }
 
-    /// Place of the node behind it and all that is in it.
+    /// Returns the index of the node after this one and its content.
     fn behind(self) -> usize {
         match self.raw().form {
             Form::Sequence(size) | Form::Mapping(size) => self.at + widen(size).max(1),
@@ -337,15 +335,15 @@ impl<'t> Node<'t> {
         }
     }
 
-    /// Where it stands, without surrounding white space. A block mapping or list ends where its
-    /// last child ends. An empty value (`key:`) has the empty span after the colon.
+    /// Returns the span without surrounding white space. A block mapping or list ends at the end of its last child. An
+    /// empty value (`key:`) has the empty span after the colon.
     #[must_use]
     pub fn span(self) -> Span {
         let raw = self.raw();
         Span::new(self.tree.file, widen(raw.start), widen(raw.end))
     }
 
-    /// What it is.
+    /// Returns the kind.
     #[must_use]
     pub fn kind(self) -> NodeKind<'t> {
         match self.raw().form {
@@ -358,7 +356,7 @@ impl<'t> Node<'t> {
         }
     }
 
-    /// The scalar.
+    /// Returns the scalar.
     #[must_use]
     pub fn as_scalar(self) -> Option<Scalar<'t>> {
         let raw = self.raw();
@@ -379,13 +377,13 @@ impl<'t> Node<'t> {
         Some(Scalar { text, style })
     }
 
-    /// Text of a scalar, however it is written.
+    /// Returns the text of a scalar in any style.
     #[must_use]
     pub fn as_str(self) -> Option<&'t str> {
         self.as_scalar().map(|scalar| scalar.text)
     }
 
-    /// Text of a scalar without quotes: the only form in which numbers, truth values and codes count.
+    /// Returns the text of a scalar without quotes. Only this style counts for numbers, truth values and codes.
     #[must_use]
     pub fn as_plain(self) -> Option<&'t str> {
         self.as_scalar()
@@ -393,15 +391,15 @@ impl<'t> Node<'t> {
             .map(|scalar| scalar.text)
     }
 
-    /// The comments that are about it: those right above its line and the one behind it, if nothing else begins before
-    /// it on its line.
+    /// Returns the comments about the node: those directly above its line, and the one on its line. Returns none if
+    /// another node precedes it on the line.
     pub fn comments(self) -> impl Iterator<Item = Span> {
         let comments = &self.tree.parts.comments;
         let about = comment::about(comments, self.tree.source, self.span().start);
         self.tree.spans(comments.get(about).unwrap_or_default())
     }
 
-    /// The fault of a plain text that goes on as a comment.
+    /// Returns the error of a plain scalar that continues as a comment.
     pub(crate) fn cut_off(self) -> Option<Diagnostic> {
         self.as_plain()?;
         let (span, source) = (self.span(), self.tree.source);
@@ -415,38 +413,38 @@ impl<'t> Node<'t> {
         ))
     }
 
-    /// The fault of a plain text that was meant as more than that: `type:u8`, `［1，2］`.
+    /// Returns the error of a plain scalar with wrong punctuation: `type:u8`, `［1，2］`.
     pub(crate) fn slip(self) -> Option<Diagnostic> {
         self.as_plain()?;
         let span = self.span();
         slip::of_scalar(span, self.tree.source.get(span.start..span.end)?)
     }
 
-    /// Items of a list.
+    /// Returns the items of a list.
     #[must_use]
     pub fn as_sequence(self) -> Option<Items<'t>> {
         matches!(self.raw().form, Form::Sequence(_)).then(|| self.inside())
     }
 
-    /// Entries of a mapping.
+    /// Returns the entries of a mapping.
     #[must_use]
     pub fn as_mapping(self) -> Option<Entries<'t>> {
         matches!(self.raw().form, Form::Mapping(_)).then(|| Entries(self.inside()))
     }
 
-    /// Items of a list; none of anything else.
+    /// Returns the items of a list, or none for another node.
     #[must_use]
     pub fn items(self) -> Items<'t> {
         self.as_sequence().unwrap_or_default()
     }
 
-    /// Entries of a mapping; none of anything else.
+    /// Returns the entries of a mapping, or none for another node.
     #[must_use]
     pub fn entries(self) -> Entries<'t> {
         self.as_mapping().unwrap_or_default()
     }
 
-    /// The nodes directly in it, keys and values alike.
+    /// Returns the direct children: keys and values.
     fn inside(self) -> Items<'t> {
         Items {
             next: self.tree.node(self.at + 1),
@@ -454,13 +452,13 @@ impl<'t> Node<'t> {
         }
     }
 
-    /// Entry of a mapping with this key.
+    /// Returns the entry of a mapping with this key.
     #[must_use]
     pub fn entry(self, key: &str) -> Option<Entry<'t>> {
         self.entries().find(|entry| entry.key.is(key))
     }
 
-    /// Whether this is a scalar with this text.
+    /// Returns `true` for a scalar with this text.
     fn is(self, text: &str) -> bool {
         let raw = self.raw();
         let (start, end) = (widen(raw.start), widen(raw.end));
@@ -471,44 +469,44 @@ impl<'t> Node<'t> {
             Form::Kept(..) => return self.as_str() == Some(text),
         };
         let found = self.tree.source.as_bytes().get(range).unwrap_or_default();
-        // Most keys are another: a call to compare them is not worth its while.
+        // Most keys differ in length or first byte, so a call to compare them would cost more.
         found.len() == text.len()
             && found.first() == text.as_bytes().first()
             && found == text.as_bytes()
     }
 
-    /// Value of a mapping under this key.
+    /// Returns the value of a mapping under this key.
     #[must_use]
     pub fn get(self, key: &str) -> Option<Node<'t>> {
         self.entry(key).map(|entry| entry.value)
     }
 
-    /// Whether there is nothing here.
+    /// Returns `true` for a null.
     #[must_use]
     pub fn is_null(self) -> bool {
         matches!(self.raw().form, Form::Null)
     }
 
-    /// Whether one of these texts is left out of it, below its key or right behind it.
+    /// Returns `true` if one of these gaps is inside the node, or directly after it.
     pub(crate) fn lacks(self, gaps: &[Span], key: Span) -> bool {
         let end = self.span().end.max(key.end);
         gaps.iter().any(|gap| {
             let between = self.tree.source.get(end..gap.start.max(end));
-            // Its own colon may be all that is there.
+            // The colon of an empty value may be all that is between.
             let is_behind =
                 between.is_some_and(|text| text.trim_matches([':', ' ', '\r', '\n']).is_empty());
             gap.file == key.file && gap.start > key.start && (gap.start < end || is_behind)
         })
     }
 
-    /// Whether nothing stands behind it in its file.
+    /// Returns `true` if only white space follows in the file.
     #[must_use]
     pub(crate) fn ends_file(self) -> bool {
         let behind = self.tree.source.get(self.span().end..);
         behind.is_some_and(|behind| behind.trim().is_empty())
     }
 
-    /// What it is, for "expected a list, found {}".
+    /// Returns a description for "expected a list, found {}".
     #[must_use]
     pub fn describe(self) -> Text {
         match self.kind() {
@@ -524,7 +522,7 @@ impl<'t> Node<'t> {
     }
 }
 
-/// What it is and where, without all that is in it.
+/// Shows the description and the place, without the content.
 impl fmt::Debug for Node<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} at {:?}", self.describe().en, self.span())
@@ -544,7 +542,7 @@ impl<'t> Iterator for Items<'t> {
     }
 }
 
-/// None.
+/// Returns no items.
 impl Default for Items<'_> {
     fn default() -> Self {
         Self {
@@ -564,7 +562,7 @@ impl<'t> Iterator for Entries<'t> {
     }
 }
 
-/// None.
+/// Returns no entries.
 impl Default for Entries<'_> {
     fn default() -> Self {
         Self(Items::default())

@@ -1,4 +1,4 @@
-//! From text to one tree.
+//! Parses the text of a file into one tree.
 
 use super::node::Tree;
 use super::tree::{Builder, Outcome};
@@ -8,22 +8,23 @@ use crate::source::{FileId, Span};
 use crate::text;
 use std::collections::HashSet;
 
-/// Errors of the YAML itself that are reported for one file; behind so many there is only noise.
+/// The maximum number of YAML errors reported for a file. Further ones would mostly be consequences.
 const ERRORS: usize = 20;
 
-/// The tree of a file's text, and all of its faults.
+/// Parses the text of a file and reports all of its errors.
 ///
-/// `None` where the tree would not say what the file means: it is no YAML, it is empty, it is several documents or the
-/// two sides of a conflict, or it uses an alias, a merge key or a key that is no word. Where a key stands twice, the first one stays in the tree.
+/// Returns `None` if a tree would not have the meaning of the file. The text is not YAML or is empty, has several
+/// documents or a conflict, or uses an alias, a merge key or an invalid key. The tree keeps the first entry of a
+/// repeated key.
 ///
-/// Behind text that is not YAML parsing goes on, so that the faults behind it show up in the same run.
+/// After text that is not YAML, parsing continues, so that one run reports the later errors too.
 pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tree<'s>> {
     let (tree, is_whole) = parse_parts(file, text, faults);
     tree.filter(|_| is_whole)
 }
 
-/// The same, with the tree also where a part of the file is not YAML: of all but the entries with such text, which are
-/// noted as hidden. `false` with it where there are such.
+/// Like [`parse`], but also returns a tree if a part of the file is not YAML. The tree lacks the entries with such
+/// text, and they are marked as hidden. The flag is `true` for a complete tree.
 pub(crate) fn parse_parts<'s>(
     file: FileId,
     text: &'s str,
@@ -62,7 +63,7 @@ pub(crate) fn parse_parts<'s>(
     }
 }
 
-/// The tree of a file without the entries that are no YAML, and what else is wrong with it.
+/// Returns the tree of a file without the entries that are not YAML. Reports the other errors.
 fn resume<'s>(file: FileId, text: &'s str, mut at: usize, faults: &mut Faults) -> Option<Tree<'s>> {
     let mut rest = text.to_owned();
     let mut known: HashSet<_> = faults.iter().map(place).collect();
@@ -74,7 +75,7 @@ fn resume<'s>(file: FileId, text: &'s str, mut at: usize, faults: &mut Faults) -
         let broken = recover::entry(&rest, said.min(at), at)?;
         rest = recover::without(&rest, broken.clone());
         faults.leave_out(Span::new(file, broken.start, broken.end));
-        // What breaks off has had more in it.
+        // A file that breaks off has lost content.
         if broken.end == text.len() {
             faults.lose();
         }
@@ -84,7 +85,7 @@ fn resume<'s>(file: FileId, text: &'s str, mut at: usize, faults: &mut Faults) -
             .iter()
             .last()
             .map_or(usize::MAX, |fault| fault.primary.span.start);
-        // What stands before the broken place is read again.
+        // The text before the broken place is parsed again, so its errors are known already.
         faults.extend(
             found
                 .iter()
@@ -101,7 +102,7 @@ fn resume<'s>(file: FileId, text: &'s str, mut at: usize, faults: &mut Faults) -
     None
 }
 
-/// What a fault is and where.
+/// Returns the code and the place of an error, which identify it.
 fn place(fault: &Diagnostic) -> (FaultCode, Span) {
     (fault.code, fault.primary.span)
 }

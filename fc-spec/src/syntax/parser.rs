@@ -1,10 +1,10 @@
-//! The YAML parser, and how it is asked to read.
+//! The YAML parser and its settings.
 
 use super::limits;
 use granit_parser::{Parser, StrInput};
 
-/// The parser of a text: what the spec has no use for is to come as an event or an error. A file has a limit, so its
-/// comments need none.
+/// Returns the parser of a text. Constructs that the spec does not allow become events or errors. The number of
+/// comments needs no limit, because the size of a file has one.
 pub(super) fn parser(text: &str, comments: bool) -> Parser<'_, StrInput<'_>> {
     let options = granit_parser::options! {
         emit_comments: comments,
@@ -18,7 +18,7 @@ pub(super) fn parser(text: &str, comments: bool) -> Parser<'_, StrInput<'_>> {
     Parser::new_from_str_with_options(text, options)
 }
 
-/// Whether the parser, which is no builder, gets beyond byte `beyond` of a text.
+/// Returns `true` if the parser gets beyond byte `beyond` of a text. It builds no tree.
 pub(super) fn reaches(text: &str, beyond: usize) -> bool {
     for event in parser(text, false) {
         match event {

@@ -1,6 +1,6 @@
-//! Texts in quotes.
+//! Quoting of texts.
 
-/// A text as it is written in quotes: in double ones, or in single ones where those would need escapes.
+/// Returns a text in double quotes, or in single quotes if double ones would need escapes.
 pub(crate) fn quoted(text: &str) -> String {
     if text.contains(['"', '\\']) {
         format!("'{}'", text.replace('\'', "''"))

@@ -1,4 +1,4 @@
-//! From the disk to [`Sources`].
+//! Reads files into [`Sources`].
 
 use crate::text;
 use std::fs::{self, File};
@@ -14,10 +14,10 @@ use crate::source::{SourceFile, Sources};
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.
 ///
-/// Names that start with a dot are left alone. Whatever cannot be read becomes a fault, and a file
-/// of the result that is not [`whole`](SourceFile::whole); no file is read beyond its limit.
+/// Ignores names that start with a dot. An unreadable file becomes an error, and a file of the result that is not
+/// [`whole`](SourceFile::whole). Reading stops at the size limits.
 ///
-/// **Architecture invariant.** This and the output module alone touch the disk.
+/// **Architecture invariant.** Only this module and the output module access the disk.
 pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
     let mut reader = Reader {
         sources: Sources::new(),
@@ -61,9 +61,9 @@ pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
     reader.sources
 }
 
-/// Reads files that are named one by one, in this order: the path that faults show, and where the file is.
+/// Reads the given files in this order. Each has the path for errors and the path on the disk.
 ///
-/// Whatever cannot be read becomes a fault, as in [`read_dir`].
+/// An unreadable file becomes an error, as in [`read_dir`].
 pub fn read_files<'p>(
     files: impl IntoIterator<Item = (String, &'p Path)>,
     faults: &mut Faults,
@@ -88,7 +88,7 @@ pub fn read_files<'p>(
     reader.sources
 }
 
-/// Reads a text that is handed in, such as standard input, under this path.
+/// Reads a text from elsewhere, such as standard input, under this path.
 pub fn read_bytes(path: String, bytes: Vec<u8>, faults: &mut Faults) -> Sources {
     let mut reader = Reader {
         sources: Sources::new(),
@@ -111,7 +111,7 @@ pub fn read_bytes(path: String, bytes: Vec<u8>, faults: &mut Faults) -> Sources 
 struct Reader<'a> {
     sources: Sources,
     faults: &'a mut Faults,
-    /// How much may still be read.
+    /// The number of bytes that may still be read.
     bytes: usize,
 }
 
@@ -193,7 +193,7 @@ impl Reader<'_> {
         self.refuse(FaultCode::Unreadable, path, message, None);
     }
 
-    /// A fault of a file as a whole; the file stands in the sources without text.
+    /// Reports an error about a whole file. The sources get the file without its text.
     fn refuse(&mut self, code: FaultCode, path: String, message: Text, advice: Option<Text>) {
         let file = self.sources.push(SourceFile::partial(path, ""));
         let mut fault = Diagnostic::error(code, Span::point(file, 0), message);
@@ -202,7 +202,7 @@ impl Reader<'_> {
     }
 }
 
-/// Describes a path that leads to something other than a file. The caller opens no pipe: that would wait for a writer.
+/// Describes a path that is not a file. Pipes are refused, because opening one would wait for a writer.
 fn not_a_file(path: &str, disk: &Path) -> Option<Text> {
     match fs::metadata(disk) {
         Ok(meta) if meta.is_file() => None,
@@ -222,16 +222,16 @@ fn not_a_file(path: &str, disk: &Path) -> Option<Text> {
     }
 }
 
-/// The bytes of a file, or `None` if there are more than `allowed`. Never holds more than that.
+/// Returns the bytes of a file, or `None` if there are more than `allowed`. It never holds more.
 fn read_at_most(disk: &Path, allowed: usize) -> io::Result<Option<Vec<u8>>> {
     let meta = fs::metadata(disk)?;
     let beyond = u64::try_from(allowed).unwrap_or(u64::MAX).saturating_add(1);
     if meta.len() >= beyond {
         return Ok(None);
     }
-    // No more room than that: the text stays in memory as long as the spec.
+    // The capacity is exact, because the text stays in memory as long as the spec.
     let mut bytes = Vec::with_capacity(usize::try_from(meta.len()).unwrap_or(0));
-    // The file may have grown since.
+    // The file may have grown meanwhile.
     File::open(disk)?.take(beyond).read_to_end(&mut bytes)?;
     Ok((bytes.len() <= allowed).then_some(bytes))
 }

@@ -1,15 +1,15 @@
-//! Where parsing can go on after text that is not YAML.
+//! Finds the place where parsing continues after text that is not YAML.
 
 use std::ops::Range;
 
-/// Deepest indentation at which parsing resumes: one level below the top.
+/// The maximum indentation at which parsing resumes: one level below the top.
 const INDENT: usize = 2;
 
-/// The whole lines of the entry, of a section or of a file, that holds the bytes from `first` on: from the key with at most
-/// two blanks before it to the next such key. Where `last` lies in a later entry, which text that is not closed reaches
-/// into, the entry of `first` alone is meant. `None` if there is nothing in it.
+/// Returns the lines of the broken entry of a section or a file, from its key to the next key. Such a key has at most
+/// two spaces before it. The entry is that of `first`. If it is blank, it is that of `last`. Returns `None` if the
+/// entry has no content.
 ///
-/// What would leave a section without an entry is the section.
+/// If the section has no other entry, returns the section.
 pub(super) fn entry(text: &str, first: usize, last: usize) -> Option<Range<usize>> {
     let keys: Vec<(usize, usize)> = lines(text, 0)
         .filter_map(|(start, line)| {
@@ -50,7 +50,7 @@ pub(super) fn entry(text: &str, first: usize, last: usize) -> Option<Range<usize
     (!is_blank(text, lines.clone())).then_some(lines)
 }
 
-/// A text with blanks in the place of these lines.
+/// Returns a text with blanks instead of these lines.
 pub(super) fn without(text: &str, lines: Range<usize>) -> String {
     let blank: String = text
         .get(lines.clone())
@@ -69,31 +69,31 @@ pub(super) fn without(text: &str, lines: Range<usize>) -> String {
     rest
 }
 
-/// What no key and no item begins with.
+/// Returns `true` for characters that can start neither a key nor an item.
 fn is_no_key(first: char) -> bool {
     first.is_whitespace() || matches!(first, ']' | '}' | ',')
 }
 
-/// Whether nothing but comments stands there.
+/// Returns `true` if the range contains only blank lines and comments.
 fn is_blank(text: &str, at: Range<usize>) -> bool {
     let mut lines = text.get(at).unwrap_or_default().lines();
     lines.all(|line| indent(line).is_none())
 }
 
-/// End of the line that holds byte `at`.
+/// Returns the end of the line with byte `at`.
 fn line_end(text: &str, at: usize) -> usize {
     let rest = text.get(at..).unwrap_or_default();
     at + rest.find('\n').unwrap_or(rest.len())
 }
 
-/// Start of the line that holds byte `at`.
+/// Returns the start of the line with byte `at`.
 pub(super) fn line_start(text: &str, at: usize) -> usize {
     text.get(..at)
         .and_then(|before| before.rfind('\n'))
         .map_or(0, |newline| newline + 1)
 }
 
-/// Lines from a line's start on, each with its offset.
+/// Returns the lines from the start of a line, each with its offset.
 fn lines(text: &str, from: usize) -> impl Iterator<Item = (usize, &str)> {
     let mut start = from;
     text.get(from..)
@@ -106,14 +106,14 @@ fn lines(text: &str, from: usize) -> impl Iterator<Item = (usize, &str)> {
         })
 }
 
-/// Spaces before the line's text; `None` for blank lines and comments.
+/// Returns the number of spaces before the text of a line, or `None` for blank lines and comments.
 fn indent(line: &str) -> Option<usize> {
     let rest = line.trim_start_matches(' ');
     let blank = rest.trim().is_empty() || rest.starts_with('#');
     (!blank).then_some(line.len() - rest.len())
 }
 
-/// Whether a line starts with a word and a colon.
+/// Returns `true` if a line starts with a word and a colon.
 fn is_key(line: &str) -> bool {
     line.split_once(':').is_some_and(|(word, rest)| {
         !word.is_empty()

@@ -1,4 +1,4 @@
-//! The parser's errors in this project's words.
+//! Translates the parser's errors into this project's words.
 
 use crate::text;
 use granit_parser::ErrorKind;
@@ -7,24 +7,24 @@ use super::scan_words;
 use crate::diagnostic::{Diagnostic, FaultCode};
 use crate::source::{FileId, Span};
 
-/// Where the parser gave up, and what it had understood by then.
+/// The place where the parser stopped, and its state.
 pub(super) struct Place<'a> {
     /// The file.
     pub file: FileId,
-    /// Its whole text.
+    /// The text of the whole file.
     pub text: &'a str,
-    /// Byte at which the parser gave up.
+    /// The byte at which the parser stopped.
     pub at: usize,
-    /// End of what it had understood.
+    /// The end of the parsed part.
     pub understood: usize,
-    /// The last value it had understood.
+    /// The last parsed value.
     pub value: Option<Span>,
-    /// Start of the innermost bracket that is open.
+    /// The start of the innermost open bracket.
     pub bracket: Option<usize>,
 }
 
 impl Place<'_> {
-    /// The character at `at`; nothing at the end of a line.
+    /// Returns the span of the character at `at`. It is empty at the end of a line.
     fn here(&self) -> Span {
         self.character(self.at)
     }
@@ -39,7 +39,7 @@ impl Place<'_> {
         Span::new(self.file, at, at + length)
     }
 
-    /// The opening quote of the text that was being read.
+    /// Returns the opening quote of the current text.
     fn quote(&self) -> Option<Span> {
         let rest = self.text.get(self.understood..)?;
         let before = rest.trim_start_matches([' ', '\t', '\r', '\n', ':', ',', '-', '?', '[', '{']);
@@ -49,7 +49,7 @@ impl Place<'_> {
     }
 }
 
-/// The fault for an error of the parser.
+/// Returns the error for an error of the parser.
 pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
     use ErrorKind as K;
     match kind {
@@ -141,7 +141,7 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
     }
 }
 
-/// A bracket that another kind of bracket closes.
+/// Returns the error for a bracket that is closed by another kind of bracket.
 fn closed_by(open: char, close: char, place: &Place<'_>) -> Diagnostic {
     let message = text!(
         "`{open}` 的闭合写成了 `{close}`",
@@ -167,8 +167,8 @@ fn closed_by(open: char, close: char, place: &Place<'_>) -> Diagnostic {
     }
 }
 
-/// The start of the line before the error where that is the one that is indented otherwise than those around it: the
-/// line of the error begins where the next one does.
+/// Returns the start of the line before the error, if its indentation is the cause. The line of the error then has the
+/// indentation of the next line.
 fn odd_line(place: &Place<'_>) -> Option<Span> {
     let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
     let is_text = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
@@ -181,7 +181,7 @@ fn odd_line(place: &Place<'_>) -> Option<Span> {
     (here == next && indent(line) > here).then(|| place.character(at))
 }
 
-/// A colon that makes no key.
+/// Returns the error for a colon that does not follow a key.
 fn colon(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadYaml,
@@ -204,7 +204,7 @@ fn colon(place: &Place<'_>) -> Diagnostic {
         let lines = place.text.get(value.start..value.end).unwrap_or_default();
         value.end <= place.at && lines.contains('\n')
     });
-    // A line that is no key but begins like one: its own colon is missing.
+    // A line that starts like a key lacks its colon.
     let lacks_colon = before.filter(|value| {
         let line = super::recover::line_start(place.text, value.start);
         let blanks = place.text.get(line..value.start).unwrap_or_default();
@@ -249,7 +249,7 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     }
 }
 
-/// A list or mapping in brackets that goes on with something else than `,` or its end.
+/// Returns the error for brackets whose content is followed by neither `,` nor their end.
 fn in_bracket(place: &Place<'_>) -> Diagnostic {
     let note = text!(
         "补上缺少的括号，或给文本加上引号",
@@ -282,7 +282,8 @@ fn in_bracket(place: &Place<'_>) -> Diagnostic {
 }
 
 fn behind_quote(place: &Place<'_>) -> Diagnostic {
-    // A text of several lines, behind which there is more on the line, ends at the opening quote of another one.
+    // If a text of several lines is followed by more text on the line, it has ended at the opening quote of another
+    // text.
     let opened = place.quote().filter(|quote| {
         let between = place.text.get(quote.start..place.at).unwrap_or_default();
         between.contains('\n')
@@ -306,7 +307,7 @@ fn behind_quote(place: &Place<'_>) -> Diagnostic {
     }
 }
 
-/// Too many brackets or levels.
+/// Returns the error for too many brackets or levels.
 pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
     let limit = super::limits::DEPTH;
     Diagnostic::error(
@@ -324,10 +325,10 @@ pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
     ))
 }
 
-/// A tab that the parser stumbled over.
+/// Returns the error for a tab that the parser refuses.
 fn tab(place: &Place<'_>) -> Diagnostic {
     let line = super::recover::line_start(place.text, place.at);
-    // In block texts the parser points at the `|` above the line.
+    // In block scalars the parser reports the `|` above the line.
     let next = place.text.get(place.at..).and_then(|rest| rest.find('\n'));
     let next = next.map(|newline| place.at + newline + 1);
     std::iter::once(line)
@@ -340,7 +341,7 @@ fn tab(place: &Place<'_>) -> Diagnostic {
         })
 }
 
-/// The fault of a line that starts with white space in which there is a tab.
+/// Returns the error for a line that starts with white space containing a tab.
 pub(super) fn indenting_tab(file: FileId, text: &str, line: usize) -> Option<Diagnostic> {
     let rest = text.get(line..)?;
     let white = rest.get(..rest.len() - rest.trim_start_matches([' ', '\t']).len())?;

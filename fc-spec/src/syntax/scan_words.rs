@@ -1,11 +1,11 @@
-//! What is said of errors of the parser that need nothing but their place.
+//! Texts for the parser's errors that need only their place.
 
 use crate::diagnostic::FaultCode;
 use crate::model::Text;
 use crate::text;
 use granit_parser::ErrorKind;
 
-/// Code, message, label and note of the errors that need nothing but their place.
+/// Returns the code, message, label and note of such an error.
 #[allow(clippy::too_many_lines, reason = "a table")]
 pub(super) fn words(kind: &ErrorKind) -> Option<(FaultCode, Text, Text, Text)> {
     use ErrorKind as K;

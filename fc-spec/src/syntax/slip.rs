@@ -1,7 +1,7 @@
-//! Punctuation that does not do what it was meant to: `effect：read`, `effect:read`, `“read”`.
+//! Finds punctuation that is not YAML's, but was meant to be: `effect：read`, `effect:read`, `“read”`.
 //!
-//! A line is looked through for what could be meant as YAML's own punctuation and is not. Whether it is to blame for
-//! a text that is no YAML is found out by fixing it: the parser must then get beyond the place where it gave up.
+//! A scan of a line collects such punctuation. To see whether it causes an error, it is replaced, and the parser must
+//! then get beyond the error.
 
 use crate::text;
 use std::ops::Range;
@@ -12,11 +12,11 @@ use super::width::{describe, half_width};
 use crate::diagnostic::{Diagnostic, FaultCode};
 use crate::source::{FileId, Span};
 
-/// Longest stretch that is parsed again to find a cause.
+/// The maximum number of bytes that are parsed again to find a cause.
 const BYTES: usize = 256 << 10;
-/// Longest line, and longest scalar, that is looked through: nobody types more at once.
+/// The maximum length of a scanned line or scalar. Longer ones are not typed by hand.
 const LINE_BYTES: usize = 4 << 10;
-/// Most lines in which a cause is looked for.
+/// The maximum number of lines that are searched for a cause.
 const LINES: usize = 40;
 
 /// Punctuation to be replaced.
@@ -25,7 +25,7 @@ struct Slip {
     replacement: &'static str,
 }
 
-/// The fault of a stretch of text that is a scalar and was meant as more than that.
+/// Returns the error for a scalar that was meant as more than a scalar.
 pub(super) fn of_scalar(span: Span, text: &str) -> Option<Diagnostic> {
     if text.len() > LINE_BYTES {
         return None;
@@ -34,7 +34,7 @@ pub(super) fn of_scalar(span: Span, text: &str) -> Option<Diagnostic> {
     fault(span.file, text, span.start, &slips)
 }
 
-/// The slip that is to blame for an error of the parser at byte `at`, where the lines from `from` on were being read.
+/// Returns the slip that causes an error of the parser at byte `at`. The parser was reading the lines from byte `from`.
 pub(super) fn behind_error(
     file: FileId,
     text: &str,
@@ -66,7 +66,7 @@ pub(super) fn behind_error(
             }
             let whole = text.get(range.start..range.end).unwrap_or_default();
             let fixed = replace(whole, start - range.start, slips);
-            // The end of the line of the error, as it is in the fixed text.
+            // The end of the error's line in the fixed text.
             let beyond = (end_of_line(at.max(start)) + fixed.len()).checked_sub(range.end);
             beyond.is_some_and(|beyond| reaches(&fixed, beyond))
         };
@@ -98,7 +98,7 @@ pub(super) fn behind_error(
     None
 }
 
-/// Brackets that are open behind a text.
+/// Returns the number of brackets that a text leaves open.
 fn opened(text: &str) -> usize {
     let mut scanner = Scanner::new(text, false);
     while scanner.step().is_some() {}
@@ -116,7 +116,7 @@ fn replace(text: &str, offset: usize, slips: &[Slip]) -> String {
     fixed
 }
 
-/// One fault for all slips of a line, which begins at byte `offset` of its file.
+/// Returns one error for all slips of a line. `offset` is the byte at which the line starts in its file.
 fn fault(file: FileId, line: &str, offset: usize, slips: &[Slip]) -> Option<Diagnostic> {
     let (first, last) = (slips.first()?, slips.last()?);
     let place = |at: &Range<usize>| Span::new(file, offset + at.start, offset + at.end);
@@ -185,18 +185,18 @@ fn shifted(slips: &[Slip], by: usize) -> Vec<Slip> {
     shifted.collect()
 }
 
-/// A walk through a line, or through a scalar.
+/// A scan of a line or a scalar.
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
-    /// Start of the text since the last punctuation.
+    /// The start of the text since the last punctuation.
     token: Option<usize>,
-    /// Only white space and dashes so far.
+    /// `true` if the line had only white space and dashes so far.
     line_start: bool,
-    /// For each open bracket, whether it is full-width.
+    /// For each open bracket, `true` if it is full-width.
     open: Vec<bool>,
     found: Vec<Slip>,
-    /// The `#` of a comment directly behind a text in brackets.
+    /// The `#` of a comment directly after a text in brackets.
     cut: Option<Range<usize>>,
 }
 
@@ -218,14 +218,14 @@ impl<'a> Scanner<'a> {
         self.found
     }
 
-    /// Looks at the next character.
+    /// Scans the next character.
     fn step(&mut self) -> Option<()> {
         let rest = self.text.get(self.at..)?;
         let character = rest.chars().next()?;
         let start = self.at;
         self.at += character.len_utf8();
         let behind = self.text.get(self.at..).unwrap_or_default();
-        // Another white space is a slip of its own.
+        // Other white space is a separate slip.
         let spaced =
             behind.is_empty() || behind.starts_with([' ', '\t', '\r', '\n', '\u{3000}', '\u{a0}']);
         let begins = self.token.is_none();
@@ -318,7 +318,7 @@ impl<'a> Scanner<'a> {
         before.is_empty() || before.ends_with([' ', '\t', '\n', '\u{3000}', '\u{a0}'])
     }
 
-    /// Whether the text since the last punctuation looks like a key.
+    /// Returns `true` if the text since the last punctuation looks like a key.
     fn is_key(&self, end: usize) -> bool {
         let Some(word) = self.token.and_then(|start| self.text.get(start..end)) else {
             return false;
@@ -326,7 +326,7 @@ impl<'a> Scanner<'a> {
         is_word(word.trim_end())
     }
 
-    /// Whether a full-width bracket closes something here.
+    /// Returns `true` if a full-width bracket closes a bracket here.
     fn closes(&self, behind: &str) -> bool {
         let rest = behind.trim_start_matches([' ', '\u{3000}']);
         let ends =
@@ -334,7 +334,7 @@ impl<'a> Scanner<'a> {
         self.open.last().is_some_and(|full| *full || ends)
     }
 
-    /// Whether a full-width comma stands before another entry: in full-width brackets, or before a key.
+    /// Returns `true` if a full-width comma separates entries: in full-width brackets, or before a key.
     fn separates(&self, behind: &str) -> bool {
         let Some(full) = self.open.last() else {
             return false;
@@ -349,7 +349,7 @@ impl<'a> Scanner<'a> {
         *full || (is_key && spaced)
     }
 
-    /// A text in quotes that are none.
+    /// Handles a text in characters that are not YAML quotes.
     fn quoted(&mut self, start: usize, open: char, behind: &str) {
         let close = match open {
             '‘' => '’',
@@ -362,7 +362,7 @@ impl<'a> Scanner<'a> {
         let rest = line.get(end + close.len_utf8()..).unwrap_or_default();
         let rest = rest.trim_start();
         let inside = line.get(..end).unwrap_or_default();
-        // Behind a quotation a Chinese text goes on, also with a full-width comma or colon.
+        // After a quotation, a Chinese text continues, also with a full-width comma or colon.
         let ends = rest.is_empty()
             || rest.starts_with('#')
             || rest.starts_with(": ")

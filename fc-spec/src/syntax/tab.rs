@@ -1,4 +1,4 @@
-//! Tabs that some readers refuse.
+//! Tabs that some parsers refuse.
 
 use super::node::{NodeKind, Style, Tree};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -6,8 +6,8 @@ use crate::source::{FileId, Span};
 use crate::text;
 use std::ops::Range;
 
-/// Faults tabs that are neither quoted nor in a block text or comment, in the part of a file that a tree is of. Those
-/// before the first text of a line are indentation, which has been looked at.
+/// Reports tabs outside of quotes, block scalars and comments in the tree's part of a file. Tabs before the first text
+/// of a line are indentation and have been checked.
 pub(super) fn check(
     file: FileId,
     text: &str,

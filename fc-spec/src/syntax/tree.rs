@@ -1,4 +1,4 @@
-//! Parser events to nodes. The only place that knows the parser's events.
+//! Builds nodes from parser events. Only this module uses the events.
 
 use crate::text;
 use std::collections::HashMap;
@@ -13,19 +13,19 @@ use super::{control, key, limits, scan_error, slip, tab};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::source::{FileId, Span};
 
-/// How a run over a stretch of text ended.
+/// The outcome of parsing a part of a text.
 pub(super) enum Outcome<'s> {
-    /// With the tree; `None` if there is nothing but white space and comments.
+    /// The tree, or `None` if there are only white space and comments.
     Tree(Option<Tree<'s>>),
-    /// The text is YAML, but the tree would not say what it means.
+    /// The text is YAML, but the tree would have another meaning.
     Unfaithful,
     /// The text is not YAML at this byte.
     Broken(usize),
-    /// Too deep or too much to go on.
+    /// The text is too deep or too large.
     Stopped,
 }
 
-/// Builds the tree of a stretch of a file.
+/// Builds the tree of a part of a file.
 pub(super) struct Builder<'a> {
     file: FileId,
     text: &'a str,
@@ -35,22 +35,22 @@ pub(super) struct Builder<'a> {
     nodes: usize,
     anchors: HashMap<usize, Span>,
     faithful: bool,
-    /// End of the last event: the parser has understood the text up to here.
+    /// The end of the last event. The text before it has been parsed.
     understood: usize,
     /// The last scalar.
     value: Option<Span>,
-    /// Whether the value of a merge key comes next.
+    /// `true` if the value of a merge key comes next.
     is_merged: bool,
-    /// Start of the last alias, behind which a text is no YAML.
+    /// The start of the last alias. A text directly after it is not YAML.
     alias: Option<usize>,
 }
 
-/// A mapping or list whose end has not come yet.
+/// A mapping or list whose end has not been reached.
 struct Open {
-    /// Its place in the tree.
+    /// The index in the tree.
     at: usize,
     start: usize,
-    /// Where its last child ends.
+    /// The end of its last child.
     end: Option<usize>,
     flow: bool,
     children: Children,
@@ -59,17 +59,17 @@ struct Open {
 #[derive(Clone, Copy)]
 enum Children {
     Items,
-    /// Whether a value comes next.
+    /// `true` if a value comes next.
     Entries {
         has_key: bool,
     },
 }
 
-/// Why building stops; the fault has been reported.
+/// Stops the builder. The error has been reported.
 struct Stop;
 
 impl<'a> Builder<'a> {
-    /// For the bytes `range` of `text`, whole lines.
+    /// Creates a builder for the bytes `range` of `text`, which are whole lines.
     pub(super) fn new(file: FileId, text: &'a str, range: Range<usize>) -> Self {
         Self {
             file,
@@ -258,7 +258,7 @@ impl<'a> Builder<'a> {
         self.add(at, faults)
     }
 
-    /// Puts something in the place of what had a fault of its own, in a tree that nobody will see.
+    /// Adds an empty scalar in place of a node with an error. The tree is never returned.
     fn placeholder(&mut self, span: Span, faults: &mut Faults) -> Result<(), Stop> {
         let at = self.tree.len();
         self.tree.push_scalar(span, Style::Plain, "");
@@ -288,7 +288,7 @@ impl<'a> Builder<'a> {
         if let Some(anchor) = anchor {
             fault = fault.also(anchor, text!("指的是这个值", "refers to this value"));
         }
-        // What a merge key merges has been reported with it.
+        // The error of the merge key covers its value.
         if !self.is_merged {
             faults.push(fault);
         }
@@ -340,7 +340,7 @@ impl<'a> Builder<'a> {
         self.add(open.at, faults)
     }
 
-    /// Counts a finished node, and checks it where it is a key.
+    /// Counts a finished node. A key is also checked.
     fn add(&mut self, at: usize, faults: &mut Faults) -> Result<(), Stop> {
         let node = self.tree.node(at);
         self.nodes += 1;
@@ -401,7 +401,7 @@ impl<'a> Builder<'a> {
         );
     }
 
-    /// In brackets some readers end a plain text at its `?`.
+    /// Reports `?` in brackets, because some parsers end a plain scalar there.
     fn check_question_mark(&self, text: &str, span: Span, faults: &mut Faults) {
         if text.contains('?') && self.open.last().is_some_and(|open| open.flow) {
             let message = text!(
@@ -418,7 +418,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Tabs between the start of the line and a node.
+    /// Reports tabs between the start of the line and a node.
     fn check_tabs(&self, node: Span, faults: &mut Faults) {
         let before = self.text.get(..node.start).unwrap_or_default();
         let rest = before.trim_end_matches([' ', '\t']);
@@ -438,7 +438,7 @@ impl<'a> Builder<'a> {
             understood: self.understood,
             value: self.value,
             bracket: self.open.iter().rev().map(|open| open.start).find(|start| {
-                // `[a: b]` opens a mapping without a bracket of its own.
+                // `[a: b]` opens a mapping without its own bracket.
                 self.text
                     .get(*start..)
                     .is_some_and(|text| text.starts_with(['[', '{']))
@@ -458,7 +458,7 @@ impl<'a> Builder<'a> {
         Span::new(self.file, start, (self.range.start + range.end).max(start))
     }
 
-    /// Without the white space that the parser counts to block texts.
+    /// Returns a span without the white space that the parser includes in block scalars.
     fn trimmed(&self, span: Span) -> Span {
         let text = self.text.get(span.start..span.end).unwrap_or_default();
         Span::new(
@@ -468,7 +468,7 @@ impl<'a> Builder<'a> {
         )
     }
 
-    /// The parser puts an empty value before the colon.
+    /// Moves the empty value after the colon, because the parser puts it before.
     fn behind_colon(&self, span: Span) -> Span {
         if span.start < span.end {
             return span;

@@ -1,9 +1,9 @@
-//! Characters that are easily taken for those of YAML.
+//! Characters that look like those of YAML.
 
 use crate::model::Text;
 use crate::text;
 
-/// The ASCII character that one of a Chinese keyboard or a word processor stands for.
+/// Returns the ASCII character for a character of a Chinese keyboard or a word processor.
 pub(crate) fn half_width(character: char) -> Option<char> {
     Some(match character {
         '\u{ff01}'..='\u{ff5e}' => {
@@ -21,7 +21,7 @@ pub(crate) fn half_width(character: char) -> Option<char> {
     })
 }
 
-/// A text with all such characters replaced.
+/// Returns a text with all such characters replaced.
 pub(crate) fn half_width_text(text: &str) -> String {
     let characters = text.chars();
     characters
@@ -29,7 +29,7 @@ pub(crate) fn half_width_text(text: &str) -> String {
         .collect()
 }
 
-/// A character and what it is, for a message.
+/// Returns a character with its name, for a message.
 pub(crate) fn describe(character: char) -> Text {
     match character {
         '\u{3000}' => text!("全角空格（U+3000）", "a full-width space (U+3000)"),

@@ -34,7 +34,7 @@ pub(super) fn render(faults: &Faults, sources: &Sources, lang: Lang) -> String {
     format!("{log:#}\n")
 }
 
-/// The codes that occur, in order.
+/// Returns the codes that occur, in order.
 fn rules(faults: &Faults) -> Vec<FaultCode> {
     let mut codes: Vec<_> = faults.iter().map(|fault| fault.code).collect();
     codes.sort_unstable();
@@ -122,7 +122,7 @@ fn region(span: Span, sources: &Sources) -> Value {
     })
 }
 
-/// A path as a relative URI reference (RFC 3986).
+/// Returns a path as a relative URI reference (RFC 3986).
 fn percent_encoded(path: &str) -> String {
     let mut uri = String::with_capacity(path.len());
     for byte in path.bytes() {

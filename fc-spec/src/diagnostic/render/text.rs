@@ -10,9 +10,9 @@ use super::super::{Diagnostic, Faults, Fix, Label, Severity};
 use crate::model::Lang;
 use crate::source::{FileId, Sources, Span};
 
-/// Longest line to show. For longer lines, the output names only the place.
+/// The maximum length of a shown line. For longer lines, the output names only the place.
 const LINE_BYTES: usize = 2000;
-/// Places at most so many lines apart share a snippet.
+/// The maximum distance in lines between places in one snippet.
 const NEAR: usize = 20;
 
 pub(super) fn render(faults: &Faults, sources: &Sources, colored: bool, lang: Lang) -> String {
@@ -125,7 +125,7 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// The level of a note.
+/// Returns the level of a note.
 fn note_level(lang: Lang) -> Level<'static> {
     match lang {
         Lang::Zh => Level::NOTE.with_name("说明"),
@@ -160,13 +160,13 @@ fn untrusted(text: &str) -> String {
 struct Excerpt<'a> {
     path: &'a str,
     text: &'a str,
-    /// Byte of the file at which they start.
+    /// The byte of the file at which they start.
     start: usize,
 }
 
 impl<'a> Excerpt<'a> {
-    /// The lines `lines.start` to `lines.end`, both included; `None` if there is nothing to show or a
-    /// line is too long to be shown.
+    /// Returns the lines `lines.start` to `lines.end`, both included. Returns `None` if they are empty or one of them
+    /// is too long.
     fn new(sources: &'a Sources, file: FileId, lines: &Range<usize>) -> Option<Self> {
         let file = sources.get(file)?;
         let (start, end) = file.lines(lines.start, lines.end)?;
@@ -179,8 +179,8 @@ impl<'a> Excerpt<'a> {
         })
     }
 
-    /// A span within the excerpt, cut off at the end of its first line: the first line
-    /// identifies a mapping.
+    /// Returns a span relative to the excerpt, cut off at the end of its first line. The first line is enough to
+    /// identify a mapping.
     fn range(&self, span: Span) -> Range<usize> {
         let end = span.end.min(self.start + self.text.len());
         let range = self.exact(Span { end, ..span }).unwrap_or_default();
@@ -189,7 +189,7 @@ impl<'a> Excerpt<'a> {
         range.start..range.start + line.trim_end().len()
     }
 
-    /// A span within the excerpt, unless it reaches out of it.
+    /// Returns a span relative to the excerpt, or `None` if it exceeds it.
     fn exact(&self, span: Span) -> Option<Range<usize>> {
         let range = span.start.checked_sub(self.start)?..span.end.checked_sub(self.start)?;
         self.text.get(range.clone()).map(|_| range)
