@@ -84,7 +84,7 @@ pub fn refusal(id: RequestId, code: ErrorCode, message: &str) -> Response {
     Response::new_err(id, code as i32, message.to_owned())
 }
 
-/// Answers a request. Without a project there is no snapshot, and the result is empty.
+/// Handles a request. Without a project there is no snapshot, and the result is empty.
 pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
     let Request { id, method, params } = request;
     let ask = Ask {
