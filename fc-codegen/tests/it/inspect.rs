@@ -319,6 +319,50 @@ fn what_is_no_dump_is_refused_with_a_reason() {
     assert!(refused(&code).contains("does not match its number"));
 }
 
+#[test]
+fn dump_with_a_body_of_no_operation_is_refused() {
+    let text = inspect::json(&good_spec::model());
+    for (operation, user) in [
+        ("get_thing", "GetThingRequest"),
+        ("thing_moved", "ThingMoved"),
+    ] {
+        let owner = format!("\"operation\": \"{operation}\"");
+        assert!(text.contains(&owner));
+        for other in ["nowhere", "level_changed"] {
+            let renamed = text.replace(&owner, &format!("\"operation\": \"{other}\""));
+            assert_eq!(
+                refused(&renamed),
+                format!("`{user}` names such a body of `{other}`, which is not in the dump")
+            );
+        }
+    }
+}
+
+#[test]
+fn dump_with_an_example_of_another_type_is_refused() {
+    let text = inspect::json(&good_spec::model());
+    for (ty, key, other) in [
+        ("GetThingResponseData", "x", serde_json::json!("half")),
+        ("GetThingResponseData", "x", serde_json::json!(0.5)),
+        ("GetThingResponseData", "name", serde_json::json!(1)),
+        ("GetThingRequest", "thingId", serde_json::json!("seven")),
+        ("GetThingRequest", "thingId", serde_json::json!([7])),
+        ("GetThingRequest", "thingId", serde_json::json!(7.5)),
+    ] {
+        let mut dump = serde_json::from_str(&text).expect("JSON");
+        let fields = named(&mut dump, "types", ty)["fields"].as_array_mut();
+        let mut fields = fields.expect("a list").iter_mut();
+        let field = fields.find(|field| field["path"] == key);
+        let field = field.expect("it is there");
+        field["example_is"] = serde_json::json!("given");
+        field["example"] = other;
+        assert_eq!(
+            refused(&dump.to_string()),
+            format!("the example or default of `{ty}.{key}` does not fit its type")
+        );
+    }
+}
+
 /// Dumps are kept, as what a protocol was. This one was made when the format began, and is never made again: what is
 /// added to the format must do without it here.
 #[test]
@@ -371,26 +415,31 @@ fn a_dump_that_names_what_is_not_there_is_refused() {
     use serde_json::json;
     let text = inspect::json(&good_spec::model());
     let tied = |command: &str, report: &str| {
-        let tie = json!({ "side": "request", "command": [command], "report": [report] });
-        json!([{ "report": "thing_moved", "tied": [tie] }])
+        let tie =
+            serde_json::json!({ "side": "request", "command": [command], "report": [report] });
+        serde_json::json!([{ "report": "thing_moved", "tied": [tie] }])
     };
-    let accepted = |states: serde_json::Value, after: &[&str]| json!({ "in": states, "after": after, "note": null });
-    let states = json!({ "states": [{ "type": "Colour", "values": [0] }] });
+    let accepted = |states: serde_json::Value, after: &[&str]| serde_json::json!({ "in": states, "after": after, "note": null });
+    let states = serde_json::json!({ "states": [{ "type": "Colour", "values": [0] }] });
     for (place, value, missing) in [
         (
             "Color/values/1/then",
-            json!(["red", "blue"]),
+            serde_json::json!(["red", "blue"]),
             "value `blue`",
         ),
         (
             "GetThingResponse/group",
-            json!("nowhere"),
+            serde_json::json!("nowhere"),
             "group `nowhere`",
         ),
-        ("get_thing/group", json!("nowhere"), "group `nowhere`"),
+        (
+            "get_thing/group",
+            serde_json::json!("nowhere"),
+            "group `nowhere`",
+        ),
         (
             "get_thing/sets_off",
-            json!([{ "report": "thing_moved", "tied": [] }, { "report": "get_thing", "tied": [] }]),
+            serde_json::json!([{ "report": "thing_moved", "tied": [] }, { "report": "get_thing", "tied": [] }]),
             "report `get_thing`",
         ),
         ("get_thing/sets_off", tied("thingId", "thingId"), ""),
@@ -398,18 +447,18 @@ fn a_dump_that_names_what_is_not_there_is_refused() {
         ("get_thing/sets_off", tied("thingId", "id"), "key `id`"),
         (
             "get_thing/accepted",
-            accepted(json!(null), &["get_thing", "thing_moved"]),
+            accepted(serde_json::json!(null), &["get_thing", "thing_moved"]),
             "command `thing_moved`",
         ),
         ("get_thing/accepted", accepted(states, &[]), "type `Colour`"),
         (
             "thing_picture/started_by",
-            json!("thing_moved"),
+            serde_json::json!("thing_moved"),
             "command `thing_moved`",
         ),
         (
             "thing_picture/stopped_by",
-            json!("thing_moved"),
+            serde_json::json!("thing_moved"),
             "command `thing_moved`",
         ),
     ] {

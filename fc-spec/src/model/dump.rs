@@ -87,6 +87,8 @@ pub enum DumpError {
     Name(Unlinked),
     /// The spelling of a code is that of another code.
     Spelling(String),
+    /// The example or default of a field, `Type.key`, is no value of its type.
+    Value(String),
 }
 
 impl DumpError {
@@ -109,6 +111,10 @@ impl DumpError {
                 "功能码的写法 {spelling} 与它的数值不一致",
                 "the spelling {spelling} of a code does not match its number"
             ),
+            Self::Value(field) => text!(
+                "`{field}` 的示例或默认值与它的类型不符",
+                "the example or default of `{field}` does not fit its type"
+            ),
             Self::Name(Unlinked { missing, user }) => text!(
                 "{user} 用到了 {missing}，而输出中没有它",
                 "{user} names {missing}, which is not in the dump"
@@ -127,7 +133,7 @@ impl std::error::Error for DumpError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Shape(error) => Some(error),
-            Self::Format(_) | Self::Name(_) | Self::Spelling(_) => None,
+            Self::Format(_) | Self::Name(_) | Self::Spelling(_) | Self::Value(_) => None,
         }
     }
 }
@@ -204,6 +210,10 @@ impl Dump {
         (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
         let model = dump.model().link().map_err(DumpError::Name)?;
         model.check_ways().map_err(DumpError::Name)?;
+        model.check_bodies().map_err(DumpError::Name)?;
+        if let Some((ty, field)) = model.misfit() {
+            return Err(DumpError::Value(format!("{}.{}", ty.name, field.wire)));
+        }
         Ok(model)
     }
 

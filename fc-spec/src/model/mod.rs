@@ -8,6 +8,7 @@ mod body;
 mod cadence;
 mod condition;
 mod dump;
+mod dump_fit;
 mod entity;
 mod flat;
 mod glossary;
