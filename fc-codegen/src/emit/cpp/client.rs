@@ -1,6 +1,6 @@
 //! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
 
-use super::groups::Group;
+use super::groups::NamedGroup;
 use super::layout::{Includes, literal};
 use super::types::namespace;
 use crate::emit::stub::context::Context;
@@ -10,7 +10,7 @@ use crate::emit::stub::source::Source;
 use crate::surface::package::Call;
 
 /// The header.
-pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
@@ -44,16 +44,20 @@ pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
 }
 
 /// The groups that have commands.
-fn calling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+fn calling<'g, 'p, 'm>(
+    groups: &'g [NamedGroup<'p, 'm>],
+) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
     groups.iter().filter(|group| !group.commands.is_empty())
 }
 
 /// The groups that have reports.
-fn reporting<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+fn reporting<'g, 'p, 'm>(
+    groups: &'g [NamedGroup<'p, 'm>],
+) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
     groups.iter().filter(|group| !group.reports.is_empty())
 }
 
-fn reports(out: &mut Source, groups: &[Group<'_>]) {
+fn reports(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.docs(&Docs::said(&[
         "任意一个上报；功能码不在规范中的，原样保留。",
         "Any report. A report with a code that is not in the spec is kept unchanged.",
@@ -94,7 +98,7 @@ class Reports {
     );
 }
 
-fn client(out: &mut Source, groups: &[Group<'_>]) {
+fn client(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法，等到响应才返回。
@@ -163,13 +167,13 @@ fn client(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The commands of a group as methods of the client.
-pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，是 `Client`（`Self`）的方法。",
         "The commands of a group as methods of `Client` (`Self`).",
     ]));
     out.line("template <class Self>");
-    out.line(format!("class {} {{", group.name("Calls")));
+    out.line(format!("class {} {{", group.part("Calls")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for command in &group.commands {
@@ -187,7 +191,7 @@ pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
         out.line("template <class Self>");
         out.line(format!(
             "fc_runtime::Called<{response}> {}<Self>::{}(const {request}& request, const fc_runtime::CallOptions& options) const {{",
-            group.name("Calls"),
+            group.part("Calls"),
             command.method
         ));
         out.line("  return static_cast<const Self*>(this)->connection().call(request, options);");
@@ -222,7 +226,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 }
 
 /// The types of a group's requests and of its reports.
-pub fn lists(out: &mut Source, group: &Group<'_>) {
+pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
     for (part, zh, en, calls) in [
         (
             "Commands",
@@ -241,7 +245,7 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
             continue;
         }
         out.line(format!("/// {zh}{en}"));
-        out.line(format!("using {} = fc_runtime::Types<", group.name(part)));
+        out.line(format!("using {} = fc_runtime::Types<", group.part(part)));
         // A comment on each keeps it on a line of its own, and with an end behind the last a type more changes no line of
         // another.
         for call in calls {
@@ -254,7 +258,7 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
 }
 
 /// A function over the types of all commands, and one over those of all reports.
-fn each(out: &mut Source, groups: &[Group<'_>]) {
+fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     let commands: Vec<String> = calling(groups).map(|it| it.named("Commands")).collect();
     let reports: Vec<String> = reporting(groups).map(|it| it.named("Reports")).collect();
     for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
@@ -286,7 +290,7 @@ fn each(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/client.hpp\""));

@@ -3,7 +3,6 @@
 use crate::emit::stub::docs::columns_of;
 use crate::emit::stub::source::{Source, join};
 use crate::emit::stub::style::{Comment, Style};
-use crate::surface::package::Item;
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -22,7 +21,6 @@ pub static CPP: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("`{name}`"),
-    elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
     integer: |value| value.to_string(),
     redacted: "Never printed.",
 };

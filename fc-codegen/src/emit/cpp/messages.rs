@@ -1,16 +1,16 @@
 //! The headers of groups: their message types, which are structs, enums and choices, what ties requests to their codes, and
 //! what both stubs have of their operations.
 
-use super::groups::{self, Group};
+use super::groups::{self, NamedGroup};
 use super::layout::{CPP, Includes, integer, literal};
 use super::process;
 use super::tables;
 use super::types::{Header, integer_type, name_of, namespace};
 use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::conditions::sentence;
 use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
+use crate::emit::stub::process::has_states;
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
@@ -25,7 +25,7 @@ pub fn header(
     context: &Context<'_>,
     samples: &Samples<'_>,
     header: &Header<'_, '_>,
-    groups: &[&Group<'_>],
+    groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
     let mut body = Source::cpp();
@@ -119,19 +119,12 @@ fn structure(
 ) {
     out.docs(&facts::item_docs(context, item));
     let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
     includes.own("fc_runtime/json.hpp");
     let name = &item.ty.name;
     out.enclose(&format!("struct {name} {{"), "};", |out| {
         for field in fields {
-            out.docs(&facts::field_docs(
-                &CPP,
-                field,
-                conditions.sentence(field, spelled),
-            ));
+            let condition = sentence(&expressions, field, fields, spelled);
+            out.docs(&facts::field_docs(&CPP, field, condition));
             used(includes, &field.ty);
             let mut ty = name_of(context, &field.ty);
             if field.optional {
@@ -234,7 +227,7 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, comm
         "};",
         |out| {
             for (error, result) in package.errors(command) {
-                out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+                out.docs(&about::error(error, result.of));
                 out.line(format!(
                     "{} = {},",
                     result.name,
@@ -259,18 +252,13 @@ fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let ty = item.ty.of;
     let name = &item.ty.name;
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if !shape.closed {
-        docs.paragraph("其他值原样保留。Any other value is kept unchanged.");
-    }
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
-    out.docs(&docs);
+    let open = if shape.closed {
+        ""
+    } else {
+        "其他值原样保留。Any other value is kept unchanged."
+    };
+    out.docs(&about::enumeration(context, item.ty.of, open));
     let each = |out: &mut Source| {
         for value in values {
             out.docs(&facts::value_docs(value));
@@ -302,7 +290,7 @@ fn enumeration(
     out.line(format!(
         "[[nodiscard]] bool is_known({by_value} value) noexcept;"
     ));
-    if process::is_state(shape, values) {
+    if has_states(shape) {
         process::declare(out, &by_value, shape);
     }
     let parameters = ["std::ostream& out".to_owned(), format!("{by_value} value")];

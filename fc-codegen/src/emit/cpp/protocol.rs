@@ -1,6 +1,6 @@
 //! The protocol as a value: header, envelopes, result codes, ports, limits and operations.
 
-use super::groups::Group;
+use super::groups::NamedGroup;
 use super::layout::{Includes, integer, literal};
 use super::messages::effect_name;
 use super::types::namespace;
@@ -29,11 +29,7 @@ pub fn header(context: &Context<'_>) -> String {
     includes.lines(&mut out);
     out.blank();
     out.namespace(space, |out| {
-        let protocol = &context.model().protocol;
-        let mut docs = Docs::of(&protocol.title);
-        docs.text(&protocol.about);
-        docs.paragraph(format!("Version {} of the spec.", protocol.version));
-        out.docs(&docs);
+        out.docs(&about::protocol(context.model()));
         out.line("[[nodiscard]] const fc_runtime::Protocol& protocol();");
         out.blank();
         results(out, context);
@@ -46,9 +42,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.docs(&about::results(context));
     out.enclose("enum class ResultCode : std::int64_t {", "};", |out| {
         for result in &context.package.results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
-            out.docs(&docs);
+            out.docs(&about::result(result.of));
             out.line(format!(
                 "{} = {},",
                 result.name,
@@ -83,7 +77,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
     out.line(format!("#include \"{space}/protocol.hpp\""));
@@ -307,7 +301,7 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
 }
 
 /// What tells the protocol of a group's operations, as the header declares it.
-pub fn declare_operations(out: &mut Source, group: &Group<'_>) {
+pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 把这一组的指令、上报和数据流加到 `protocol().operations` 中。");
     out.line("/// Adds the operations of the group to those of `protocol()`.");
     let open = format!("void add_{}(", group.id);
@@ -316,7 +310,7 @@ pub fn declare_operations(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The function for that.
-pub fn operations(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn operations(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "void add_{}(std::vector<fc_runtime::OperationInfo>& operations) {{",
         group.id

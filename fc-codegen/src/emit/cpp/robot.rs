@@ -1,17 +1,18 @@
 //! The robot's stub: a class to derive from whose methods are those of its groups, one per command, one that answers with
 //! the spec's examples, and typed pushing of reports.
 
-use super::groups::Group;
+use super::groups::NamedGroup;
 use super::layout::Includes;
 use super::types::namespace;
-use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::about;
+use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::ranges::{UNKNOWN, pass_through};
 use crate::emit::stub::source::Source;
 
 /// The header.
-pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("#pragma once");
@@ -46,11 +47,13 @@ pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
 }
 
 /// The groups that have commands.
-fn handling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
+fn handling<'g, 'p, 'm>(
+    groups: &'g [NamedGroup<'p, 'm>],
+) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
     groups.iter().filter(|group| !group.commands.is_empty())
 }
 
-fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
+fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
@@ -82,24 +85,15 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
     );
     out.enclose("", "};", |out| {
         for (name, range) in pass_through(context) {
-            let mut docs = Docs::of(&range.text);
-            docs.paragraph(format!(
-                "Codes {} to {} without a separate method.",
-                range.first_spelling, range.last_spelling
-            ));
-            raw(out, docs, &name);
+            raw(out, &about::range(range), &name);
         }
-        let other = [
-            "功能码不在规范中的指令。",
-            "Commands with a code that is not in the spec.",
-        ];
-        raw(out, Docs::said(&other), UNKNOWN);
+        raw(out, &about::unknown(), UNKNOWN);
     });
 }
 
 /// The commands of a group as a robot handles them.
-pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let name = group.name("Robot");
+pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let name = group.part("Robot");
     out.docs(&Docs::said(&[
         "一组指令，由 `Robot` 处理。",
         "The commands of a group as `Robot` handles them.",
@@ -108,11 +102,8 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     out.line(" public:");
     out.enclose("", "", |out| {
         for command in &group.commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(context.style, &mut docs, command.operation);
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
             out.blank();
-            out.docs(&docs);
+            out.docs(&facts::method_docs(context, command.operation, |_| ()));
             let open = format!(
                 "virtual fc_runtime::Replied<{}> {}(",
                 command.response.ty.name, command.method
@@ -132,13 +123,13 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What `PartialRobot` and `ExampleRobot` do with the commands of a group.
-pub fn defaults(out: &mut Source, group: &Group<'_>) {
+pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
         "The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.",
     ]));
     out.line("template <class Base>");
-    out.line(format!("class {} : public Base {{", group.name("Defaults")));
+    out.line(format!("class {} : public Base {{", group.part("Defaults")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for command in &group.commands {
@@ -162,11 +153,9 @@ pub fn defaults(out: &mut Source, group: &Group<'_>) {
 }
 
 /// A method for commands without a type, which a robot need not have.
-fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
-    docs.paragraph("不实现此方法时，按未知指令拒绝。");
-    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
+fn raw(out: &mut Source, docs: &Docs<'_>, name: &str) {
     out.blank();
-    out.docs(&docs);
+    out.docs(docs);
     let parameters = [
         "const fc_runtime::Context& context",
         "std::string_view text",
@@ -192,7 +181,7 @@ fn of_parts(
     name: &str,
     answers: &str,
     constructor: &str,
-    groups: &[Group<'_>],
+    groups: &[NamedGroup<'_, '_>],
 ) {
     let answers = format!("fc_runtime::{answers}<Robot, protocol>");
     let parts = handling(groups).map(|group| group.named("Defaults"));
@@ -209,7 +198,7 @@ fn of_parts(
     out.line("// clang-format on");
 }
 
-fn partial(out: &mut Source, groups: &[Group<'_>]) {
+fn partial(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
         "\
@@ -222,7 +211,7 @@ fn partial(out: &mut Source, groups: &[Group<'_>]) {
     );
 }
 
-fn example(out: &mut Source, groups: &[Group<'_>]) {
+fn example(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
         "\
@@ -238,7 +227,7 @@ fn example(out: &mut Source, groups: &[Group<'_>]) {
     );
 }
 
-fn reporter(out: &mut Source, groups: &[Group<'_>]) {
+fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
@@ -266,21 +255,18 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The reports of a group as methods of the reporter.
-pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
         "The reports of a group as methods of `Reporter` (`Self`).",
     ]));
     out.line("template <class Self>");
-    out.line(format!("class {} {{", group.name("Reporter")));
+    out.line(format!("class {} {{", group.part("Reporter")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for report in &group.reports {
-            let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(context.style, &mut docs, report.operation);
-            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
             out.blank();
-            out.docs(&docs);
+            out.docs(&facts::method_docs(context, report.operation, |_| ()));
             let parameters = [
                 format!("const {}& report", report.request.ty.name),
                 "std::optional<fc_runtime::ConnectionId> to = std::nullopt".to_owned(),
@@ -297,7 +283,7 @@ pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What hands a request on to its method, as the header declares it.
-pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
+pub fn declare_serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 由机器人处理这一组的指令；其他指令没有结果。");
     out.line("/// Has a robot handle a command of the group; none if it is of another.");
     let open = format!(
@@ -305,7 +291,7 @@ pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
         group.id
     );
     let parameters = [
-        format!("{}& robot", group.name("Robot")),
+        format!("{}& robot", group.part("Robot")),
         "const fc_runtime::Context& context".to_owned(),
         "std::string_view text".to_owned(),
     ];
@@ -313,11 +299,11 @@ pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The function for that.
-pub fn serve(out: &mut Source, group: &Group<'_>) {
+pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "std::optional<fc_runtime::Handled> serve_{}({}& robot, const fc_runtime::Context& context, std::string_view text) {{",
         group.id,
-        group.name("Robot")
+        group.part("Robot")
     );
     out.enclose(&open, "}", |out| {
         out.enclose("switch (context.code) {", "}", |out| {
@@ -335,7 +321,7 @@ pub fn serve(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let ranges = pass_through(context);
     let mut out = Source::cpp();

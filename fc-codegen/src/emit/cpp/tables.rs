@@ -3,9 +3,8 @@
 use super::fields::enumerators;
 use super::layout::{Includes, float, integer, literal, raw};
 use super::types::{name_in, name_of, namespace};
+use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions, Record};
@@ -24,14 +23,8 @@ pub fn header(context: &Context<'_>) -> String {
     out.blank();
     out.namespace(space, |out| {
         for table in &context.package.tables {
-            let mut docs = Docs::of(&table.title);
-            docs.text(&table.about);
-            if let Some(store) = &table.kept {
-                docs.paragraph(facts::kept(store));
-            }
-            docs.paragraph(context.links(&table.location, "reference/tables.md"));
             out.blank();
-            out.docs(&docs);
+            out.docs(&about::table(context, table.of));
             let row = context.name_of(&table.row);
             out.line(format!(
                 "[[nodiscard]] const std::vector<{row}>& {}();",

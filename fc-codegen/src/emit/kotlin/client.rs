@@ -1,19 +1,20 @@
 //! The app's side: one method per command, and following.
 
-use super::group::{Group, heading, parts, wrapper};
+use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
 use super::operations::{deprecated, way};
 use super::streams;
 use super::text::STYLE;
-use crate::emit::stub::context::{Context, page_of};
+use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::emit::stub::process::{ending, set_off};
 use crate::emit::stub::source::Source;
+use crate::surface::group::Group;
 use crate::surface::package::{Call, Item};
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
+pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let protocol = &context.package.name;
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
@@ -93,22 +94,17 @@ const CONNECTION: &str =
     "/** 底层连接。The underlying connection: raw commands and options of a call. */";
 
 /// The methods for the commands of a group.
-pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.commands.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&group.docs("Client"));
-    out.block(
-        format!("public interface {}", group.part("Client")),
-        |out| {
-            out.line(CONNECTION);
-            out.line(format!("public val {PROPERTY}"));
-            for command in &group.commands {
-                call(out, context, command);
-            }
-        },
-    );
+    part_of(out, group, "Client", &part_name(group, "Client"), |out| {
+        out.line(CONNECTION);
+        out.line(format!("public val {PROPERTY}"));
+        for command in &group.commands {
+            call(out, context, command);
+        }
+    });
 }
 
 /// Whether a request can be made of nothing.
@@ -118,12 +114,9 @@ pub fn is_bare(item: &Item<'_>) -> bool {
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(&STYLE, &mut docs, operation);
-    if context.package.error_type(operation).is_some() {
-        docs.raw("[fc.runtime.CallError.declared] returns the error of a refused call.");
-    }
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    let mut docs = facts::command_docs(context, operation, |_| {
+        "[fc.runtime.CallError.declared] returns the error of a refused call.".to_owned()
+    });
     docs.raw("@throws fc.runtime.CallError if the call fails");
     out.blank();
     out.docs(&docs);

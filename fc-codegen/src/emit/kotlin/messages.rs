@@ -2,31 +2,22 @@
 
 use super::expr;
 use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
-use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::about;
+use crate::emit::stub::conditions::sentence;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::{Docs, columns_of};
 use crate::emit::stub::facts;
+use crate::emit::stub::marks::FieldMarks;
+use crate::emit::stub::process::{has_states, next_values};
 use crate::emit::stub::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Module, Shape, Spelled};
-use fc_spec::model::{
-    Condition, EnumRepr, EnumType, EnumValue, Field, Quirk, StateOrder, Type, Value, Variant,
-};
+use crate::surface::package::{Item, Shape, Spelled};
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
-/// The file of the types that several groups share.
-pub fn shared(context: &Context<'_>, samples: &Samples<'_>) -> Source {
-    let mut out = Source::new(&STYLE);
-    let mut modules = context.package.modules.iter();
-    if let Some(shared) = modules.find(|it| it.group.is_none()) {
-        module(&mut out, context, samples, shared);
-    }
-    out
-}
-
-/// The types of a module.
-pub fn module(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) {
-    for item in &module.items {
+/// Message types.
+pub fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, items: &[Item<'_>]) {
+    for item in items {
         out.blank();
         match &item.shape {
             Shape::Record(_, fields) => message(out, context, samples, item, fields),
@@ -60,12 +51,8 @@ fn message(
     let head = format!("public class {name} private constructor(content: Content)");
     out.block(heading(out, &head, &supers), |out| {
         let expressions = Expressions::new(&context.package, samples);
-        let conditions = Conditions {
-            fields,
-            expressions: &expressions,
-        };
         for field in fields {
-            let condition = conditions.sentence(field, spelled);
+            let condition = sentence(&expressions, field, fields, spelled);
             out.blank();
             out.docs(&facts::field_docs(&STYLE, field, condition));
             property(out, context, field);
@@ -212,17 +199,18 @@ fn companion(
     };
     out.block(head, |out| {
         for field in fields {
+            let marks = FieldMarks::build(field.of, fields);
             let how = if field.optional {
                 "optional"
             } else {
                 "required"
             };
             let wire = literal(&field.wire);
-            let mut made = format!("{how}({wire}, {})", codec(context, field));
-            for key in &field.details().also {
+            let mut made = format!("{how}({wire}, {})", codec(context, field, &marks));
+            for key in marks.also {
                 made.extend([".also(", &literal(key), ")"]);
             }
-            if field.details().quirks.contains(&Quirk::EmptyIsAbsent) {
+            if marks.quirks.contains(&"empty_is_absent") {
                 made.push_str(".emptyIsAbsent()");
             }
             if field.sensitive {
@@ -257,34 +245,22 @@ fn companion(
 
 /// Conditions come after all fields: they may ask a later one.
 fn conditions(out: &mut Source, context: &Context<'_>, fields: &[Spelled<'_, Field>]) {
-    let mut lines = Vec::new();
-    for field in fields.iter().filter(|field| field.optional) {
-        let Some(condition) = &field.details().condition else {
-            continue;
-        };
-        let word = match condition {
-            Condition::When(_) => "whenIs",
-            Condition::Unless(_) => "unlessIs",
-        };
-        let mut line = constant(context, field);
-        for asked in condition.asked() {
-            let beside = fields.iter().find(|beside| beside.wire == asked.wire);
-            let Some(beside) = beside else { continue };
-            let values: Vec<String> = asked.values.iter().map(scalar).collect();
-            let (beside, values) = (constant(context, beside), values.join(", "));
-            line.extend([".", word, "(", &beside, ", ", &values, ")"]);
-        }
-        lines.push(line);
-    }
+    let lines = fields.iter().filter_map(|field| {
+        let condition = FieldMarks::build(field.of, fields).condition?;
+        let asked = condition.fields.iter().map(|(other, values)| {
+            let values: Vec<String> = values.iter().map(scalar).collect();
+            let (word, other) = (condition.word, constant(context, other));
+            format!(".{word}Is({other}, {})", values.join(", "))
+        });
+        let asked: Vec<String> = asked.collect();
+        Some(constant(context, field) + &asked.concat())
+    });
+    let lines: Vec<String> = lines.collect();
     if lines.is_empty() {
         return;
     }
     out.blank();
-    out.block("init", |out| {
-        for line in lines {
-            out.line(line);
-        }
-    });
+    out.block("init", |out| out.line(lines.join("\n")));
 }
 
 fn enumeration(
@@ -294,13 +270,8 @@ fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let (name, ty) = (&item.ty.name, item.ty.of);
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    let name = &item.ty.name;
+    let docs = about::enumeration(context, item.ty.of, "");
     let (wire, base, kind) = match shape.repr {
         EnumRepr::Int(kind) => ("Long", "Int", Some(plain_codec(&Type::Int(kind)))),
         EnumRepr::String => ("String", "Text", None),
@@ -311,10 +282,7 @@ fn enumeration(
         arguments.push("isClosed = true".to_owned());
     }
     let arguments = arguments.join(", ");
-    let is_state = shape.order.is_some()
-        || values
-            .iter()
-            .any(|value| value.is_final || value.is_error || !value.then.is_empty());
+    let is_state = has_states(shape);
     let mut supers = vec![format!("{base}Value(wire)")];
     supers.extend(is_state.then(|| "State".to_owned()));
     out.docs(&docs);
@@ -371,29 +339,20 @@ fn steps(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) 
     out.line(format!(
         "private val steps = Steps(this, StateOrder.{order})"
     ));
-    let wire = |name: &str| {
-        let of = values.iter().find(|value| value.of.name == name);
-        of.map(|value| format!("{}.wire", value.name))
-    };
-    let marked = |of: &dyn Fn(&EnumValue) -> bool| {
-        let all = values.iter().filter(|value| of(value.of));
-        let all: Vec<String> = all.map(|value| format!("{}.wire", value.name)).collect();
-        all.join(", ")
-    };
-    let mut calls = Vec::new();
-    for value in values {
-        let then: Vec<String> = value.then.iter().filter_map(|it| wire(it)).collect();
-        if !then.is_empty() {
-            calls.push(format!("then({}.wire, {})", value.name, then.join(", ")));
+    let wire = |value: &Spelled<'_, EnumValue>| format!("{}.wire", value.name);
+    let mut call = |name: &str, values: Vec<String>, least: usize| {
+        if values.len() >= least {
+            out.line(format!("    .{name}({})", values.join(", ")));
         }
+    };
+    for value in values {
+        let next = next_values(value, values).map(wire);
+        call("then", [wire(value)].into_iter().chain(next).collect(), 2);
     }
-    let finals = marked(&|value| value.is_final);
-    let errors = marked(&|value| value.is_error);
-    calls.extend((!finals.is_empty()).then(|| format!("finals({finals})")));
-    calls.extend((!errors.is_empty()).then(|| format!("errors({errors})")));
-    for call in calls {
-        out.line(format!("    .{call}"));
-    }
+    let finals = values.iter().filter(|value| value.is_final);
+    call("finals", finals.map(wire).collect(), 1);
+    let errors = values.iter().filter(|value| value.is_error);
+    call("errors", errors.map(wire).collect(), 1);
 }
 
 fn choice(

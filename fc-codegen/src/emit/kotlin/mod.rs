@@ -18,6 +18,7 @@ use crate::emit::stub::context::Context;
 use crate::emit::stub::source::Source;
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
+use crate::surface::group::Group;
 use crate::surface::language::{KOTLIN, Role};
 use crate::surface::name::free;
 use crate::target::Targets;
@@ -35,18 +36,24 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let package = KOTLIN
         .spelling(Role::Module, id)
         .unwrap_or_else(|name| name);
-    let groups = group::all(context);
+    let groups = Group::all(&context.package);
     let wholes = [
         ("Protocol", protocol::file(context, &groups)),
         ("Operations", operations::file(&groups)),
         ("Client", client::file(context, &groups)),
         ("Robot", robot::file(context, &groups)),
         ("Tables", tables::file(context, samples)),
-        ("SharedTypes", messages::shared(context, samples)),
     ];
     let own = groups.iter().map(|group| {
-        let is_taken = |name: &str| wholes.iter().any(|it| it.0.eq_ignore_ascii_case(name));
-        let name = free(&[&*group.name, &*group.part("Group")], is_taken);
+        let names = wholes.iter().map(|it| it.0).chain([SHARED]);
+        let is_taken = |name: &str| names.clone().any(|it| it.eq_ignore_ascii_case(name));
+        let name = match group.of {
+            Some(_) => {
+                let wishes = ["", "Group"].map(|end| group::part_name(group, end));
+                free(&[&*wishes[0], &*wishes[1]], is_taken)
+            }
+            None => SHARED.to_owned(),
+        };
         (name, group::file(context, samples, group))
     });
     let own: Vec<_> = own.collect();
@@ -69,6 +76,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     );
     files.chain([samples]).collect()
 }
+
+/// The file of the types that several groups share.
+const SHARED: &str = "SharedTypes";
 
 /// What the package has from elsewhere; names of a spec are kept off them.
 const IMPORTED: &[&str] = &[

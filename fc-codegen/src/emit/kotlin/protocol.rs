@@ -1,12 +1,13 @@
 //! The protocol itself: header, envelopes, result codes, ports and limits.
 
-use super::group::{Group, parts};
+use super::group::parts;
 use super::messages::both;
 use super::text::{STYLE, integer, literal, plain_codec, type_of};
 use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
+use crate::surface::group::Group;
 use crate::surface::package::Spelled;
 use fc_spec::model::{
     ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole,
@@ -14,7 +15,7 @@ use fc_spec::model::{
 };
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
+pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     protocol(&mut out, context, groups);
     let package = &context.package;
@@ -39,13 +40,10 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     out
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
+fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_, '_>]) {
     let model = context.model();
     let (frame, kinds) = (&model.frame, &model.frame.kinds);
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
-    out.docs(&docs);
+    out.docs(&about::protocol(model));
     out.block(
         format!("public object {} : Protocol()", context.package.name),
         |out| {
@@ -138,8 +136,8 @@ fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
 }
 
 /// The commands and reports, which know the protocol as little as the runtime does.
-fn operations(out: &mut Source, groups: &[Group<'_>]) {
-    let lists = |name: &str, has: fn(&Group<'_>) -> bool| {
+fn operations(out: &mut Source, groups: &[Group<'_, '_>]) {
+    let lists = |name: &str, has: fn(&Group<'_, '_>) -> bool| {
         let parts = parts(groups, "Operations", has).into_iter();
         parts.map(|part| format!("{part}.{name}()")).collect()
     };
@@ -292,10 +290,8 @@ fn results(out: &mut Source, context: &Context<'_>) {
                 |out| {
                     let results = &context.package.results;
                     for result in results {
-                        let mut docs = Docs::of(&result.text);
-                        docs.text(&result.about);
                         out.blank();
-                        out.docs(&docs);
+                        out.docs(&about::result(result.of));
                         out.line("@JvmField");
                         let name = &result.name;
                         out.line(format!(

@@ -5,7 +5,6 @@ use super::text::STYLE;
 use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions};
@@ -18,14 +17,8 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     out.docs(&Docs::said(&about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {
-            let mut docs = Docs::of(&table.title);
-            docs.text(&table.of.about);
-            if let Some(store) = &table.kept {
-                docs.paragraph(facts::kept(store));
-            }
-            docs.paragraph(context.links(&table.location, "reference/tables.md"));
             out.blank();
-            out.docs(&docs);
+            out.docs(&about::table(context, table.of));
             out.line("@JvmStatic");
             let row = context.name_of(&table.row);
             out.enclose(

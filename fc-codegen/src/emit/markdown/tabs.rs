@@ -1,7 +1,8 @@
 //! The samples of an operation's page: how it is called and answered in each language that the project has a package of.
 
 use crate::emit::stub::context::Context;
-use crate::emit::stub::samples::Shown;
+use crate::emit::stub::samples::{self, Sample, Shown};
+use crate::emit::stub::source::Source;
 use crate::emit::{cpp, kotlin, python, rust, typescript};
 use crate::product::Product;
 use crate::sample::Samples;
@@ -65,14 +66,18 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         let language = (shown.language)(targets);
         let context = Context::new(&model, language, shown.style, None);
         let samples = Samples::new(&model);
-        let snippets = (shown.snippets)(&context, &samples);
-        let tab = |code| Tab {
-            info: format!("{} [{}]", shown.fence, language.title),
-            code,
+        let tab = |sample: Sample<'_, '_>| {
+            let mut out = Source::new(context.style);
+            (shown.write)(&mut out, &context, &sample);
+            Tab {
+                info: format!("{} [{}]", shown.fence, language.title),
+                code: out.finish(),
+            }
         };
         let both = model.operations.par_iter().map(|operation| {
-            let both = [snippets.app(operation), snippets.robot(operation)];
-            (operation.name.as_str(), both.map(|code| code.map(tab)))
+            let app = samples::app(&context, &samples, operation);
+            let robot = samples::robot(&context, &samples, operation);
+            (operation.name.as_str(), [app, robot].map(|it| it.map(tab)))
         });
         for (name, [app, robot]) in both.collect::<Vec<_>>() {
             if app.is_none() && robot.is_none() {

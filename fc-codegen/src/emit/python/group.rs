@@ -1,8 +1,8 @@
 //! `groups/….py`: all that there is of a group. Its types, its operations as values, and its part of each stub.
 
 use super::client;
-use super::homes::{Group, Homes, Part, Piece, Used};
 use super::messages;
+use super::modules::{GroupPart, ModulePlan, NamedGroup, Used};
 use super::operations::{self, constant};
 use super::robot;
 use super::source::{PYTHON, Python, exported};
@@ -11,17 +11,17 @@ use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
 use crate::sample::Samples;
+use crate::surface::group::Group;
 
-/// The file that is the home of this part, and of those that cannot be parted from it.
+/// The file of a group, and of those that cannot be parted from it.
 pub fn file(
     context: &Context<'_>,
     samples: &Samples<'_>,
-    homes: &Homes<'_>,
-    home: &Part<'_>,
+    plan: &ModulePlan<'_, '_>,
+    home: &Group<'_, '_>,
 ) -> String {
-    let parts = homes.members(home);
-    let items: Vec<_> = parts.iter().flat_map(|part| part.items).collect();
-    let groups: Vec<_> = parts.iter().filter_map(|it| it.group.as_ref()).collect();
+    let groups = plan.members(home);
+    let items: Vec<_> = groups.iter().flat_map(|group| group.types).collect();
     let mut used = Used::default();
     let mut body = Source::new(&PYTHON);
     messages::types(&mut body, &mut used, context, samples, &items);
@@ -41,12 +41,12 @@ pub fn file(
     let mut names = messages::names(context, &items);
     names.extend(operations.iter().map(String::as_str));
     let mut docs = Docs::default();
-    for part in &parts {
-        about::group(&mut docs, part.group.as_ref().map(|group| group.of));
+    for group in &groups {
+        about::group(&mut docs, group.of);
     }
     let mut out = Source::new(&PYTHON);
     out.docstring(&docs);
-    used.imports(&mut out, context, homes, home);
+    used.imports(&mut out, context, plan, home);
     out.blank();
     exported(&mut out, &names);
     out.blank();
@@ -55,7 +55,7 @@ pub fn file(
 }
 
 /// What a group has of the classes that a user names.
-fn stubs(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+fn stubs(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     client::calls(out, context, group);
     client::sync_calls(out, context, group);
     client::streams(out, context, group);
@@ -66,32 +66,33 @@ fn stubs(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What these and the operations of the group have to import.
-fn uses<'m>(used: &mut Used<'m>, context: &'m Context<'_>, group: &Group<'m>) {
+fn uses<'p>(used: &mut Used<'p>, context: &'p Context<'_>, group: &NamedGroup<'_, 'p>) {
     for operation in &group.operations {
         used.library("typing", "Final");
         used.operation(context, operation);
     }
-    if group.name(Piece::AnyReport).is_some() {
+    if group.part(GroupPart::AnyReport).is_some() {
         used.library("typing", "TypeAlias");
     }
-    if group.name(Piece::Handlers).is_some() {
+    if group.part(GroupPart::Handlers).is_some() {
         used.library("abc", "ABC");
         used.library("abc", "abstractmethod");
     }
 }
 
-/// A class with what a group has of another.
+/// A class with what a group has of another, whose name and methods are `about`: `["Client", "指令", "commands"]`.
 pub fn part_of(
     out: &mut Source,
+    group: &NamedGroup<'_, '_>,
     name: &str,
     base: &str,
-    about: [String; 2],
+    about: [&str; 3],
     body: impl FnOnce(&mut Source),
 ) {
-    let [zh, en] = about;
+    let (id, [class, zh, en]) = (group.id, about);
     let mut docs = Docs::default();
-    docs.paragraph(zh);
-    docs.paragraph(en);
+    docs.paragraph(format!("`{class}` 的一部分：`{id}` 组的{zh}。"));
+    docs.paragraph(format!("Part of `{class}`: the {en} of the group `{id}`."));
     out.gap();
     out.suite(&format!("class {name}({base})"), |out| {
         out.docstring(&docs);

@@ -1,14 +1,14 @@
 //! Message types: dataclasses, enums and choices.
 
 use super::enums::{enumeration, is_state};
-use super::homes::Used;
 use super::literal::{constant, literal, number, regex};
+use super::modules::Used;
 use super::source::{Code, Python, assign_text};
 use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::conditions::sentence;
 use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
+use crate::emit::stub::marks::{Bound, FieldMarks};
 use crate::emit::stub::source::Source;
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::Expressions;
@@ -16,8 +16,7 @@ use crate::surface::language::Case;
 use crate::surface::name::free;
 use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
-    Condition, Constraint, Direction, EnumRepr, Field, Operation, Type, TypeShape, Value, Variant,
-    WireForm,
+    Direction, EnumRepr, Field, Operation, Scalar, Type, TypeShape, Value, Variant,
 };
 
 /// Message types.
@@ -81,10 +80,6 @@ fn structure<'m>(
     used.library("dataclasses", "dataclass");
     used.library("dataclasses", "field");
     let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
     out.line("@dataclass(slots=True, kw_only=True)");
     let head = format!("class {}(rt.Message)", item.ty.name);
     out.suite(&head, |out| {
@@ -120,7 +115,7 @@ fn structure<'m>(
                 used.id(&id.name);
             }
             let mut marks = vec![Code::from(field_annotation(context, field, field.optional))];
-            marks.push(key(field, &conditions, &expressions));
+            marks.push(key(field, fields, &expressions));
             let absent = match (field.optional, field.sensitive) {
                 (true, true) => " = field(default=None, repr=False)",
                 (true, false) => " = None",
@@ -129,7 +124,7 @@ fn structure<'m>(
             };
             let ty = Code::Call("Annotated[".to_owned(), marks, "]");
             ty.write(out, &format!("{}: ", field.name), absent);
-            let condition = conditions.sentence(field, |it| constant(it).flat());
+            let condition = sentence(&expressions, field, fields, |it| constant(it).flat());
             out.docstring(&facts::field_docs(context.style, field, condition));
             out.blank();
         }
@@ -212,52 +207,43 @@ pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
 /// How a field travels, and what is demanded of it.
 fn key(
     field: &Spelled<'_, Field>,
-    conditions: &Conditions<'_, '_, '_, '_>,
+    fields: &[Spelled<'_, Field>],
     expressions: &Expressions<'_, '_, '_>,
 ) -> Code {
-    let details = field.details();
+    let marks = FieldMarks::build(field.of, fields);
+    let values = |ty: &Type, values: &[Scalar]| {
+        let values = values.iter();
+        let values = values.map(|wire| constant(&expressions.value(ty, &Value::from(wire))));
+        Code::tuple(values.collect())
+    };
     let mut items = vec![Code::from(literal(&field.wire))];
     let mut set = |name: &str, value: Code| items.push(Code::named(name, value));
-    if !details.also.is_empty() {
-        let keys = details.also.iter().map(|key| literal(key).into());
+    if !marks.also.is_empty() {
+        let keys = marks.also.iter().map(|key| literal(key).into());
         set("also", Code::tuple(keys.collect()));
     }
-    for constraint in details.constraints() {
-        match constraint {
-            Constraint::Min(min) => set("min", number(min).into()),
-            Constraint::Max(max) => set("max", number(max).into()),
-            Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
-            Constraint::Pattern(pattern) => set("pattern", regex(pattern.portable()).into()),
-            Constraint::Only(taken) => {
-                let taken = taken.iter().map(|wire| {
-                    let taken = expressions.value(field.ty.item(), &Value::from(wire));
-                    constant(&taken)
-                });
-                set("only", Code::tuple(taken.collect()));
-            }
-        }
+    for (name, bound) in &marks.constraints {
+        let value = match bound {
+            Bound::Number(value) => number(value).into(),
+            Bound::Range(least, most) => format!("({least}, {most})").into(),
+            Bound::Pattern(pattern) => regex(pattern).into(),
+            Bound::Values(taken) => values(field.ty.item(), taken),
+        };
+        set(name, value);
     }
-    if field.wire_form != WireForm::Plain {
-        let form = Case::Screaming.apply(field.wire_form.name());
+    if let Some(form) = marks.form {
+        let form = Case::Screaming.apply(form);
         set("form", format!("rt.Form.{form}").into());
     }
-    for quirk in &details.quirks {
-        set(quirk.name(), "True".into());
+    for quirk in marks.quirks {
+        set(quirk, "True".into());
     }
-    if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
-        let word = match condition {
-            Condition::When(_) => "when",
-            Condition::Unless(_) => "unless",
-        };
-        let asked = condition.asked().iter().filter_map(|asked| {
-            let beside = conditions.fields.iter().find(|it| it.wire == asked.wire)?;
-            let values = asked.values.iter();
-            let values = values.map(|wire| constant(&conditions.value(beside, wire)));
-            let values = Code::tuple(values.collect());
-            let name = format!("{}: ", literal(&asked.wire));
-            Some(Code::Named(name, Box::new(values)))
+    if let Some(condition) = marks.condition {
+        let asked = condition.fields.iter().map(|(other, wires)| {
+            let name = format!("{}: ", literal(&other.wire));
+            Code::Named(name, Box::new(values(&other.ty, wires)))
         });
-        set(word, Code::List("{", asked.collect(), "}"));
+        set(condition.word, Code::List("{", asked.collect(), "}"));
     }
     Code::call("rt.Key", items)
 }
@@ -312,7 +298,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
             let text = literal(&result.text.zh);
             out.blank();
             out.line(format!("{} = {}, {text}", result.name, result.code));
-            out.docstring(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            out.docstring(&about::error(error, result.of));
         }
     });
 }

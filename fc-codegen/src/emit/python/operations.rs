@@ -1,7 +1,7 @@
 //! Commands, reports and streams as values, with all that the spec says of them.
 
-use super::homes::{Group, Piece};
 use super::literal::{boolean, constant as constant_of, literal};
+use super::modules::{GroupPart, NamedGroup};
 use super::protocol;
 use super::source::{Code, Python, tuple};
 use crate::emit::stub::context::{Context, page_of};
@@ -14,7 +14,7 @@ use crate::surface::language::Case;
 use crate::surface::name::free;
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
-    StructRef, Type, TypeRef, Value,
+    StructRef, Type, Value,
 };
 
 /// The operations of these groups, as values. Reports come first, for commands name them.
@@ -22,7 +22,7 @@ pub fn values(
     out: &mut Source,
     context: &Context<'_>,
     samples: &Samples<'_>,
-    groups: &[&Group<'_>],
+    groups: &[&NamedGroup<'_, '_>],
 ) {
     out.gap();
     for kind in KINDS {
@@ -36,7 +36,7 @@ pub fn values(
     }
     for group in groups {
         for kind in KINDS {
-            let Some(name) = group.name(Piece::All(kind)) else {
+            let Some(name) = group.part(GroupPart::All(kind)) else {
                 continue;
             };
             let operations = group.operations.iter().filter(|it| it.kind() == kind);
@@ -226,16 +226,9 @@ fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
 
 /// The way to a field, by the names of the fields on it.
 fn way(context: &Context<'_>, body: &StructRef, keys: &[String]) -> Code {
-    let mut holder: Option<&TypeRef> = Some(body);
-    let mut steps = Vec::new();
-    for field in context.model().way(body, keys) {
-        steps.push(holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field)));
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
-    }
-    literal(&steps.join(".")).into()
+    let steps = context.steps(body, keys);
+    let names: Vec<&str> = steps.iter().map(|step| step.name).collect();
+    literal(&names.join(".")).into()
 }
 
 fn cadence(cadence: &Cadence) -> Code {

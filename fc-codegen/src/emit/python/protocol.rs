@@ -1,8 +1,8 @@
 //! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
 
-use super::homes::{Homes, Piece};
 use super::literal::{bytes, literal};
 use super::messages::annotation;
+use super::modules::{GroupPart, ModulePlan};
 use super::operations::{ack, seconds};
 use super::source::{Code, PYTHON, Python, tuple};
 use crate::emit::stub::about;
@@ -43,7 +43,7 @@ pub fn name(context: &Context<'_>) -> String {
 }
 
 /// The file.
-pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&about::WIRE));
@@ -61,7 +61,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.blank();
     out.line("import fc_runtime as rt");
     out.blank();
-    homes.import(&mut out, &KINDS.map(|(_, kind)| Piece::All(kind)));
+    plan.import(&mut out, &KINDS.map(|(_, kind)| GroupPart::All(kind)));
     out.gap();
     results(&mut out, context);
     out.gap();
@@ -81,7 +81,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
         &package.response_envelope,
     );
     out.gap();
-    protocol(&mut out, context, homes);
+    protocol(&mut out, context, plan);
     out.finish()
 }
 
@@ -90,8 +90,6 @@ fn results(out: &mut Source, context: &Context<'_>) {
         let docs = about::results(context);
         out.docstring(&docs);
         for result in &context.package.results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
             out.blank();
             out.line(format!(
                 "{} = {}, {}",
@@ -99,7 +97,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
                 result.code,
                 literal(&result.text.zh)
             ));
-            out.docstring(&docs);
+            out.docstring(&about::result(result.of));
         }
     });
 }
@@ -138,7 +136,7 @@ fn roles(fields: &[Spelled<'_, EnvelopeField>]) -> Code {
     Code::List("{", roles.collect(), "}")
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
+fn protocol(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) {
     let model = context.model();
     let frame = &model.frame;
     let kinds = &frame.kinds;
@@ -201,16 +199,14 @@ fn protocol(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
             set(out, "results", Code::call("rt.Results", results.collect()));
             set(out, "defaults", defaults(context));
             for (name, kind) in KINDS {
-                let groups = homes.pieces(Piece::All(kind)).into_iter();
+                let groups = plan.parts(GroupPart::All(kind)).into_iter();
                 let groups: Vec<String> = groups.map(|it| format!("*{it}")).collect();
                 tuple(out, &format!("{name}="), &groups, ",");
             }
             set(out, RangeUse::PassThrough.name(), ranges(context));
         },
     );
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+    let mut docs = about::protocol(model);
     if let Some(page) = context.page("reference/wire.md") {
         docs.paragraph(page);
     }

@@ -22,7 +22,6 @@ pub static PYTHON: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("`{name}`"),
-    elsewhere: |item| item.ty.name.to_string(),
     integer: crate::emit::stub::digits::grouped,
     redacted: "Never shown by `repr()`.",
 };

@@ -1,8 +1,9 @@
 //! `client.py`, `sync.py` and `robot.py`: the classes that a user names, each put together from the parts of all groups.
 
-use super::homes::{Homes, Piece};
+use super::modules::{GroupPart, ModulePlan};
 use super::protocol;
 use super::source::{Code, PYTHON, Python, method};
+use crate::emit::stub::about;
 use crate::emit::stub::context::Context;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::ranges::pass_through;
@@ -52,7 +53,7 @@ fn speaks(out: &mut Source, context: &Context<'_>) {
 }
 
 /// `client.py`.
-pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn client(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let has_streams = !context.package.streams.is_empty();
     let mut out = head(
         [
@@ -61,10 +62,13 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
         ],
         &[("typing", &["ClassVar", "TypeAlias"])],
     );
-    homes.import(&mut out, &[Piece::AnyReport, Piece::Calls, Piece::Streams]);
+    plan.import(
+        &mut out,
+        &[GroupPart::AnyReport, GroupPart::Calls, GroupPart::Streams],
+    );
     out.import_from(".protocol", &[&protocol::name(context)]);
     out.blank();
-    let mut reports = homes.pieces(Piece::AnyReport);
+    let mut reports = plan.parts(GroupPart::AnyReport);
     reports.push("rt.RawReport");
     let union = Code::Union(reports.into_iter().map(str::to_owned).collect());
     union.write_in_parentheses(&mut out, "AnyReport: TypeAlias = ");
@@ -76,7 +80,7 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
         "一个机器人，从 app 一侧看：每条指令一个方法。",
         "A robot as seen from the app: one method per command.",
     ];
-    let calls = homes.pieces(Piece::Calls);
+    let calls = plan.parts(GroupPart::Calls);
     class(
         &mut out,
         "Client",
@@ -92,7 +96,7 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
             "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
             "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
         ];
-        let streams = homes.pieces(Piece::Streams);
+        let streams = plan.parts(GroupPart::Streams);
         class(
             &mut out,
             "Streams",
@@ -106,7 +110,7 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
 }
 
 /// `sync.py`.
-pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn sync(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [
             "不用 `async` 的 app 端。",
@@ -115,13 +119,13 @@ pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
         &[("typing", &["ClassVar"])],
     );
     out.import_from(".client", &["AnyReport"]);
-    homes.import(&mut out, &[Piece::SyncCalls]);
+    plan.import(&mut out, &[GroupPart::SyncCalls]);
     out.import_from(".protocol", &[&protocol::name(context)]);
     let about = [
         "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
         "A robot as seen from the app: one method per command, which waits for the response.",
     ];
-    let calls = homes.pieces(Piece::SyncCalls);
+    let calls = plan.parts(GroupPart::SyncCalls);
     class(
         &mut out,
         "Client",
@@ -136,7 +140,7 @@ pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
 }
 
 /// `robot.py`.
-pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn robot(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [
             "机器人端：每条指令一个方法，按示例响应的示例机器人，以及上报的发送端。",
@@ -144,22 +148,22 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
         ],
         &[("abc", &["ABC"]), ("typing", &["ClassVar"])],
     );
-    homes.import(
+    plan.import(
         &mut out,
         &[
-            Piece::Handlers,
-            Piece::PartialHandlers,
-            Piece::Reporter,
-            Piece::Streamer,
+            GroupPart::Handlers,
+            GroupPart::PartialHandlers,
+            GroupPart::Reporter,
+            GroupPart::Streamer,
         ],
     );
     out.import_from(".protocol", &[&protocol::name(context)]);
-    complete(&mut out, context, homes);
+    complete(&mut out, context, plan);
     let about = [
         "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
     ];
-    let handlers = homes.pieces(Piece::PartialHandlers);
+    let handlers = plan.parts(GroupPart::PartialHandlers);
     class(
         &mut out,
         "PartialRobot",
@@ -190,7 +194,7 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
         "`to` 是某个连接的编号；不给出时，向全部连接上报。",
         "`to` is the number of a connection. Without it, a report goes to all of them.",
     ];
-    let reporters = homes.pieces(Piece::Reporter);
+    let reporters = plan.parts(GroupPart::Reporter);
     class(
         &mut out,
         "Reporter",
@@ -204,7 +208,7 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
             "机器人发送的数据流：每个数据流一个方法。",
             "Sends the streams of the robot: one method per stream.",
         ];
-        let streamers = homes.pieces(Piece::Streamer);
+        let streamers = plan.parts(GroupPart::Streamer);
         class(
             &mut out,
             "Streamer",
@@ -217,14 +221,14 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.finish()
 }
 
-fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
+fn complete(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) {
     let about = [
         "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出，Python 也会拒绝创建对象。",
         "A complete robot, which handles all commands of the spec. When the spec gains a command, the type checker reports a missing method, and Python refuses to create the robot.",
         "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后，改为继承 `Robot`。",
         "A robot with some of the commands inherits from `PartialRobot`. The methods are the same, and each is optional. Once the robot has all commands, inherit from `Robot`.",
     ];
-    let handlers = homes.pieces(Piece::Handlers);
+    let handlers = plan.parts(GroupPart::Handlers);
     class(
         out,
         "Robot",
@@ -234,20 +238,13 @@ fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
         |out| {
             speaks(out, context);
             for (name, range) in pass_through(context) {
-                let mut docs = Docs::of(&range.text);
-                docs.paragraph(format!(
-                    "Codes {} to {} without a separate method.",
-                    range.first_spelling, range.last_spelling
-                ));
-                docs.paragraph("不实现此方法时，按未知指令拒绝。");
-                docs.paragraph("Without this method, the robot refuses them as unknown commands.");
                 let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
                 let parameters = parameters.map(Code::from).to_vec();
                 let open = format!("async def {name}(");
                 out.blank();
                 out.line("@rt.left_out");
                 method(out, &open, parameters, "rt.Json", |out| {
-                    out.docstring(&docs);
+                    out.docstring(&about::range(range));
                     out.line("raise NotImplementedError");
                 });
             }

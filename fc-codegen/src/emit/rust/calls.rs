@@ -1,7 +1,7 @@
 //! The methods of the stubs that carry the messages of one group, in the group's file: a new command changes no file
 //! of another group, and whoever reads about its messages finds how they are sent.
 
-use super::context::{Context, page_of};
+use super::context::Context;
 use super::literal::literal;
 use super::source::Source;
 use crate::emit::stub::docs::Docs;
@@ -118,10 +118,9 @@ fn deprecation(out: &mut Source, command: &Call<'_>) {
 }
 
 fn push(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
-    let mut docs = facts::operation_docs(report.operation);
-    facts::operation_end(context.style, &mut docs, report.operation);
-    docs.paragraph("Returns the outcome at each connection.");
-    docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
+    let docs = facts::method_docs(context, report.operation, |docs| {
+        docs.paragraph("Returns the outcome at each connection.");
+    });
     out.docs(&docs);
     let params = [
         "&self".to_owned(),

@@ -14,15 +14,11 @@ pub fn file(context: &Context<'_>) -> String {
     let reports = context.reports();
 
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(
-        "app 端：连接，以及汇成一个枚举的全部上报。每条指令的方法与它的消息类型在同一个文件里。",
-    );
-    docs.paragraph(
-        "The app's side: the connection, and one enum over all reports. The method of each command is in \
+    out.inner_docs(&Docs::said(&[
+"app 端：连接，以及汇成一个枚举的全部上报。每条指令的方法与它的消息类型在同一个文件里。",
+"The app's side: the connection, and one enum over all reports. The method of each command is in \
          the file of its messages.",
-    );
-    out.inner_docs(&docs);
+]));
     out.blank();
     imports(&mut out, context, protocol, &reports);
     out.blank();

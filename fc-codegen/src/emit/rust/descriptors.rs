@@ -37,20 +37,14 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
 pub fn file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("每个接口的描述数据，供不依赖具体类型的工具使用。");
-    docs.paragraph("Every operation as data, for tools that do not use its types.");
-    docs.paragraph(
-        "文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
-    );
-    docs.paragraph(
-        "The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
+    out.inner_docs(&Docs::said(&[
+"每个接口的描述数据，供不依赖具体类型的工具使用。",
+"Every operation as data, for tools that do not use its types.",
+"文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
+"The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
          command without a change.",
-    );
-    docs.paragraph(
-        "Tables are in the order of the spec: by group, then by position in the file of the group.",
-    );
-    out.inner_docs(&docs);
+"Tables are in the order of the spec: by group, then by position in the file of the group.",
+]));
     out.blank();
 
     out.import("fc_runtime", &["OperationInfo"]);

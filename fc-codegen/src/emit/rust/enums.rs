@@ -3,8 +3,9 @@
 use super::context::Context;
 use super::literal::{literal, number};
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
+use crate::emit::stub::about;
 use crate::emit::stub::facts;
+use crate::emit::stub::process::next_values;
 use crate::surface::name::free;
 use crate::surface::package::{Item, Spelled};
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
@@ -17,15 +18,7 @@ pub fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let ty = item.ty.of;
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
-    out.docs(&docs);
-
+    out.docs(&about::enumeration(context, item.ty.of, ""));
     let (repr, rust) = match shape.repr {
         EnumRepr::Int(kind) => (kind.name(), kind.name()),
         EnumRepr::String => ("str", "String"),
@@ -67,12 +60,8 @@ fn value_attributes(
     values: &[Spelled<'_, EnumValue>],
 ) -> Vec<String> {
     let mut items = vec![format!("value = {}", enum_wire(&value.wire))];
-    let then: Vec<&str> = value
-        .then
-        .iter()
-        .filter_map(|next| values.iter().find(|known| known.of.name == *next))
-        .map(|next| &*next.name)
-        .collect();
+    let then = next_values(value, values);
+    let then: Vec<&str> = then.map(|next| &*next.name).collect();
     if !then.is_empty() {
         items.push(format!("then({})", then.join(", ")));
     }

@@ -1,7 +1,7 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
 use super::calls;
-use super::conditions::{self, Conditions};
+use super::conditions;
 use super::constants::{Place, extra_name, spelled};
 use super::context::Context;
 use super::enums::{enum_wire, enumeration};
@@ -9,15 +9,14 @@ use super::literal::{literal, number};
 use super::process;
 use super::source::Source;
 use crate::emit::stub::about;
+use crate::emit::stub::conditions::sentence;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
+use crate::emit::stub::marks::{Bound, FieldMarks};
 use crate::sample::{Profile, Samples};
 use crate::surface::expr::{Expr, Expressions};
 use crate::surface::package::{Item, Module, Shape, Spelled};
-use fc_spec::model::{
-    Accepted, Constraint, Direction, Exchange, Field, Kind, Operation, Quirk, Type, TypeRef, Value,
-    Variant, WireForm,
-};
+use fc_spec::model::{Direction, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
 /// A module of message types.
@@ -112,7 +111,7 @@ fn structure<'m>(
     fields: &'m [Spelled<'_, Field>],
 ) {
     let role = Role::of(item);
-    out.docs(&struct_docs(context, item, &role));
+    out.docs(&facts::item_docs(context, item));
     let sensitive = fields.iter().any(|field| field.sensitive);
     let defaults = fields
         .iter()
@@ -141,9 +140,8 @@ fn structure<'m>(
         direction: Direction::Request,
     } = role
         && role.derive().is_some()
-        && let Some(accepted) = operation.accepted()
     {
-        accepted_in(out, used, context, accepted);
+        accepted_in(out, used, context, operation);
     }
     let example = samples.named(item.ty.of, Profile::Example).to_string();
     if example != "{}" {
@@ -155,10 +153,6 @@ fn structure<'m>(
     }
 
     let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -166,11 +160,13 @@ fn structure<'m>(
             used.ty(&field.ty);
             used.ids
                 .extend(context.package.id_of(field).map(|id| id.name.to_string()));
-            let condition = conditions.sentence(field, conditions::spelled);
+            let condition = sentence(&expressions, field, fields, conditions::spelled);
             out.docs(&facts::field_docs(context.style, field, condition));
             let name = &field.name;
-            let mut attributes = field_attributes(field);
-            attributes.extend(conditions.attribute(field));
+            let marks = FieldMarks::build(field.of, fields);
+            let mut attributes = field_attributes(field, &marks);
+            let condition = marks.condition.as_ref();
+            attributes.extend(condition.map(|it| conditions::attribute(&expressions, it)));
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
@@ -284,24 +280,16 @@ impl<'m> Role<'m> {
 fn accepted_in<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
-    context: &Context<'_>,
-    accepted: &'m Accepted,
+    context: &'m Context<'_>,
+    command: &'m Operation,
 ) {
-    let sets = accepted.state_sets();
-    let sets: Vec<(&str, Vec<&str>)> = sets
-        .iter()
-        .filter_map(|set| {
-            let item = context.package.item(&set.ty);
-            let Shape::Enum(_, known) = &item.shape else {
-                return None;
-            };
-            let known = known
-                .iter()
-                .filter(|value| set.values.contains(&value.wire));
-            used.types.insert(&set.ty);
-            Some((&*item.ty.name, known.map(|value| &*value.name).collect()))
-        })
-        .collect();
+    let states = context.accepted_states(command);
+    used.types.extend(states.iter().map(|states| states.ty));
+    let sets = states.iter().map(|states| {
+        let names = states.values.iter().map(|value| &*value.name);
+        (&*states.item.ty.name, names.collect())
+    });
+    let sets: Vec<(&str, Vec<&str>)> = sets.collect();
     match sets.as_slice() {
         [] => {}
         [(ty, names)] => {
@@ -317,50 +305,30 @@ fn accepted_in<'m>(
     }
 }
 
-fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> Docs<'m> {
-    match role {
-        Role::Body {
-            operation,
-            direction,
-        } => facts::body_docs(context, operation, *direction),
-        Role::Part => facts::type_docs(context, item),
-    }
-}
-
 /// What the derive has to be told of a field.
-fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
-    let details = field.details();
+fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> Vec<String> {
     let mut items = Vec::new();
     if field.wire != field.name {
         items.push(["key = ", &literal(&field.wire)].concat());
     }
-    match field.wire_form {
-        WireForm::Plain => {}
-        form => items.push(format!("wire = {}", literal(form.name()))),
-    }
-    items.extend(details.constraints().map(|constraint| match constraint {
-        Constraint::Min(min) => format!("min = {}", number(min)),
-        Constraint::Max(max) => format!("max = {}", number(max)),
-        Constraint::Length(least, most) if least == most => format!("length = {least}"),
-        Constraint::Length(least, most) => format!("length = {least}..={most}"),
-        Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern.portable())),
-        Constraint::Only(taken) => {
+    items.extend(marks.form.map(|form| format!("wire = {}", literal(form))));
+    let constraints = marks.constraints.iter();
+    items.extend(constraints.map(|(name, bound)| match bound {
+        Bound::Number(value) => format!("{name} = {}", number(value)),
+        Bound::Range(least, most) if least == most => format!("{name} = {least}"),
+        Bound::Range(least, most) => format!("{name} = {least}..={most}"),
+        Bound::Pattern(pattern) => format!("{name} = {}", literal(pattern)),
+        Bound::Values(taken) => {
             let taken: Vec<String> = taken.iter().map(enum_wire).collect();
-            format!("only({})", taken.join(", "))
+            format!("{name}({})", taken.join(", "))
         }
     }));
-    for quirk in &details.quirks {
-        items.push(
-            match quirk {
-                Quirk::EmptyIsAbsent => "empty_is_absent",
-                Quirk::LenientNumber => "lenient(number)",
-                Quirk::LenientBool => "lenient(bool)",
-            }
-            .to_owned(),
-        );
-    }
-    if !details.also.is_empty() {
-        let keys: Vec<String> = details.also.iter().map(|key| literal(key)).collect();
+    items.extend(marks.quirks.iter().map(|quirk| {
+        let lenient = quirk.strip_prefix("lenient_");
+        lenient.map_or_else(|| (*quirk).to_owned(), |of| format!("lenient({of})"))
+    }));
+    if !marks.also.is_empty() {
+        let keys: Vec<String> = marks.also.iter().map(|key| literal(key)).collect();
         items.push(format!("also({})", keys.join(", ")));
     }
     if field.sensitive {
@@ -384,7 +352,7 @@ fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command:
         for (error, result) in package.errors(command) {
             let text = literal(&result.text.zh);
             out.blank();
-            out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            out.docs(&about::error(error, result.of));
             let items = [format!("code = {}", result.code), format!("text = {text}")];
             out.attribute("#[fc(", &items, ")]");
             out.line(format!("{},", result.name));

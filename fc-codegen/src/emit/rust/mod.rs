@@ -38,7 +38,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
-            samples::file(&context.package, samples, targets.krate())
+            samples::file(context, samples, targets.krate())
         }),
         file("src/blocking.rs", || blocking::file(context)),
         file("src/client.rs", || client::file(context)),

@@ -51,10 +51,7 @@ pub fn file(context: &Context<'_>) -> String {
 
 fn protocol(out: &mut Source, context: &Context<'_>) {
     let model = context.model();
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
-    out.docs(&docs);
+    out.docs(&about::protocol(model));
     out.line("#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]");
     let name = &context.package.name;
     out.line(format!("pub struct {name};"));
@@ -313,10 +310,8 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.line("#[fc(repr = i64)]");
     out.block("pub enum ResultCode", |out| {
         for result in results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
             out.blank();
-            out.docs(&docs);
+            out.docs(&about::result(result.of));
             out.line(format!("#[fc(value = {})]", result.code));
             out.line(format!("{},", result.name));
         }
@@ -357,10 +352,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
         return;
     }
     out.blank();
-    let mut docs = Docs::default();
-    docs.paragraph("数据流的功能码。");
-    docs.paragraph("Codes of streams.");
-    out.docs(&docs);
+    out.docs(&Docs::said(&["数据流的功能码。", "Codes of streams."]));
     let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");

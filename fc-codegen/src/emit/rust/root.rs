@@ -240,12 +240,10 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。");
-    docs.paragraph(
+    out.inner_docs(&Docs::said(&[
+        "消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。",
         "Message types, with one module per group. All types are re-exported at the crate root.",
-    );
-    out.inner_docs(&docs);
+    ]));
     out.blank();
     for module in modules {
         out.line(format!("pub mod {};", module.name));

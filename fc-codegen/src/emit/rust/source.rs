@@ -13,7 +13,6 @@ pub static RUST: Style = Style {
     indent: "    ",
     comment: OUTER,
     link: |name| format!("[`{name}`]"),
-    elsewhere: |item| item.ty.name.to_string(),
     integer: crate::emit::stub::digits::grouped,
     redacted: "Never shown by `Debug`.",
 };

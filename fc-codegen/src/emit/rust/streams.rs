@@ -1,8 +1,7 @@
 //! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
 
-use super::context::{Context, message, page_of};
+use super::context::{Context, message};
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use fc_spec::model::{Direction, Operation, Side};
 
@@ -79,7 +78,7 @@ pub fn data(&self) -> &DataConnection<{protocol}> {{
             let code = &stream.code.spelling;
             let name = &stream.name;
             out.blank();
-            out.docs(&docs(context, stream));
+            out.docs(&facts::method_docs(context, stream, |_| ()));
             if stream.sender == Side::Robot {
                 let carried = content(context, stream).unwrap_or_else(|| "Body".to_owned());
                 out.line("#[must_use]");
@@ -133,7 +132,7 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
         ));
         for stream in streams(context).filter(|stream| stream.sender == Side::Robot) {
             let code = &stream.code.spelling;
-            let mut docs = docs(context, stream);
+            let mut docs = facts::method_docs(context, stream, |_| ());
             docs.paragraph("Returns the number of data connections that took it.");
             let (method, parameter) = sent(context, stream, "send_stream", "send_stream_json");
             let params = [
@@ -186,11 +185,4 @@ fn sent<'n>(
         Some(ty) => (json, format!("content: &{ty}")),
         None => (bytes, "content: &[u8]".to_owned()),
     }
-}
-
-fn docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(context.style, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    docs
 }

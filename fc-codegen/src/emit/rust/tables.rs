@@ -5,7 +5,6 @@ use super::context::Context;
 use super::source::Source;
 use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
 use crate::sample::Samples;
 use crate::surface::expr::{Expr, Expressions, Record};
 use crate::surface::package::Spelled;
@@ -80,13 +79,7 @@ fn table_function(
     context: &Context<'_>,
     table: &Spelled<'_, Table>,
 ) {
-    let mut docs = Docs::of(&table.title);
-    docs.text(&table.about);
-    if let Some(store) = &table.kept {
-        docs.paragraph(facts::kept(store));
-    }
-    docs.paragraph(context.links(&table.location, "reference/tables.md"));
-    out.docs(&docs);
+    out.docs(&about::table(context, table.of));
     out.line("#[must_use]");
     let package = &context.package;
     let row = &package.item(&table.row).ty.name;

@@ -2,7 +2,10 @@
 
 use super::context::{Context, page_of};
 use super::docs::Docs;
-use fc_spec::model::{Group, Operation};
+use super::facts;
+use fc_spec::model::{
+    CodeRange, DeclaredError, Entity, Group, Model, Operation, ResultCode, Table, TypeDef,
+};
 
 /// The layer below the messages.
 pub const WIRE: [&str; 2] = [
@@ -48,12 +51,88 @@ pub fn results(context: &Context<'_>) -> Docs<'static> {
     docs
 }
 
+/// A result code.
+pub fn result(result: &ResultCode) -> Docs<'_> {
+    let mut docs = Docs::of(&result.text);
+    docs.text(&result.about);
+    docs
+}
+
 /// The errors that a command declares.
 pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
     let title = &command.title;
-    let mut docs = Docs::default();
-    docs.paragraph(format!("{}：声明的错误", title.zh));
-    docs.paragraph(format!("{}: its declared errors", title.en));
+    let zh = format!("{}：声明的错误", title.zh);
+    let mut docs = Docs::named(zh, format!("{}: its declared errors", title.en));
     docs.paragraph(context.links(&command.location, &page_of(command)));
     docs
+}
+
+/// An error that a command declares.
+pub fn error<'m>(error: &'m DeclaredError, result: &'m ResultCode) -> Docs<'m> {
+    Docs::of(error.cause.as_ref().unwrap_or(&result.text))
+}
+
+/// The protocol.
+pub fn protocol(model: &Model) -> Docs<'_> {
+    let mut docs = Docs::of(&model.protocol.title);
+    docs.text(&model.protocol.about);
+    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+    docs
+}
+
+/// A table of constants.
+pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
+    let mut docs = Docs::of(&table.title);
+    docs.text(&table.about);
+    docs.paragraph(table.kept.as_deref().map_or_else(String::new, facts::kept));
+    docs.paragraph(context.links(&table.location, "reference/tables.md"));
+    docs
+}
+
+/// The type of the ids of an entity.
+pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
+    let title = &entity.title;
+    let zh = format!("{}：ID", title.zh);
+    let mut docs = Docs::named(zh, format!("{}: its ID", title.en));
+    docs.paragraph(context.links(&entity.location, "reference/entities.md"));
+    docs
+}
+
+/// An enum, with a paragraph about values that are not in the spec.
+pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static str) -> Docs<'m> {
+    let mut docs = Docs::of(&ty.title);
+    docs.texts(ty.about.as_ref());
+    docs.paragraph(open);
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    docs
+}
+
+/// A method for the codes of a range that a robot handles as a whole.
+pub fn range(range: &CodeRange) -> Docs<'_> {
+    let mut docs = Docs::of(&range.text);
+    let (first, last) = (&range.first_spelling, &range.last_spelling);
+    docs.paragraph(format!(
+        "Codes {first} to {last} without a separate method."
+    ));
+    refused(&mut docs);
+    docs
+}
+
+/// A method for codes that are not in the spec.
+pub fn unknown() -> Docs<'static> {
+    let mut docs = Docs::said(&[
+        "功能码不在规范中的指令。",
+        "Commands with a code that is not in the spec.",
+    ]);
+    refused(&mut docs);
+    docs
+}
+
+/// The default of a method for requests without a type.
+fn refused(docs: &mut Docs<'_>) {
+    docs.paragraph("不实现此方法时，按未知指令拒绝。");
+    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
 }

@@ -1,54 +1,64 @@
-//! Under which values of the fields beside it a field is there, for people.
+//! Under which values of other fields of its struct a field is there.
 
 use super::facts::code;
 use crate::surface::expr::{Expr, Expressions};
 use crate::surface::package::Spelled;
-use fc_spec::model::{Asked, Condition, Field, Scalar, Value};
+use fc_spec::model::{Condition, Field, Scalar, Value};
 
-/// A struct's fields, of which one may have a condition that asks the others.
-pub struct Conditions<'c, 's, 'p, 'm> {
-    /// The fields.
-    pub fields: &'c [Spelled<'m, Field>],
-    /// Makes their values.
-    pub expressions: &'c Expressions<'s, 'p, 'm>,
+/// The fields that a condition asks.
+pub struct Asked<'f, 'm> {
+    /// `when` or `unless`.
+    pub word: &'static str,
+    /// The fields, each with the values of which it must have one.
+    pub fields: Vec<(&'f Spelled<'m, Field>, &'f [Scalar])>,
 }
 
-impl Conditions<'_, '_, '_, '_> {
-    /// What its comment says of it, with constants as the language spells them.
-    pub fn sentence(&self, field: &Field, spelled: impl Fn(&Expr<'_>) -> String) -> Option<String> {
-        let condition = field.details().condition.as_ref()?;
-        let is = if field.optional { "Present" } else { "Valid" };
-        let word = match condition {
-            Condition::When(_) => "only when",
+/// What the condition of a field asks of the fields of its struct.
+pub fn asked<'f, 'm>(field: &'f Field, fields: &'f [Spelled<'m, Field>]) -> Option<Asked<'f, 'm>> {
+    let condition = field.details().condition.as_ref()?;
+    let asked = condition.asked().iter().filter_map(|asked| {
+        let other = fields.iter().find(|other| other.wire == asked.wire)?;
+        Some((other, asked.values.as_slice()))
+    });
+    Some(Asked {
+        word: match condition {
+            Condition::When(_) => "when",
             Condition::Unless(_) => "unless",
-        };
-        let asked = self.each(condition, " or ", |beside, wire| {
-            code(&spelled(&self.value(beside, wire)))
+        },
+        fields: asked.collect(),
+    })
+}
+
+impl Asked<'_, '_> {
+    /// The name of each field, and its values.
+    pub fn each(
+        &self,
+        or: &str,
+        value: impl Fn(&Spelled<'_, Field>, &Scalar) -> String,
+    ) -> Vec<(&str, String)> {
+        let fields = self.fields.iter().map(|(field, values)| {
+            let values: Vec<String> = values.iter().map(|wire| value(field, wire)).collect();
+            (&*field.name, values.join(or))
         });
-        let asked: Vec<String> = asked
-            .map(|(name, any)| format!("`{name}` is {any}"))
-            .collect();
-        Some(format!("{is} {word} {}.", asked.join(" and ")))
+        fields.collect()
     }
+}
 
-    /// The name of each field that is asked, and its values.
-    pub fn each<'a>(
-        &'a self,
-        condition: &'a Condition,
-        or: &'a str,
-        value: impl Fn(&Spelled<'_, Field>, &Scalar) -> String + 'a,
-    ) -> impl Iterator<Item = (&'a str, String)> + 'a {
-        condition
-            .asked()
-            .iter()
-            .filter_map(move |Asked { wire, values }| {
-                let beside = self.fields.iter().find(|field| field.wire == *wire)?;
-                let values: Vec<String> = values.iter().map(|wire| value(beside, wire)).collect();
-                Some((&*beside.name, values.join(or)))
-            })
-    }
-
-    pub fn value(&self, field: &Field, wire: &Scalar) -> Expr<'_> {
-        self.expressions.value(&field.ty, &Value::from(wire))
-    }
+/// The sentence about the condition of a field, with constants as the language spells them.
+pub fn sentence(
+    expressions: &Expressions<'_, '_, '_>,
+    field: &Field,
+    fields: &[Spelled<'_, Field>],
+    spelled: impl Fn(&Expr<'_>) -> String,
+) -> Option<String> {
+    let asked = asked(field, fields)?;
+    let is = if field.optional { "Present" } else { "Valid" };
+    let only = if asked.word == "when" { "only " } else { "" };
+    let each = asked.each(" or ", |other, wire| {
+        let value = expressions.value(&other.ty, &Value::from(wire));
+        code(&spelled(&value))
+    });
+    let each = each.iter().map(|(name, any)| format!("`{name}` is {any}"));
+    let each: Vec<String> = each.collect();
+    Some(format!("{is} {only}{} {}.", asked.word, each.join(" and ")))
 }

@@ -2,9 +2,12 @@
 
 use super::style::Style;
 use crate::surface::language::Language;
-use crate::surface::package::{Call, Package};
+use crate::surface::package::{Call, Item, Package, Shape, Spelled};
 use crate::target::Targets;
-use fc_spec::model::{Field, Kind, Lang, Location, Model, Operation, TypeRef};
+use fc_spec::model::{
+    Accepted, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef, Type, TypeRef,
+};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The package, and where its documentation is.
 pub struct Context<'m> {
@@ -68,12 +71,85 @@ impl<'m> Context<'m> {
         &self.package.item(named).ty.name
     }
 
-    /// Name of a field of a struct.
-    pub fn field_name<'a>(&'a self, holder: &TypeRef, field: &'a Field) -> &'a str {
-        let mut fields = self.package.item(holder).fields().iter();
-        let spelled = fields.find(|known| known.wire == field.wire);
-        spelled.map_or(&field.name, |known| &known.name)
+    /// The fields on the way that keys lead from a body.
+    pub fn steps(&self, body: &StructRef, keys: &[String]) -> Vec<Step<'_>> {
+        let mut holder = self.package.item(body);
+        let way = self.model().way(body, keys).into_iter();
+        let steps = way.map(|field| {
+            let mut fields = holder.fields().iter();
+            let spelled = fields.find(|known| known.wire == field.wire);
+            let step = Step {
+                holder: &holder.ty.name,
+                name: spelled.map_or(&field.name, |known| &known.name),
+                optional: field.optional,
+            };
+            if let Type::Named(named) = &field.ty {
+                holder = self.package.item(named);
+            }
+            step
+        });
+        steps.collect()
     }
+
+    /// The enums that decide if a command is accepted.
+    pub fn accepted_states<'a>(&'a self, command: &'a Operation) -> Vec<AcceptedStates<'a, 'm>> {
+        let accepted = command.accepted().into_iter();
+        let sets = accepted.flat_map(Accepted::state_sets);
+        let states = sets.filter_map(|set| {
+            let item = self.package.item(&set.ty);
+            let Shape::Enum(shape, known) = &item.shape else {
+                return None;
+            };
+            let known = known.iter();
+            let values = known.filter(|value| set.values.contains(&value.wire));
+            Some(AcceptedStates {
+                ty: &set.ty,
+                item,
+                shape,
+                values: values.collect(),
+            })
+        });
+        states.collect()
+    }
+
+    /// Types that the module `home` does not hold, by the module that does.
+    pub fn imports<'a>(
+        &'a self,
+        home: &str,
+        types: impl IntoIterator<Item = &'a TypeRef>,
+    ) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
+        let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for named in types {
+            let module = self.package.module_of(named);
+            if module.id != home {
+                let names = imports.entry(&module.name).or_default();
+                names.insert(self.name_of(named));
+            }
+        }
+        imports
+    }
+}
+
+/// A field on the way from a body to one of its values.
+pub struct Step<'p> {
+    /// The type of the struct that holds it.
+    pub holder: &'p str,
+    /// Its name there.
+    pub name: &'p str,
+    /// Whether it may be absent.
+    pub optional: bool,
+}
+
+/// An enum with the values in which a command is accepted.
+pub struct AcceptedStates<'p, 'm> {
+    /// The enum as a type of the spec.
+    pub ty: &'p TypeRef,
+    /// The enum.
+    pub item: &'p Item<'m>,
+    /// Its shape.
+    pub shape: &'m EnumType,
+    /// The values.
+    pub values: Vec<&'p Spelled<'m, EnumValue>>,
 }
 
 /// Path of an operation's page below the documentation's root.

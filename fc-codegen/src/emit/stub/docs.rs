@@ -34,6 +34,14 @@ impl<'t> Docs<'t> {
         docs
     }
 
+    /// The same in Chinese and in English, with names in it.
+    pub fn named(zh: String, en: String) -> Self {
+        let mut docs = Self::default();
+        docs.paragraph(zh);
+        docs.paragraph(en);
+        docs
+    }
+
     /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
     pub fn text(&mut self, text: &'t Text) {
         self.paragraph(text.zh.as_str());
@@ -57,9 +65,12 @@ impl<'t> Docs<'t> {
         }
     }
 
-    /// Adds a short paragraph as it stands, links included.
+    /// Adds a short paragraph unchanged, links included, unless it is empty.
     pub fn raw(&mut self, text: impl Into<String>) {
-        self.0.push(Block::Raw(text.into()));
+        let text = text.into();
+        if !text.is_empty() {
+            self.0.push(Block::Raw(text));
+        }
     }
 
     /// Whether the first two paragraphs are a line of Chinese and the same in English.

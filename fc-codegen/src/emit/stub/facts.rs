@@ -45,30 +45,40 @@ pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
     docs.paragraph(variant.available.as_ref().map_or_else(String::new, limits));
 }
 
-/// The comment on the method that calls a command; `declared` says what tells the errors apart that it declares.
+/// The comment on a method of an operation, with `more` before the links at its end.
+pub fn method_docs<'m>(
+    context: &Context<'_>,
+    operation: &'m Operation,
+    more: impl FnOnce(&mut Docs<'m>),
+) -> Docs<'m> {
+    let mut docs = operation_docs(operation);
+    operation_end(context.style, &mut docs, operation);
+    more(&mut docs);
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    docs
+}
+
+/// The comment on a method of a command; `declared` is the sentence about the type of its errors.
+pub fn command_docs<'m>(
+    context: &Context<'_>,
+    command: &'m Operation,
+    declared: impl FnOnce(&str) -> String,
+) -> Docs<'m> {
+    let error = context.package.error_type(command).map(declared);
+    method_docs(context, command, |docs| docs.raw(error.unwrap_or_default()))
+}
+
+/// The same for a method whose call can be followed.
 pub fn call_docs<'m>(
     context: &Context<'_>,
     command: &'m Operation,
     declared: impl FnOnce(&str) -> String,
 ) -> Docs<'m> {
-    let mut docs = answered_docs(context, command, declared);
-    process::docs(&mut docs, context, command);
-    docs.paragraph(context.links(&command.location, &page_of(command)));
-    docs
-}
-
-/// What the comment on a method says that calls a command and does not follow it, without the links at its end.
-pub fn answered_docs<'m>(
-    context: &Context<'_>,
-    command: &'m Operation,
-    declared: impl FnOnce(&str) -> String,
-) -> Docs<'m> {
-    let mut docs = operation_docs(command);
-    operation_end(context.style, &mut docs, command);
-    if let Some(error) = context.package.error_type(command) {
-        docs.raw(declared(error));
-    }
-    docs
+    let error = context.package.error_type(command).map(declared);
+    method_docs(context, command, |docs| {
+        docs.raw(error.unwrap_or_default());
+        process::docs(docs, context, command);
+    })
 }
 
 /// In which coordinate system something is given.

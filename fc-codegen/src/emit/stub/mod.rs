@@ -7,6 +7,7 @@ pub mod context;
 pub mod digits;
 pub mod docs;
 pub mod facts;
+pub mod marks;
 pub mod process;
 pub mod ranges;
 pub mod samples;

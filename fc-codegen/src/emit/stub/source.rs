@@ -212,7 +212,6 @@ mod tests {
             fence: |language| language,
         },
         link: str::to_owned,
-        elsewhere: |item| item.ty.name.to_string(),
         integer: |value| value.to_string(),
         redacted: "",
     };

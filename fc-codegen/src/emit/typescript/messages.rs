@@ -7,7 +7,7 @@ use super::group::Group;
 use super::source::{self, Source, alternatives, import_types, literal, tag_text};
 use super::{client, robot};
 use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
+use crate::emit::stub::conditions::sentence;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::facts;
 use crate::sample::Samples;
@@ -27,8 +27,7 @@ pub const ABOUT: [&str; 2] = [
 pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = source::file();
     let mut docs = Docs::default();
-    let titled = group.titled(context);
-    about::group(&mut docs, titled);
+    about::group(&mut docs, group.of);
     docs.raw("@module");
     out.docs(&docs);
     out.blank();
@@ -100,13 +99,9 @@ fn structure(
     };
     out.docs(&docs);
     let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
     out.block(format!("export interface {}", item.ty.name), |out| {
         for field in fields {
-            let condition = conditions.sentence(field, spelled);
+            let condition = sentence(&expressions, field, fields, spelled);
             let mut docs = facts::field_docs(context.style, field, condition);
             deprecated(&mut docs, field.details().deprecated.as_ref());
             out.docs(&docs);

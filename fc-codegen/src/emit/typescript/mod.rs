@@ -83,7 +83,7 @@ static KINDS: [Kind; 6] = [
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, Some(targets));
     let samples = &Samples::new(model);
-    let groups = &Group::all(context);
+    let groups = &Group::all(&context.package);
     let mut files: Vec<(String, &str, String)> = Vec::new();
     for (path, text) in [
         ("client.ts", client::file(context, groups)),
@@ -103,16 +103,14 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         files.push((format!("{file}.ts"), "the spec", text));
         for group in groups.iter().filter(|it| it.has(kind.what)) {
             let text = (kind.text)(context, samples, group);
-            files.push((format!("groups/{}/{file}.ts", group.name), group.from, text));
+            let path = format!("groups/{}/{file}.ts", group.name);
+            files.push((path, group.file(), text));
         }
     }
     for group in groups {
-        let text = data::group(context, samples, group);
-        files.push((
-            format!("groups/{}/protocol.ts", group.name),
-            group.from,
-            text,
-        ));
+        let text = data::group(samples, group);
+        let path = format!("groups/{}/protocol.ts", group.name);
+        files.push((path, group.file(), text));
     }
     let artifact = |(path, from, text): (String, &str, String)| {
         let contents = format!(

@@ -13,8 +13,7 @@ use crate::surface::expr::{Expr, Expressions};
 use crate::surface::language::{Role, TYPESCRIPT};
 use crate::surface::package::{Call, Shape};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type,
-    TypeRef,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef,
 };
 
 /// Members of an object.
@@ -266,17 +265,11 @@ fn ties(
 
 /// The way to a field: `.data?.state`.
 fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
-    let mut holder: Option<&TypeRef> = Some(body);
     let mut out = String::new();
     let mut dot = ".";
-    for field in context.model().way(body, keys) {
-        let name = holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field));
-        out.extend([dot, name]);
-        dot = if field.optional { "?." } else { "." };
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
+    for step in context.steps(body, keys) {
+        out.extend([dot, step.name]);
+        dot = if step.optional { "?." } else { "." };
     }
     out
 }

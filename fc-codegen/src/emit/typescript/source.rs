@@ -22,7 +22,6 @@ pub static TYPESCRIPT: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("{{@link {name}}}"),
-    elsewhere: |item| item.ty.name.to_string(),
     integer: |value| value.to_string(),
     redacted: "Left out by `redacted`.",
 };
