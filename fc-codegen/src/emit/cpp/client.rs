@@ -1,13 +1,13 @@
 //! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
 
-use super::groups::NamedGroup;
+use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, literal};
 use super::types::namespace;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::source::Source;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
@@ -31,11 +31,8 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         out.blank();
         client(out, groups);
         out.blank();
-        for group in calling(groups) {
-            out.line(format!(
-                "extern template class {}<Client>;",
-                group.named("Calls")
-            ));
+        for calls in with_commands(groups, "Calls") {
+            out.line(format!("extern template class {calls}<Client>;"));
         }
         out.blank();
         each(out, groups);
@@ -43,28 +40,13 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     out.finish()
 }
 
-/// The groups that have commands.
-fn calling<'g, 'p, 'm>(
-    groups: &'g [NamedGroup<'p, 'm>],
-) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
-    groups.iter().filter(|group| !group.commands.is_empty())
-}
-
-/// The groups that have reports.
-fn reporting<'g, 'p, 'm>(
-    groups: &'g [NamedGroup<'p, 'm>],
-) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
-    groups.iter().filter(|group| !group.reports.is_empty())
-}
-
 fn reports(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.docs(&Docs::said(&[
         "任意一个上报；功能码不在规范中的，原样保留。",
         "Any report. A report with a code that is not in the spec is kept unchanged.",
     ]));
-    let lists = reporting(groups).map(|group| group.named("Reports"));
-    let raw = "fc_runtime::Types<fc_runtime::RawReport>".to_owned();
-    let lists: Vec<String> = lists.chain([raw]).collect();
+    let mut lists = with_reports(groups, "Reports");
+    lists.push("fc_runtime::Types<fc_runtime::RawReport>".to_owned());
     out.alias("AnyReport", "fc_runtime::VariantOf", &lists);
     out.blank();
     out.line(
@@ -107,9 +89,8 @@ fn client(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 /// copies share one connection. Any thread can use it. To call without waiting, use
 /// `connection().call_async`.",
     );
-    let bases: Vec<String> = calling(groups)
-        .map(|group| format!("public {}<Client>", group.named("Calls")))
-        .collect();
+    let bases = with_commands(groups, "Calls").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}<Client>")).collect();
     out.class("Client", &bases);
     out.line(
         " public:
@@ -259,8 +240,8 @@ pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// A function over the types of all commands, and one over those of all reports.
 fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
-    let commands: Vec<String> = calling(groups).map(|it| it.named("Commands")).collect();
-    let reports: Vec<String> = reporting(groups).map(|it| it.named("Reports")).collect();
+    let commands = with_commands(groups, "Commands");
+    let reports = with_reports(groups, "Reports");
     for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
         let mut docs = Docs::default();
         docs.paragraph(format!(
@@ -269,8 +250,7 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
         docs.paragraph(format!(
             "Calls `visit` once for each {what}, with a value of its type."
         ));
-        out.blank();
-        out.docs(&docs);
+        out.documented(&docs);
         out.line("template <class Visitor>");
         let visit = if lists.is_empty() {
             "/*visit*/"
@@ -320,8 +300,8 @@ Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
 }",
         );
         out.blank();
-        for group in calling(groups) {
-            out.line(format!("template class {}<Client>;", group.named("Calls")));
+        for calls in with_commands(groups, "Calls") {
+            out.line(format!("template class {calls}<Client>;"));
         }
     });
     out.finish()

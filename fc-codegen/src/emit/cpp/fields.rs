@@ -5,14 +5,14 @@ use super::layout::{float, integer, literal, raw};
 use super::messages::opens;
 use super::process;
 use super::types::{Header, namespace};
-use crate::emit::stub::conditions::Asked;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::marks::{Bound, FieldMarks};
-use crate::emit::stub::process::has_states;
-use crate::emit::stub::source::Source;
+use crate::package::conditions::Asked;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::process::has_states;
+use crate::package::source::Source;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Direction, EnumRepr, EnumType, EnumValue, Field, Number, Operation, Scalar, Type, Value,
 };

@@ -4,12 +4,12 @@
 use super::layout::Includes;
 use super::types::{Header, namespace};
 use super::{client, protocol, robot};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
-use crate::surface::group::Group;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::Package;
+use crate::package::context::Context;
+use crate::package::group::Group;
+use crate::package::items::Package;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::source::Source;
 use std::collections::BTreeMap;
 use std::ops::Deref;
 
@@ -68,6 +68,18 @@ pub fn groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
         });
     }
     groups
+}
+
+/// The names of a part of the groups that have commands.
+pub fn with_commands(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
+    let groups = groups.iter().filter(|group| !group.commands.is_empty());
+    groups.map(|group| group.named(part)).collect()
+}
+
+/// The names of a part of the groups that have reports.
+pub fn with_reports(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
+    let groups = groups.iter().filter(|group| !group.reports.is_empty());
+    groups.map(|group| group.named(part)).collect()
 }
 
 /// The groups whose operations are in a header.

@@ -1,8 +1,8 @@
 //! What clang-format does, in Google's style, beyond any language: parameters, files, namespaces.
 
-use crate::emit::stub::docs::columns_of;
-use crate::emit::stub::source::{Source, join};
-use crate::emit::stub::style::{Comment, Style};
+use crate::package::docs::columns_of;
+use crate::package::source::{Source, join};
+use crate::package::style::{Comment, Style};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;

@@ -6,18 +6,19 @@ use super::layout::{CPP, Includes, integer, literal};
 use super::process;
 use super::tables;
 use super::types::{Header, integer_type, name_of, namespace};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::sentence;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::has_states;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::process::has_states;
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Call, Item, Shape, Spelled};
 use fc_spec::model::{
-    Direction, Effect, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type,
-    Value, Variant,
+    Direction, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type, Value,
+    Variant,
 };
 
 /// A header, and the groups whose operations are in it.
@@ -220,8 +221,7 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, comm
         return;
     };
     includes.standard("cstdint");
-    out.blank();
-    out.docs(&about::errors(context, command));
+    out.documented(&about::errors(context, command));
     out.enclose(
         &format!("enum class {name} : std::int64_t {{"),
         "};",
@@ -400,7 +400,7 @@ fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
             out.parameters("static constexpr Error errors[] = {", &all, "};");
         }
         if let Some(effect) = call.operation.effect() {
-            let effect = effect_name(effect);
+            let effect = Case::Pascal.apply(effect.name());
             out.line(format!(
                 "static constexpr Effect effect = Effect::{effect};"
             ));
@@ -415,14 +415,4 @@ fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
             out.parameters("static bool is_in_order(", &parameters, ");");
         }
     });
-}
-
-/// An effect as the runtime calls it.
-pub fn effect_name(effect: Effect) -> &'static str {
-    match effect {
-        Effect::Read => "Read",
-        Effect::Config => "Config",
-        Effect::Motion => "Motion",
-        Effect::Unknown => "Unknown",
-    }
 }

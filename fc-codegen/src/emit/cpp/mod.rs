@@ -16,10 +16,10 @@ pub mod samples;
 mod tables;
 mod types;
 
-use crate::emit::stub::context::Context;
+use crate::package::context::Context;
+use crate::package::language::CPP;
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
-use crate::surface::language::CPP;
 use crate::target::Targets;
 use fc_spec::model::Model;
 
@@ -83,7 +83,10 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let generated = files
         .into_iter()
         .map(|(path, text)| (format!("generated/{path}"), text));
-    let tests = [(samples::FILE.to_owned(), samples::file(context, samples))];
+    let tests = [(
+        samples::FILE.to_owned(),
+        samples::samples_file(context, samples),
+    )];
     generated.chain(tests).map(artifact).collect()
 }
 

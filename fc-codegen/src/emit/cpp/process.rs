@@ -2,10 +2,10 @@
 
 use super::fields::enumerators;
 use super::types::namespace;
-use crate::emit::stub::context::{Context, Step};
-use crate::emit::stub::process::{has_states, next_values, set_off, state};
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Item, Shape, Spelled};
+use crate::package::context::{Context, Step};
+use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::process::{has_states, next_values, set_off, state};
+use crate::package::source::Source;
 use fc_spec::model::{
     Direction, EnumRepr, EnumType, EnumValue, Exchange, Kind, Operation, StateOrder, StructRef,
 };

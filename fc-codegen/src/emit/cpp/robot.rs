@@ -1,15 +1,15 @@
 //! The robot's stub: a class to derive from whose methods are those of its groups, one per command, one that answers with
 //! the spec's examples, and typed pushing of reports.
 
-use super::groups::NamedGroup;
+use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::Includes;
 use super::types::namespace;
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::ranges::{UNKNOWN, pass_through};
+use crate::package::source::Source;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
@@ -46,13 +46,6 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     out.finish()
 }
 
-/// The groups that have commands.
-fn handling<'g, 'p, 'm>(
-    groups: &'g [NamedGroup<'p, 'm>],
-) -> impl Iterator<Item = &'g NamedGroup<'p, 'm>> {
-    groups.iter().filter(|group| !group.commands.is_empty())
-}
-
 fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
@@ -72,9 +65,8 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>])
 /// and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any
 /// more.",
     );
-    let bases: Vec<String> = handling(groups)
-        .map(|group| format!("public {}", group.named("Robot")))
-        .collect();
+    let bases = with_commands(groups, "Robot").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}")).collect();
     out.class("Robot", &bases);
     out.line(
         " public:
@@ -102,8 +94,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
     out.line(" public:");
     out.enclose("", "", |out| {
         for command in &group.commands {
-            out.blank();
-            out.docs(&facts::method_docs(context, command.operation, |_| ()));
+            out.documented(&facts::method_docs(context, command.operation, |_| ()));
             let open = format!(
                 "virtual fc_runtime::Replied<{}> {}(",
                 command.response.ty.name, command.method
@@ -154,8 +145,7 @@ pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// A method for commands without a type, which a robot need not have.
 fn raw(out: &mut Source, docs: &Docs<'_>, name: &str) {
-    out.blank();
-    out.docs(docs);
+    out.documented(docs);
     let parameters = [
         "const fc_runtime::Context& context",
         "std::string_view text",
@@ -184,7 +174,7 @@ fn of_parts(
     groups: &[NamedGroup<'_, '_>],
 ) {
     let answers = format!("fc_runtime::{answers}<Robot, protocol>");
-    let parts = handling(groups).map(|group| group.named("Defaults"));
+    let parts = with_commands(groups, "Defaults");
     let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
     // The formatter would fill the lines, and another group would change all of them.
     out.line("// clang-format off");
@@ -235,11 +225,8 @@ fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 /// Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,
 /// the report goes to all connected apps. The server must outlive this object.",
     );
-    let bases: Vec<String> = groups
-        .iter()
-        .filter(|group| !group.reports.is_empty())
-        .map(|group| format!("public {}<Reporter>", group.named("Reporter")))
-        .collect();
+    let bases = with_reports(groups, "Reporter").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}<Reporter>")).collect();
     out.class("Reporter", &bases);
     out.line(
         " public:
@@ -265,8 +252,7 @@ pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_,
     out.line(" public:");
     out.enclose("", "};", |out| {
         for report in &group.reports {
-            out.blank();
-            out.docs(&facts::method_docs(context, report.operation, |_| ()));
+            out.documented(&facts::method_docs(context, report.operation, |_| ()));
             let parameters = [
                 format!("const {}& report", report.request.ty.name),
                 "std::optional<fc_runtime::ConnectionId> to = std::nullopt".to_owned(),
@@ -353,7 +339,7 @@ ExampleRobot::~ExampleRobot() = default;",
         out.enclose("fc_runtime::Service service(std::shared_ptr<Robot> robot) {", "}", |out| {
             let open = "return [robot = std::move(robot)](const fc_runtime::Context& context, std::string_view text) -> fc_runtime::Handled {";
             out.enclose(open, "};", |out| {
-                for group in handling(groups) {
+                for group in groups.iter().filter(|it| !it.commands.is_empty()) {
                     let serve = group.function("serve");
                     out.line(format!(
                         "if (auto handled = {serve}(*robot, context, text)) return *std::move(handled);"

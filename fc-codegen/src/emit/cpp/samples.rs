@@ -4,20 +4,19 @@
 use super::assignments::{Assignments, assign};
 use super::layout::{CPP, Includes, literal};
 use super::types::namespace;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::samples::{Sample, SampleRun, SampleStep, Verb};
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Style;
+use crate::package::context::Context;
+use crate::package::expr::Record;
+use crate::package::items::Spelled;
+use crate::package::language::CPP as LANGUAGE;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::source::Source;
+use crate::package::style::Style;
 use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::language::CPP as LANGUAGE;
-use crate::surface::package::Spelled;
-use fc_spec::model::{Direction, Operation};
+use fc_spec::model::Operation;
 
 /// C++ as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..CPP
 };
 
@@ -25,7 +24,7 @@ static ON_PAGES: Style = Style {
 pub const FILE: &str = "tests/samples.cpp";
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "cpp",
     file: FILE,
     language: |_| &LANGUAGE,
@@ -155,13 +154,13 @@ if (!pushed) {
 
     /// Prints a frame of a stream, with another line behind it.
     fn frame(&self, out: &mut Source, stream: &Operation, more: &str) {
-        let Some(body) = stream.body(Direction::Request) else {
+        let Some(content) = self.context.content(stream) else {
             out.line("std::cout << frame->id << \": \" << frame->data.size() << \" bytes\\n\";");
             out.line(more);
             return;
         };
-        let ty = [&self.space, self.context.name_of(&body.ty)].concat();
-        let read = format!("fc_runtime::from_json<{ty}>(frame->data)");
+        let space = &self.space;
+        let read = format!("fc_runtime::from_json<{space}{content}>(frame->data)");
         assign(out, "const auto content", &read);
         let read = "frame->id << \": \" << *content << '\\n'";
         either(out, "content", read, more, "content.error()");
@@ -175,7 +174,7 @@ if (!pushed) {
     /// Writes what a stream carries, if more than a word, and returns the word for it.
     fn content(&self, out: &mut Source, value: Option<&Record<'_>>) -> String {
         let Some(value) = value else {
-            return literal(stub::BYTES);
+            return literal(BYTES);
         };
         let others = ["code", "data", "frames", "sent", "server", "taken", "text"];
         let filled = self.filled("content", &others, value);
@@ -214,7 +213,7 @@ fn either(out: &mut Source, result: &str, has: &str, more: &str, error: &str) {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
+pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let writer = Writer::new(context);
     let run = &SampleRun::build(context, samples);
     let space = &namespace(context);

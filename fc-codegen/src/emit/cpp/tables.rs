@@ -3,11 +3,11 @@
 use super::fields::enumerators;
 use super::layout::{Includes, float, integer, literal, raw};
 use super::types::{name_in, name_of, namespace};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions, Record};
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions, Record};
 use fc_spec::model::Type;
 
 /// The header.
@@ -23,8 +23,7 @@ pub fn header(context: &Context<'_>) -> String {
     out.blank();
     out.namespace(space, |out| {
         for table in &context.package.tables {
-            out.blank();
-            out.docs(&about::table(context, table.of));
+            out.documented(&about::table(context, table.of));
             let row = context.name_of(&table.row);
             out.line(format!(
                 "[[nodiscard]] const std::vector<{row}>& {}();",

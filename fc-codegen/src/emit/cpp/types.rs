@@ -1,10 +1,10 @@
 //! The types of C++, and in which order and files those of the spec stand: what holds a type comes behind it.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::process::set_off;
-use crate::surface::cycles::{Needs, first_of_circle, reached};
-use crate::surface::language::{CPP, Role};
-use crate::surface::package::{Item, Shape};
+use crate::package::context::Context;
+use crate::package::cycles::{Needs, first_of_circle, reached};
+use crate::package::items::{Item, Shape};
+use crate::package::language::{CPP, Role};
+use crate::package::process::set_off;
 use fc_spec::model::{Accepted, Direction, Type, TypeRef};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,16 +5,16 @@ use super::messages::both;
 use super::operations::{deprecated, way};
 use super::streams;
 use super::text::STYLE;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::{ending, set_off};
-use crate::emit::stub::source::Source;
-use crate::surface::group::Group;
-use crate::surface::package::{Call, Item};
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::{Call, Item};
+use crate::package::process::{ending, set_off};
+use crate::package::source::Source;
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
+pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let protocol = &context.package.name;
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
@@ -51,8 +51,7 @@ public fun data(): DataConnection = connection.data()
 /** 关闭连接。Closes the connection. */
 override fun close(): Unit = connection.close()",
         );
-        out.blank();
-        out.docs(&both("建立连接。", "Makes connections."));
+        out.documented(&both("建立连接。", "Makes connections."));
         out.block("public companion object", |out| {
             out.line(format!(
                 "\
@@ -118,8 +117,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         "[fc.runtime.CallError.declared] returns the error of a refused call.".to_owned()
     });
     docs.raw("@throws fc.runtime.CallError if the call fails");
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     deprecated(out, operation);
     out.line("@JvmSynthetic");
     let (method, request, response) = (
@@ -143,8 +141,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = Docs::default();
     docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
     let mut for_java = |parameter: &str, body: &str| {
-        out.blank();
-        out.docs(&docs);
+        out.documented(&docs);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
@@ -187,8 +184,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
         });
         let ties: Vec<String> = ties.collect();
         let kind = reported.method;
-        out.blank();
-        out.docs(&docs);
+        out.documented(&docs);
         deprecated(out, operation);
         out.line("@JvmSynthetic");
         let name = if followed.len() == 1 {

@@ -5,12 +5,12 @@
 
 use super::text::STYLE;
 use super::{client, messages, operations, robot, streams};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::group::Group;
+use crate::package::language::{KOTLIN, Role};
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::group::Group;
-use crate::surface::language::{KOTLIN, Role};
 
 /// The part of a class that a group has: `UpperBodyClient` of `Client`.
 pub fn part_name(group: &Group<'_, '_>, whole: &str) -> String {
@@ -31,13 +31,12 @@ pub fn part_of(
         docs.paragraph(format!("{}：`{whole}` 中的一部分。", of.title.zh));
         docs.paragraph(format!("{}: its part of `{whole}`.", of.title.en));
     }
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     out.block(["public interface ", head].concat(), body);
 }
 
 /// The file of a group, or of the types that several share.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> Source {
+pub fn group_file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> Source {
     let mut out = Source::new(&STYLE);
     operations::part(&mut out, context, group);
     client::part(&mut out, context, group);

@@ -2,17 +2,17 @@
 
 use super::expr;
 use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::sentence;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::{Docs, columns_of};
-use crate::emit::stub::facts;
-use crate::emit::stub::marks::FieldMarks;
-use crate::emit::stub::process::{has_states, next_values};
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::docs::{Docs, columns_of};
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::marks::FieldMarks;
+use crate::package::process::{has_states, next_values};
+use crate::package::source::Source;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
 /// Message types.
@@ -53,15 +53,13 @@ fn message(
         let expressions = Expressions::new(&context.package, samples);
         for field in fields {
             let condition = sentence(&expressions, field, fields, spelled);
-            out.blank();
-            out.docs(&facts::field_docs(&STYLE, field, condition));
+            out.documented(&facts::field_docs(&STYLE, field, condition));
             property(out, context, field);
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
                 let (property, ty) = (&field.name, type_of(context, &field.ty));
-                out.blank();
-                out.docs(&both(
+                out.documented(&both(
                     "同上；没有时为默认值。",
                     "The same, or the default if it is absent.",
                 ));
@@ -74,8 +72,7 @@ fn message(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "以此消息的内容为起点的构造器。",
             "A builder that starts with the content of this message.",
         ));
@@ -161,8 +158,7 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
             let ty = type_of(context, &field.ty);
             let mut docs = Docs::default();
             docs.raw(format!("[{name}.{property}]"));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
             let put = format!("put({constant}, {property})");
             if out.has_room([&head, " ", &put]) {
@@ -219,15 +215,13 @@ fn companion(
             out.line(format!("private val {} = {made}", constant(context, field)));
         }
         conditions(out, context, fields);
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "一个空的构造器，供 Java 使用。",
             "An empty builder, for Java.",
         ));
         out.line("@JvmStatic");
         out.line("public fun builder(): Builder = Builder(null)");
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "用 `build` 设置字段，构造消息。",
             "Builds a message with the fields that `build` sets.",
         ));
@@ -301,13 +295,11 @@ override val isError: Boolean get() = steps.isError(wire)
 override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
             ));
         }
-        out.blank();
-        out.docs(&both("规范中的全部取值。", "The values of the spec."));
+        out.documented(&both("规范中的全部取值。", "The values of the spec."));
         let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
         out.block(head, |out| {
             for value in values {
-                out.blank();
-                out.docs(&facts::value_docs(value));
+                out.documented(&facts::value_docs(value));
                 out.line("@JvmField");
                 let (value, wire) = (&value.name, scalar(&value.wire));
                 out.line(format!("public val {value}: {name} = named({wire}, \"{value}\")"));
@@ -316,8 +308,7 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
                 out.blank();
                 steps(out, shape, values);
             }
-            out.blank();
-            out.docs(&both(
+            out.documented(&both(
                 "`wire` 对应的取值；规范中没有的值原样保留。",
                 "The value for `wire`. A value that is not in the spec is kept unchanged.",
             ));

@@ -14,13 +14,13 @@ mod streams;
 mod tables;
 mod text;
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
+use crate::package::context::Context;
+use crate::package::group::Group;
+use crate::package::language::{KOTLIN, Role};
+use crate::package::name::free;
+use crate::package::source::Source;
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
-use crate::surface::group::Group;
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::name::free;
 use crate::target::Targets;
 use fc_spec::model::Model;
 use std::collections::HashSet;
@@ -38,11 +38,11 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         .unwrap_or_else(|name| name);
     let groups = Group::all(&context.package);
     let wholes = [
-        ("Protocol", protocol::file(context, &groups)),
-        ("Operations", operations::file(&groups)),
-        ("Client", client::file(context, &groups)),
-        ("Robot", robot::file(context, &groups)),
-        ("Tables", tables::file(context, samples)),
+        ("Protocol", protocol::protocol_file(context, &groups)),
+        ("Operations", operations::operations_file(&groups)),
+        ("Client", client::client_file(context, &groups)),
+        ("Robot", robot::robot_file(context, &groups)),
+        ("Tables", tables::tables_file(context, samples)),
     ];
     let own = groups.iter().map(|group| {
         let names = wholes.iter().map(|it| it.0).chain([SHARED]);
@@ -54,7 +54,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
             }
             None => SHARED.to_owned(),
         };
-        (name, group::file(context, samples, group))
+        (name, group::group_file(context, samples, group))
     });
     let own: Vec<_> = own.collect();
     let wholes = wholes.into_iter();
@@ -71,7 +71,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let files = files.map(|(name, body)| whole(&format!("{folder}/{name}.kt"), &body, &[]));
     let samples = whole(
         samples::SHOWN.file,
-        &samples::file(context, samples).finish(),
+        &samples::samples_file(context, samples).finish(),
         samples::IMPORTED,
     );
     files.chain([samples]).collect()
@@ -159,7 +159,7 @@ fn head(package: &str, body: &str, further: &[&str]) -> String {
 }
 
 /// A stream within the name of a method: `SubscribeMapImage`.
-fn method_of(stream: &crate::surface::package::Spelled<'_, fc_spec::model::Operation>) -> String {
+fn method_of(stream: &crate::package::items::Spelled<'_, fc_spec::model::Operation>) -> String {
     let name = KOTLIN.spelling(Role::Type, &stream.of.name);
     name.unwrap_or_else(|name| name).into_owned()
 }

@@ -3,17 +3,17 @@
 use super::group::{heading, part_name, part_of, parts};
 use super::messages::both;
 use super::text::{STYLE, literal};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::{has_states, state};
-use crate::emit::stub::source::Source;
-use crate::surface::group::Group;
-use crate::surface::package::Call;
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Call;
+use crate::package::process::{has_states, state};
+use crate::package::source::Source;
 use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
 
 /// The file.
-pub fn file(groups: &[Group<'_, '_>]) -> Source {
+pub fn operations_file(groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     out.docs(&Docs::said(&[
         "每条指令和每个上报。",
@@ -36,8 +36,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let name = part_name(group, "Operations");
     part_of(out, group, "Operations", &name, |out| {
         for call in group.commands.iter().chain(&group.reports) {
-            out.blank();
-            out.docs(&facts::method_docs(context, call.operation, |_| ()));
+            out.documented(&facts::method_docs(context, call.operation, |_| ()));
             deprecated(out, call.operation);
             let (method, ty) = (call.method, type_of(call));
             let head = format!("public val {method}: {ty}");
@@ -48,8 +47,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.enclose(&head, "", |out| out.line(getter));
             }
         }
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "这些常量供 Java 使用。",
             "The same as constants, for Java.",
         ));
@@ -89,10 +87,9 @@ fn type_of(call: &Call<'_>) -> String {
 /// The head of a constant.
 fn constant(out: &mut Source, context: &Context<'_>, call: &Call<'_>) -> String {
     let operation = call.operation;
-    let mut docs = Docs::of(&operation.title);
+    let mut docs = Docs::titled(&operation.title);
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     deprecated(out, operation);
     out.line("@JvmField");
     format!("public val {}: {} =", call.method, type_of(call))

@@ -4,19 +4,19 @@ use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
 use super::streams::{self, SERVER, SERVER_DOCS};
 use super::text::STYLE;
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::emit::stub::source::Source;
-use crate::surface::group::Group;
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::package::Call;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Call;
+use crate::package::language::{KOTLIN, Role};
+use crate::package::ranges::{UNKNOWN, pass_through};
+use crate::package::source::Source;
 use std::borrow::Cow;
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
+pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let handlers = parts(groups, "Handlers", has_commands);
     let ranges = pass_through(context).into_iter();
@@ -36,8 +36,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
         }
         raw(out, &unknown, &about::unknown());
     });
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
     ));
@@ -48,8 +47,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     ));
     out.blank();
     example(&mut out, groups);
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "由此机器人处理规范中的指令，供 [Server.bind] 使用。",
         "A service that handles the commands with this robot, for [Server.bind].",
     ));
@@ -107,8 +105,7 @@ fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         for command in &group.commands {
             let mut docs = facts::method_docs(context, command.operation, |_| ());
             docs.raw("@throws fc.runtime.Refusal to respond with a result other than success");
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             out.line(signature("public suspend fun", command));
         }
     });
@@ -150,8 +147,7 @@ fn method(words: &str) -> Cow<'_, str> {
 
 /// A method for requests without a type, which refuses them unless a robot has it.
 fn raw(out: &mut Source, name: &str, docs: &Docs<'_>) {
-    out.blank();
-    out.docs(docs);
+    out.documented(docs);
     out.line(format!(
         "public suspend fun {name}(context: Context, request: RawRequest): Json ="
     ));
@@ -243,8 +239,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 let mut docs = facts::method_docs(context, report.operation, |_| ());
                 docs.raw("@throws fc.runtime.PushError if it could not be queued");
                 let (method, ty) = (report.method, &report.request.ty.name);
-                out.blank();
-                out.docs(&docs);
+                out.documented(&docs);
                 out.line("@JvmSynthetic");
                 out.line(format!("public suspend fun {method}(audience: Audience, report: {ty}): List<Acknowledgement> ="));
                 out.line(format!(
@@ -252,8 +247,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 ));
                 let mut docs = Docs::default();
                 docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-                out.blank();
-                out.docs(&docs);
+                out.documented(&docs);
                 out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
                 out.line(format!(
                     "    server.pushAsync(audience, Operations.{method}, report)"

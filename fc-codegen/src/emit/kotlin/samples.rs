@@ -4,28 +4,26 @@
 use super::client::is_bare;
 use super::expr::{Form, laid_out};
 use super::method_of;
-use super::streams::content;
 use super::text::{STYLE, literal};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::samples::{Sample, SampleRun, SampleStep, Verb};
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Style;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Record};
+use crate::package::language::{KOTLIN, Role};
+use crate::package::name::free;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::source::Source;
+use crate::package::style::Style;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::name::free;
 use fc_spec::model::Type;
 
 /// Kotlin as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..STYLE
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "kotlin",
     file: "generated/src/test/kotlin/Samples.kt",
     language: |_| &KOTLIN,
@@ -86,7 +84,7 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
             });
         }
         Sample::Subscribe(stream) => {
-            let shown = match content(context, stream) {
+            let shown = match context.content(stream) {
                 Some(_) => "${item.content}",
                 None => "${item.content.size} bytes",
             };
@@ -117,10 +115,7 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
 fn assign_content(out: &mut Source, value: Option<&Record<'_>>) {
     match value {
         Some(value) => assign(out, "val content = ", value),
-        None => out.line(format!(
-            "val content = {}.toByteArray()",
-            literal(stub::BYTES)
-        )),
+        None => out.line(format!("val content = {}.toByteArray()", literal(BYTES))),
     }
 }
 
@@ -153,7 +148,7 @@ fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
 
 /// All samples, and a function that runs them.
 #[must_use]
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
+pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     let run = &SampleRun::build(context, samples);
     let mut out = Source::new(&STYLE);
     robot(&mut out, context, run);
@@ -164,8 +159,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
         out.blank();
         out.block(head, |out| write(out, context, &step.sample));
     }
-    out.blank();
-    out.docs(&Docs::said(&[
+    out.documented(&Docs::said(&[
         "运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。",
         "Runs all samples, and closes `client` at the end. `server` is the robot of the connection.",
     ]));

@@ -2,12 +2,12 @@
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::group::Group;
-use crate::surface::package::Spelled;
-use fc_spec::model::{Direction, Operation, Side};
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Spelled;
+use crate::package::source::Source;
+use fc_spec::model::{Operation, Side};
 
 /// The app's side, if there are streams.
 pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
@@ -15,8 +15,7 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
         "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
     ));
@@ -30,8 +29,7 @@ pub fn for_robot(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
         "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it.",
     ));
@@ -80,16 +78,10 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     );
 }
 
-/// What a stream carries, as a type; `None` for raw bytes.
-pub fn content<'c>(context: &'c Context<'_>, stream: &Operation) -> Option<&'c str> {
-    Some(context.name_of(&stream.body(Direction::Request)?.ty))
-}
-
 fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (super::method_of(stream), &stream.code.spelling);
-    let carried = content(context, stream);
-    out.blank();
-    out.docs(&facts::method_docs(context, stream.of, |_| ()));
+    let carried = context.content(stream);
+    out.documented(&facts::method_docs(context, stream.of, |_| ()));
     if stream.sender == Side::Robot {
         let (ty, more) = carried.map_or(("ByteArray", String::new()), |ty| (ty, format!(", {ty}")));
         let head = format!("public fun subscribe{name}(): Subscription<{ty}> =");
@@ -105,9 +97,8 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
 
 fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (super::method_of(stream), &stream.code.spelling);
-    let ty = content(context, stream).unwrap_or("ByteArray");
-    out.blank();
-    out.docs(&facts::method_docs(context, stream.of, |_| ()));
+    let ty = context.content(stream).unwrap_or("ByteArray");
+    out.documented(&facts::method_docs(context, stream.of, |_| ()));
     out.line("@JvmSynthetic");
     out.line(format!(
         "public suspend fun send{name}(audience: Audience, id: Long, content: {ty}): Int ="

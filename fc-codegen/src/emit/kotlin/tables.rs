@@ -2,23 +2,22 @@
 
 use super::expr::{self, Form};
 use super::text::STYLE;
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
 use fc_spec::model::Type;
 
 /// The file.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
+pub fn tables_file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     let mut out = Source::new(&STYLE);
     let expressions = Expressions::new(&context.package, samples);
     out.docs(&Docs::said(&about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {
-            out.blank();
-            out.docs(&about::table(context, table.of));
+            out.documented(&about::table(context, table.of));
             out.line("@JvmStatic");
             let row = context.name_of(&table.row);
             out.enclose(

@@ -1,11 +1,11 @@
 //! What Kotlin makes of types, numbers and texts.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::escape_links;
-use crate::emit::stub::marks::{Bound, FieldMarks};
-use crate::emit::stub::style::{Comment, Style};
-use crate::surface::language::Case;
+use crate::package::context::Context;
+use crate::package::digits::grouped;
+use crate::package::docs::escape_links;
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::style::{Comment, Style};
 use fc_spec::model::{Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden};
 use std::borrow::Cow;
 use std::fmt::Write as _;

@@ -1,9 +1,9 @@
 //! The samples of an operation's page: how it is called and answered in each language that the project has a package of.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::samples::{self, Sample, Shown};
-use crate::emit::stub::source::Source;
 use crate::emit::{cpp, kotlin, python, rust, typescript};
+use crate::package::context::Context;
+use crate::package::samples::{self, Sample, Shown};
+use crate::package::source::Source;
 use crate::product::Product;
 use crate::sample::Samples;
 use crate::target::{Targets, below, part};

@@ -5,14 +5,14 @@ use super::literal::literal;
 use super::modules::{GroupPart, NamedGroup};
 use super::operations::constant;
 use super::source::{Code, Python, method};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
-use crate::emit::stub::source::Source;
-use crate::surface::name::free;
-use crate::surface::package::Call;
-use fc_spec::model::{Direction, Operation};
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::name::free;
+use crate::package::process;
+use crate::package::source::Source;
+use fc_spec::model::Operation;
 
 /// The options of a call.
 const OPTIONS: [&str; 2] = ["timeout", "repeat"];
@@ -112,19 +112,14 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     });
 }
 
-/// What a frame of a stream holds.
-fn held<'c>(context: &'c Context<'_>, stream: &Operation) -> &'c str {
-    let body = stream.body(Direction::Request);
-    body.map_or("bytes", |body| context.name_of(&body.ty))
-}
-
 /// The parameter with what is sent.
 pub fn content(context: &Context<'_>, stream: &Operation) -> String {
-    format!("content: {}", held(context, stream))
+    format!("content: {}", context.content(stream).unwrap_or("bytes"))
 }
 
 fn subscribe(out: &mut Source, context: &Context<'_>, stream: &Operation) {
-    let returns = format!("rt.Subscription[{}]", held(context, stream));
+    let held = context.content(stream).unwrap_or("bytes");
+    let returns = format!("rt.Subscription[{held}]");
     let open = format!("def subscribe_{}(", stream.name);
     method(out, &open, vec!["self".into()], &returns, |out| {
         out.docstring(&facts::method_docs(context, stream, |_| ()));
@@ -140,7 +135,7 @@ fn follow_docs<'c>(
     report: &Operation,
     followed: &str,
 ) -> Docs<'c> {
-    let mut docs = Docs::of(&command.title);
+    let mut docs = Docs::titled(&command.title);
     docs.raw(format!(
         "先返回响应，再逐个返回它引起的 `{followed}`。\n\
          Returns the response, and then each `{followed}` that the command sets off.",

@@ -2,11 +2,11 @@
 
 use super::literal::wire;
 use super::source::{Code, Python};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::{self, has_states, next_values};
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Item, Spelled};
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::items::{Item, Spelled};
+use crate::package::process::{self, has_states, next_values};
+use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
 
 /// Whether the values of an enum are states of a process: the spec says so, or a report has it for its state.

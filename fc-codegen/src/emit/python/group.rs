@@ -6,15 +6,15 @@ use super::modules::{GroupPart, ModulePlan, NamedGroup, Used};
 use super::operations::{self, constant};
 use super::robot;
 use super::source::{PYTHON, Python, exported};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::group::Group;
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::group::Group;
 
 /// The file of a group, and of those that cannot be parted from it.
-pub fn file(
+pub fn group_file(
     context: &Context<'_>,
     samples: &Samples<'_>,
     plan: &ModulePlan<'_, '_>,

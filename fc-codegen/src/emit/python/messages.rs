@@ -4,17 +4,17 @@ use super::enums::{enumeration, is_state};
 use super::literal::{constant, literal, number, regex};
 use super::modules::Used;
 use super::source::{Code, Python, assign_text};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::sentence;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::marks::{Bound, FieldMarks};
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::expr::Expressions;
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::name::free;
+use crate::package::source::Source;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::Expressions;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Direction, EnumRepr, Field, Operation, Scalar, Type, TypeShape, Value, Variant,
 };

@@ -17,10 +17,10 @@ pub mod samples;
 mod source;
 mod stubs;
 
-use crate::emit::stub::context::Context;
+use crate::package::context::Context;
+use crate::package::language::{PYTHON, Role};
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
-use crate::surface::language::{PYTHON, Role};
 use crate::target::Targets;
 use fc_spec::model::Model;
 use modules::ModulePlan;
@@ -36,19 +36,23 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let all = "the spec";
     let source = |path: &str| format!("src/{package}/{path}");
     let mut files = vec![
-        (source("__init__.py"), all, root::file(context)),
+        (source("__init__.py"), all, root::root_file(context)),
         (source("call.py"), all, root::call(context, &package)),
         (source("client.py"), all, stubs::client(context, plan)),
         (source("groups/__init__.py"), all, root::groups(plan, ids)),
         (source("messages.py"), all, root::messages()),
         (source("operations.py"), all, root::operations()),
-        (source("protocol.py"), all, protocol::file(context, plan)),
+        (
+            source("protocol.py"),
+            all,
+            protocol::protocol_file(context, plan),
+        ),
         (source("robot.py"), all, stubs::robot(context, plan)),
         (source("sync.py"), all, stubs::sync(context, plan)),
         (
             samples::SHOWN.file.to_owned(),
             all,
-            samples::file(context, samples, &package),
+            samples::samples_file(context, samples, &package),
         ),
     ];
     if !context.package.tables.is_empty() {
@@ -59,7 +63,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         files.push((source(&path), all, root::ids(context)));
     }
     files.extend(plan.files().map(|home| {
-        let text = group::file(context, samples, plan, home);
+        let text = group::group_file(context, samples, plan, home);
         let path = format!("groups/{}.py", home.name);
         (source(&path), home.file(), text)
     }));

@@ -5,14 +5,14 @@
 
 use super::operations::constant;
 use super::source::Python;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::process::set_off;
-use crate::emit::stub::source::Source;
-use crate::surface::cycles::{Needs, first_of_circle, reached};
-use crate::surface::group::Group;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::{Package, Shape};
+use crate::package::context::Context;
+use crate::package::cycles::{Needs, first_of_circle, reached};
+use crate::package::group::Group;
+use crate::package::items::{Package, Shape};
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::process::set_off;
+use crate::package::source::Source;
 use fc_spec::model::{Accepted, Kind, Operation, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Deref;

@@ -4,14 +4,14 @@ use super::literal::{boolean, constant as constant_of, literal};
 use super::modules::{GroupPart, NamedGroup};
 use super::protocol;
 use super::source::{Code, Python, tuple};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::process::{set_off, state};
-use crate::emit::stub::source::Source;
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::expr::Expressions;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::process::{set_off, state};
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::expr::Expressions;
-use crate::surface::language::Case;
-use crate::surface::name::free;
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
     StructRef, Type, Value,
@@ -31,7 +31,7 @@ pub fn values(
             let before = format!("{}: Final = ", constant(context, operation));
             out.blank();
             value(context, samples, operation).write(out, &before, "");
-            out.docstring(&Docs::of(&operation.title));
+            out.docstring(&Docs::titled(&operation.title));
         }
     }
     for group in groups {
@@ -134,8 +134,7 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
             "rt.Report"
         }
         Exchange::Stream(stream) => {
-            let body = operation.body(Direction::Request);
-            let body = body.map_or("bytes", |body| context.name_of(&body.ty));
+            let body = context.content(operation).unwrap_or("bytes");
             set("body", body.into());
             set(
                 "from_robot",

@@ -5,10 +5,10 @@ use super::group::part_of;
 use super::modules::{GroupPart, NamedGroup};
 use super::operations::constant;
 use super::source::{Code, Python, method};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::source::Source;
 
 /// A method that handles a command.
 fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source)) {

@@ -5,12 +5,12 @@ use super::messages::annotation;
 use super::modules::ModulePlan;
 use super::protocol;
 use super::source::{Code, PYTHON, Python, exported, method, sorted};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::source::Source;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
 use fc_spec::model::Type;
 
 /// `__all__` where it is made of others, for those who run the package.
@@ -31,10 +31,10 @@ fn head(docs: &Docs<'_>) -> Source {
 }
 
 /// `__init__.py`.
-pub fn file(context: &Context<'_>) -> String {
+pub fn root_file(context: &Context<'_>) -> String {
     let package = &context.package;
     let model = context.model();
-    let mut docs = Docs::of(&model.protocol.title);
+    let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
     let mut out = head(&docs);
     let name = protocol::name(context);

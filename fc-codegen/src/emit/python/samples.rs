@@ -3,23 +3,22 @@
 
 use super::literal::Constants;
 use super::source::{Code, PYTHON, Python, method};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::samples::{Sample, SampleRun, SampleStep, Verb};
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Style;
+use crate::package::context::Context;
+use crate::package::expr::Record;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::source::Source;
+use crate::package::style::Style;
 use crate::sample::Samples;
-use crate::surface::expr::Record;
 use crate::target::Targets;
 
 /// Python as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..PYTHON
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "python",
     file: "tests/test_samples.py",
     language: Targets::python,
@@ -84,12 +83,12 @@ fn write(out: &mut Source, names: &mut Constants, sample: &Sample<'_, '_>) {
 fn assign_content(out: &mut Source, names: &mut Constants, value: Option<&Record<'_>>) {
     match value {
         Some(value) => names.record(value).write(out, "content = ", ""),
-        None => out.line(format!("content = b{:?}", stub::BYTES)),
+        None => out.line(format!("content = b{:?}", BYTES)),
     }
 }
 
 /// The test that type-checks and runs every sample.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, package: &str) -> String {
+pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>, package: &str) -> String {
     let run = &SampleRun::build(context, samples);
     let mut names = Constants::default();
     names

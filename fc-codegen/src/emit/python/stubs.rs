@@ -3,11 +3,11 @@
 use super::modules::{GroupPart, ModulePlan};
 use super::protocol;
 use super::source::{Code, PYTHON, Python, method};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::ranges::pass_through;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::ranges::pass_through;
+use crate::package::source::Source;
 
 /// The head of a file: what it is, and what it imports of the standard library and the runtime.
 fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {

@@ -2,10 +2,10 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn blocking_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
 
     let mut out = Source::rust();

@@ -4,10 +4,10 @@
 use super::context::Context;
 use super::literal::literal;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
-use crate::surface::package::{Call, Module};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::{Call, Module};
+use crate::package::process;
 use fc_spec::model::{Direction, Kind};
 
 /// The methods of the messages of a module. Whatever they take from elsewhere stands with its path, since each stub has
@@ -89,7 +89,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 
 fn blocking_call(out: &mut Source, command: &Call<'_>) {
     let method = command.method;
-    let mut docs = Docs::of(&command.operation.title);
+    let mut docs = Docs::titled(&command.operation.title);
     docs.raw(format!(
         "See [`Client::{method}`](crate::Client::{method})."
     ));

@@ -3,13 +3,13 @@
 use super::context::{Context, message};
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::docs::Docs;
-use crate::surface::name::free;
-use crate::surface::package::Call;
+use crate::package::docs::Docs;
+use crate::package::items::Call;
+use crate::package::name::free;
 use fc_spec::model::Side;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn client_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let reports = context.reports();
 
@@ -208,7 +208,7 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
         for report in reports {
             out.blank();
             let ty = report.request;
-            out.docs(&Docs::of(&report.operation.title));
+            out.docs(&Docs::titled(&report.operation.title));
             out.line(format!("{}({}),", ty.ty.name, message(ty)));
         }
         let taken = |name: &str| reports.iter().any(|report| report.request.ty.name == name);

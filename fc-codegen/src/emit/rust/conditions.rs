@@ -2,8 +2,8 @@
 
 use super::enums::enum_wire;
 use super::messages::constant;
-use crate::emit::stub::conditions::Asked;
-use crate::surface::expr::{Expr, Expressions};
+use crate::package::conditions::Asked;
+use crate::package::expr::{Expr, Expressions};
 use fc_spec::model::{Type, Value};
 
 /// The attribute of a field that may be absent: `when(mode = 2 | 3)`.

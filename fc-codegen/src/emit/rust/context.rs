@@ -1,9 +1,9 @@
 //! What the files of the crate ask beyond those of any package: Rust's types, and what they import.
 
-use crate::surface::package::Item;
+use crate::package::items::Item;
 use fc_spec::model::{Field, Type};
 
-pub use crate::emit::stub::context::{Context, page_of};
+pub use crate::package::context::{Context, page_of};
 
 impl Context<'_> {
     /// The Rust type of a field without its optional mark: of ids their own, where they have one.

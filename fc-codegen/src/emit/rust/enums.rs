@@ -3,11 +3,11 @@
 use super::context::Context;
 use super::literal::{literal, number};
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::next_values;
-use crate::surface::name::free;
-use crate::surface::package::{Item, Spelled};
+use crate::package::about;
+use crate::package::facts;
+use crate::package::items::{Item, Spelled};
+use crate::package::name::free;
+use crate::package::process::next_values;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
 
 /// An enum and its values.
@@ -38,8 +38,7 @@ pub fn enumeration(
     out.block(format!("pub enum {}", item.ty.name), |out| {
         for value in values {
             let docs = facts::value_docs(value);
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             out.attribute("#[fc(", &value_attributes(value, values), ")]");
             out.line(format!("{},", value.name));
         }

@@ -2,12 +2,12 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
+use crate::package::about;
+use crate::package::docs::Docs;
 use fc_spec::model::Type;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn ids_file(context: &Context<'_>) -> String {
     let mut out = Source::rust();
     out.inner_docs(&Docs::said(&[
         "各种实体的 ID，每种一个类型，不会互相混用。发送的形式与其中的值相同。",
@@ -20,8 +20,7 @@ pub fn file(context: &Context<'_>) -> String {
         let Some(held) = context.model().id_type(id) else {
             continue;
         };
-        out.blank();
-        out.docs(&about::id(context, id.of));
+        out.documented(&about::id(context, id.of));
         let mut derives = vec!["Clone"];
         derives.extend((*held != Type::String).then_some("Copy"));
         derives.extend([

@@ -8,14 +8,14 @@ use super::enums::{enum_wire, enumeration};
 use super::literal::{literal, number};
 use super::process;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::sentence;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::marks::{Bound, FieldMarks};
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Item, Module, Shape, Spelled};
+use crate::package::marks::{Bound, FieldMarks};
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Module, Shape, Spelled};
 use fc_spec::model::{Direction, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
@@ -345,14 +345,12 @@ fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command:
     };
     used.derives.insert("DeclaredError");
     let docs = about::errors(context, command);
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]");
     out.block(format!("pub enum {name}"), |out| {
         for (error, result) in package.errors(command) {
             let text = literal(&result.text.zh);
-            out.blank();
-            out.docs(&about::error(error, result.of));
+            out.documented(&about::error(error, result.of));
             let items = [format!("code = {}", result.code), format!("text = {text}")];
             out.attribute("#[fc(", &items, ")]");
             out.line(format!("{},", result.name));
@@ -374,7 +372,7 @@ fn choice<'m>(
         for variant in variants {
             used.types.insert(&*variant.of.ty);
             out.blank();
-            let mut docs = Docs::of(&variant.text);
+            let mut docs = Docs::titled(&variant.text);
             facts::variant_end(&mut docs, variant);
             out.docs(&docs);
             let ty = context.name_of(&variant.of.ty);

@@ -10,11 +10,11 @@ mod conditions;
 mod constants;
 mod context;
 mod descriptors;
-mod each;
 mod enums;
 mod ids;
 mod literal;
 mod messages;
+mod operation_macros;
 mod process;
 mod protocol;
 mod robot;
@@ -38,20 +38,22 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
-            samples::file(context, samples, targets.krate())
+            samples::samples_file(context, samples, targets.krate())
         }),
-        file("src/blocking.rs", || blocking::file(context)),
-        file("src/client.rs", || client::file(context)),
-        file("src/descriptors.rs", || descriptors::file(context)),
-        file("src/lib.rs", || root::file(context)),
+        file("src/blocking.rs", || blocking::blocking_file(context)),
+        file("src/client.rs", || client::client_file(context)),
+        file("src/descriptors.rs", || {
+            descriptors::descriptors_file(context)
+        }),
+        file("src/lib.rs", || root::root_file(context)),
         file("src/messages/mod.rs", || root::messages(context)),
         file("src/prelude.rs", || root::prelude(context, targets.krate())),
-        file("src/protocol.rs", || protocol::file(context)),
-        file("src/robot.rs", || robot::file(context)),
-        file("src/tables.rs", || tables::file(context)),
+        file("src/protocol.rs", || protocol::protocol_file(context)),
+        file("src/robot.rs", || robot::robot_file(context)),
+        file("src/tables.rs", || tables::tables_file(context)),
     ];
     if !context.package.ids.is_empty() {
-        files.push(file("src/ids.rs", || ids::file(context)));
+        files.push(file("src/ids.rs", || ids::ids_file(context)));
     }
     files.extend(context.package.modules.iter().map(|module| {
         let first = module.items.first();

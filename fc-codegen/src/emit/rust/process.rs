@@ -1,7 +1,7 @@
 //! What a command sets off and how far it has come, as the derives are told.
 
 use super::context::Context;
-use crate::emit::stub::process::{set_off, state};
+use crate::package::process::{set_off, state};
 use fc_spec::model::{Exchange, Operation, StructRef, TypeRef};
 
 /// Types beside its own that the attribute of an operation names.

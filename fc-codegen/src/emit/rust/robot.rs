@@ -4,15 +4,15 @@
 use super::context::{Context, message};
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::surface::package::Call;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::ranges::{UNKNOWN, pass_through};
 use fc_spec::model::{CodeRange, Side};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn robot_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let commands = context.commands();
     let ranges = pass_through(context);
@@ -116,8 +116,7 @@ fn robot(
             let docs = facts::command_docs(context, command.operation, |error| {
                 format!("Convert a [`messages::{error}`] to refuse the command with it.")
             });
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             let request = format!("request: {}", message(command.request));
             let (open, params, close) = signature(
                 command.method,
@@ -129,16 +128,14 @@ fn robot(
             out.list(&open, &params, &format!("{close};"));
         }
         for (name, range) in ranges {
-            out.blank();
-            out.docs(&about::range(range));
+            out.documented(&about::range(range));
             out.line(format!(
                 "#[fc(range = {}..={})]",
                 range.first_spelling, range.last_spelling
             ));
             raw(out, protocol, name);
         }
-        out.blank();
-        out.docs(&about::unknown());
+        out.documented(&about::unknown());
         out.line("#[fc(unknown)]");
         raw(out, protocol, UNKNOWN);
     });

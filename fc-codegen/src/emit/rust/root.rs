@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -38,10 +38,10 @@ const ALLOWED: &[(&str, &str)] = &[
 ];
 
 /// `lib.rs`.
-pub fn file(context: &Context<'_>) -> String {
+pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
-    let mut docs = Docs::of(&model.protocol.title);
+    let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
     docs.paragraph(format!(
         "规范版本 {}。Version {} of the spec.",

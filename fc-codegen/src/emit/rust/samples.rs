@@ -5,15 +5,14 @@ use super::constants::{Place, indented, spelled_record};
 use super::context::Context;
 use super::robot::signature;
 use super::source::{RUST, Source};
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::samples::{Sample, SampleRun, SampleStep, Verb};
+use crate::package::expr::Record;
+use crate::package::name::free;
+use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::name::free;
 use crate::target::Targets;
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "rust",
     file: "tests/samples.rs",
     language: Targets::rust,
@@ -104,7 +103,7 @@ fn assign(out: &mut Source, name: &str, value: &Record<'_>) {
 /// Writes what a stream carries, if more than a word, and returns the word for it.
 fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
     let Some(value) = value else {
-        return format!("b{:?}", stub::BYTES);
+        return format!("b{:?}", BYTES);
     };
     assign(out, "content", value);
     "&content".to_owned()
@@ -112,7 +111,7 @@ fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, krate: &str) -> String {
+pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>, krate: &str) -> String {
     let run = &SampleRun::build(context, samples);
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);

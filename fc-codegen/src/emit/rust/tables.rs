@@ -3,16 +3,16 @@
 use super::constants::{Place, spelled};
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions, Record};
+use crate::package::items::Spelled;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions, Record};
-use crate::surface::package::Spelled;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn tables_file(context: &Context<'_>) -> String {
     let mut rows = Source::rust();
     let mut used = Used::default();
     for table in &context.package.tables {

@@ -4,12 +4,12 @@
 use super::context::{Context, own};
 use super::root;
 use super::source::{Source, head, nothing};
-use crate::emit::stub::process::set_off;
-use crate::surface::language::{Role, TYPESCRIPT};
-use crate::surface::package::{Item, Spelled};
+use crate::package::items::{Item, Spelled};
+use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::process::set_off;
 use fc_spec::model::{Direction, Field, TypeRef};
 
-pub use crate::surface::group::Group;
+pub use crate::package::group::Group;
 
 /// What a group may have.
 #[derive(Clone, Copy, PartialEq, Eq)]

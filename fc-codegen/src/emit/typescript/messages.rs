@@ -6,13 +6,13 @@ use super::context::{Context, field_type, imported, imports, own, parts, repr_is
 use super::group::Group;
 use super::source::{self, Source, alternatives, import_types, literal, tag_text};
 use super::{client, robot};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::sentence;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
 };
@@ -192,7 +192,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     out.blank();
     out.docs(&docs);
     let errors = package.errors(command).map(|(error, result)| {
-        let docs = Docs::of(error.cause.as_ref().unwrap_or(&result.text));
+        let docs = Docs::titled(error.cause.as_ref().unwrap_or(&result.text));
         (docs, literal(&result.name))
     });
     alternatives(out, name, &errors.collect::<Vec<_>>());
@@ -209,7 +209,7 @@ fn choice(
     out.docs(&docs);
     let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {
-        let mut docs = Docs::of(&variant.text);
+        let mut docs = Docs::titled(&variant.text);
         facts::variant_end(&mut docs, variant);
         deprecated(&mut docs, variant.deprecated.as_ref());
         let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));

@@ -20,9 +20,9 @@ mod source;
 mod tables;
 mod wire;
 
+use crate::package::language::TYPESCRIPT as LANGUAGE;
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
-use crate::surface::language::TYPESCRIPT as LANGUAGE;
 use crate::target::Targets;
 use context::Context;
 use fc_spec::model::Model;

@@ -5,13 +5,13 @@ use super::context::{Context, page_of};
 use super::group::Group;
 use super::layout::Layout;
 use super::source::{Source, float, head, import_types, literal};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::process::{is_followed, set_off};
-use crate::emit::stub::source::join;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::items::{Call, Shape};
+use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::process::{is_followed, set_off};
+use crate::package::source::join;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::language::{Role, TYPESCRIPT};
-use crate::surface::package::{Call, Shape};
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef,
 };
@@ -134,7 +134,7 @@ fn write(
     types: &[String],
     members: Members,
 ) {
-    let mut docs = Docs::of(&operation.title);
+    let mut docs = Docs::titled(&operation.title);
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
     super::messages::deprecated(&mut docs, operation.deprecated.as_ref());
     out.blank();

@@ -4,23 +4,22 @@
 use super::constants::Constants;
 use super::context::{Context, imported, own};
 use super::source::{self, Source, TYPESCRIPT, import, import_types};
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::samples::{Sample, SampleRun, SampleStep, Verb};
-use crate::emit::stub::style::Style;
+use crate::package::expr::Record;
+use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
+use crate::package::name::free;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::style::Style;
 use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::language::{Role, TYPESCRIPT as LANGUAGE};
-use crate::surface::name::free;
 use std::collections::BTreeSet;
 
 /// TypeScript as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..TYPESCRIPT
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "ts",
     file: "samples.ts",
     language: |_| &LANGUAGE,
@@ -109,7 +108,7 @@ impl<'p, 'm> Names<'p, 'm> {
             Some(value) => self.assign(out, "content", value),
             None => out.line(format!(
                 "const content = new TextEncoder().encode('{}')",
-                stub::BYTES
+                BYTES
             )),
         }
     }

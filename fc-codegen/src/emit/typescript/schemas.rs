@@ -5,11 +5,11 @@ use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
 use super::group::Group;
 use super::layout::Layout;
 use super::source::{head, import, import_types};
-use crate::emit::stub::marks::{Bound, FieldMarks};
+use crate::package::expr::Expressions;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
 use crate::sample::Samples;
-use crate::surface::expr::Expressions;
-use crate::surface::language::Case;
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
 use std::borrow::Cow;
 

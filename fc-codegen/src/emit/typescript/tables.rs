@@ -6,11 +6,11 @@ use super::group::{Group, has_default};
 use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, import_types, literal, nothing};
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
 use fc_spec::model::Value;
 
 /// What `defaults.ts` says of itself.
@@ -29,7 +29,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     out.line("import * as messages from './messages.ts'");
     let expressions = Expressions::new(&context.package, samples);
     for table in tables {
-        let mut docs = Docs::of(&table.title);
+        let mut docs = Docs::titled(&table.title);
         docs.text(&table.about);
         if let Some(store) = &table.kept {
             docs.paragraph(facts::kept(store));

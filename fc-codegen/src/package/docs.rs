@@ -19,7 +19,7 @@ enum Block<'t> {
 
 impl<'t> Docs<'t> {
     /// A comment that starts with a text in both languages.
-    pub fn of(text: &'t Text) -> Self {
+    pub fn titled(text: &'t Text) -> Self {
         let mut docs = Self::default();
         docs.text(text);
         docs
@@ -375,12 +375,12 @@ mod tests {
             zh: "MD5".into(),
             en: "MD5".into(),
         };
-        assert_eq!(lines(&Docs::of(&same), 80), ["MD5"]);
+        assert_eq!(lines(&Docs::titled(&same), 80), ["MD5"]);
         let both = Text {
             zh: "站点".into(),
             en: "Station".into(),
         };
-        assert_eq!(lines(&Docs::of(&both), 80), ["站点", "Station"]);
+        assert_eq!(lines(&Docs::titled(&both), 80), ["站点", "Station"]);
     }
 
     #[test]
@@ -394,7 +394,7 @@ mod tests {
                 zh: zh.into(),
                 en: en.into(),
             };
-            let lines = lines(&Docs::of(&text), 80);
+            let lines = lines(&Docs::titled(&text), 80);
             assert!(lines.iter().any(String::is_empty), "{lines:?}");
         }
     }

@@ -4,10 +4,10 @@
 use super::context::Context;
 use super::source::Source;
 use super::style::Style;
+use crate::package::expr::{Expressions, Record};
+use crate::package::items::{Call, Spelled};
+use crate::package::language::Language;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expressions, Record};
-use crate::surface::language::Language;
-use crate::surface::package::{Call, Spelled};
 use crate::target::Targets;
 use fc_spec::model::{Direction, Kind, Operation, Side};
 

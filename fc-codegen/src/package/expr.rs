@@ -1,6 +1,6 @@
 //! Constants of the spec as typed expressions: the rows of its tables, the bodies of its examples.
 
-use super::package::{Item, Package, Shape, Spelled};
+use super::items::{Item, Package, Shape, Spelled};
 use crate::sample::Samples;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

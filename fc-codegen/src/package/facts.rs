@@ -4,7 +4,7 @@ use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::process;
 use super::style::Style;
-use crate::surface::package::Item;
+use crate::package::items::Item;
 use fc_spec::model::{
     Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
     Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk, Scalar,
@@ -14,7 +14,7 @@ use fc_spec::model::{
 /// The comment on a struct's field; `condition` says when it is there.
 pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>) -> Docs<'m> {
     let details = field.details();
-    let mut docs = Docs::of(&field.text);
+    let mut docs = Docs::titled(&field.text);
     docs.texts(details.note.as_ref());
     if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
@@ -29,7 +29,7 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
 
 /// The comment on a value of an enum.
 pub fn value_docs(value: &EnumValue) -> Docs<'_> {
-    let mut docs = Docs::of(&value.text);
+    let mut docs = Docs::titled(&value.text);
     if let Some(since) = &value.since {
         docs.paragraph(format!("Since {since}."));
     }
@@ -196,7 +196,7 @@ pub fn limits(available: &Available) -> String {
 
 /// What every comment on an operation starts with: title, description, what is withdrawn.
 pub fn operation_docs(operation: &Operation) -> Docs<'_> {
-    let mut docs = Docs::of(&operation.title);
+    let mut docs = Docs::titled(&operation.title);
     docs.texts(operation.about.as_ref());
     if let Some(deprecation) = &operation.deprecated {
         withdrawn(&mut docs, deprecation);
@@ -460,7 +460,7 @@ pub fn item_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
 /// The comment on a type that is not a whole body.
 pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;
-    let mut docs = Docs::of(&ty.title);
+    let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
     if let TypeShape::Struct(shape) = &ty.shape
         && let Some(system) = &shape.coordinates

@@ -158,7 +158,7 @@ const SHARED: [&str; 3] = ["types", "shared", "shared_types"];
 impl<'m> Package<'m> {
     /// Spells every name of a protocol in this language.
     #[must_use]
-    pub fn of(model: &'m Model, language: &Language) -> Self {
+    pub fn build(model: &'m Model, language: &Language) -> Self {
         let mut names = Names::new(language);
         let mut types = Scope::new(language, Role::Type);
         let protocol = Named::alone("protocol", "protocol");
@@ -365,7 +365,7 @@ fn declaring(model: &Model) -> impl Iterator<Item = &Operation> {
 #[must_use]
 pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
     let languages = languages.iter();
-    let packages = languages.map(|language| Package::of(model, language));
+    let packages = languages.map(|language| Package::build(model, language));
     packages.flat_map(|package| package.clashes).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::docs::Docs;
-use crate::surface::package::Spelled;
+use crate::package::items::Spelled;
 use fc_spec::model::{
     EnumType, EnumValue, Exchange, KeyPath, Messages, Operation, SetOff, TypeRef,
 };

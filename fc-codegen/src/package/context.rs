@@ -1,11 +1,12 @@
 //! The package, its style, and links from comments to the spec and to the pages.
 
 use super::style::Style;
-use crate::surface::language::Language;
-use crate::surface::package::{Call, Item, Package, Shape, Spelled};
+use crate::package::items::{Call, Item, Package, Shape, Spelled};
+use crate::package::language::Language;
 use crate::target::Targets;
 use fc_spec::model::{
-    Accepted, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef, Type, TypeRef,
+    Accepted, Direction, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef,
+    Type, TypeRef,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,7 +27,7 @@ impl<'m> Context<'m> {
         targets: Option<&Targets>,
     ) -> Self {
         Self {
-            package: Package::of(model, language),
+            package: Package::build(model, language),
             style,
             docs: targets.map_or_else(Vec::new, Targets::docs),
         }
@@ -69,6 +70,11 @@ impl<'m> Context<'m> {
     /// Name of a message type.
     pub fn name_of(&self, named: &TypeRef) -> &str {
         &self.package.item(named).ty.name
+    }
+
+    /// The message type that a stream carries; `None` for raw bytes.
+    pub fn content(&self, stream: &Operation) -> Option<&str> {
+        Some(self.name_of(&stream.body(Direction::Request)?.ty))
     }
 
     /// The fields on the way that keys lead from a body.

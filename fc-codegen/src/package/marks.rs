@@ -1,7 +1,7 @@
 //! What a field demands of its values and how it travels, as names and values that a language spells.
 
 use super::conditions::{Asked, asked};
-use crate::surface::package::Spelled;
+use crate::package::items::Spelled;
 use fc_spec::model::{Constraint, Field, Number, Scalar, WireForm};
 
 /// The marks of a field.

@@ -53,7 +53,7 @@ pub fn results(context: &Context<'_>) -> Docs<'static> {
 
 /// A result code.
 pub fn result(result: &ResultCode) -> Docs<'_> {
-    let mut docs = Docs::of(&result.text);
+    let mut docs = Docs::titled(&result.text);
     docs.text(&result.about);
     docs
 }
@@ -69,12 +69,12 @@ pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
 
 /// An error that a command declares.
 pub fn error<'m>(error: &'m DeclaredError, result: &'m ResultCode) -> Docs<'m> {
-    Docs::of(error.cause.as_ref().unwrap_or(&result.text))
+    Docs::titled(error.cause.as_ref().unwrap_or(&result.text))
 }
 
 /// The protocol.
 pub fn protocol(model: &Model) -> Docs<'_> {
-    let mut docs = Docs::of(&model.protocol.title);
+    let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
     docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
     docs
@@ -82,7 +82,7 @@ pub fn protocol(model: &Model) -> Docs<'_> {
 
 /// A table of constants.
 pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
-    let mut docs = Docs::of(&table.title);
+    let mut docs = Docs::titled(&table.title);
     docs.text(&table.about);
     docs.paragraph(table.kept.as_deref().map_or_else(String::new, facts::kept));
     docs.paragraph(context.links(&table.location, "reference/tables.md"));
@@ -100,7 +100,7 @@ pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
 
 /// An enum, with a paragraph about values that are not in the spec.
 pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static str) -> Docs<'m> {
-    let mut docs = Docs::of(&ty.title);
+    let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
     docs.paragraph(open);
     if let Some(since) = &ty.since {
@@ -112,7 +112,7 @@ pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static st
 
 /// A method for the codes of a range that a robot handles as a whole.
 pub fn range(range: &CodeRange) -> Docs<'_> {
-    let mut docs = Docs::of(&range.text);
+    let mut docs = Docs::titled(&range.text);
     let (first, last) = (&range.first_spelling, &range.last_spelling);
     docs.paragraph(format!(
         "Codes {first} to {last} without a separate method."

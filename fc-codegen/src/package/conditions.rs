@@ -1,8 +1,8 @@
 //! Under which values of other fields of its struct a field is there.
 
 use super::facts::code;
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::Spelled;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::items::Spelled;
 use fc_spec::model::{Condition, Field, Scalar, Value};
 
 /// The fields that a condition asks.

@@ -1,6 +1,6 @@
 //! A group of the spec, with everything that a package has of it.
 
-use super::package::{Call, Item, Package, Spelled};
+use super::items::{Call, Item, Package, Spelled};
 use fc_spec::model::{self, Kind, Operation, Side};
 
 /// A group, or the types that several groups share.
