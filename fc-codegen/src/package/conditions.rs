@@ -46,7 +46,7 @@ impl Asked<'_, '_> {
 
 /// The sentence about the condition of a field, with constants as the language spells them.
 pub fn sentence(
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     field: &Field,
     fields: &[Spelled<'_, Field>],
     spelled: impl Fn(&Expr<'_>) -> String,

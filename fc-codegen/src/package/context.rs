@@ -3,6 +3,7 @@
 use super::style::Style;
 use crate::package::items::{Call, Item, Package, Shape, Spelled};
 use crate::package::language::Language;
+use crate::sample::Samples;
 use crate::target::Targets;
 use fc_spec::model::{
     Accepted, Direction, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef,
@@ -36,6 +37,11 @@ impl<'m> Context<'m> {
     /// The protocol.
     pub fn model(&self) -> &'m Model {
         self.package.model
+    }
+
+    /// The values that the spec gives as examples, or that are made up for it.
+    pub fn samples(&self) -> Samples<'m> {
+        Samples::new(self.model())
     }
 
     /// The end of a comment: links to the spec and to the page in each language.

@@ -338,6 +338,14 @@ impl<'m> Package<'m> {
         })
     }
 
+    /// The command or the report whose request a type is; `None` without a code.
+    #[must_use]
+    pub fn opened_by<'p>(&'p self, item: &'p Item<'_>) -> Option<Call<'p>> {
+        let (operation, side) = item.body_of()?;
+        let is_request = side == Direction::Request;
+        self.call(operation).filter(|_| is_request)
+    }
+
     /// A stream with its name; `None` without a code.
     #[must_use]
     pub fn stream(&self, operation: &Operation) -> Option<&Spelled<'m, Operation>> {

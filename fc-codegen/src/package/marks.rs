@@ -2,7 +2,7 @@
 
 use super::conditions::{Asked, asked};
 use crate::package::items::Spelled;
-use fc_spec::model::{Constraint, Field, Number, Scalar, WireForm};
+use fc_spec::model::{Constraint, Field, Number, Quirk, Scalar, WireForm};
 
 /// The marks of a field.
 pub struct FieldMarks<'f, 'm> {
@@ -43,6 +43,14 @@ impl<'f, 'm> FieldMarks<'f, 'm> {
             quirks: details.quirks.iter().map(|quirk| quirk.name()).collect(),
             condition: asked(field, fields).filter(|_| field.optional),
         }
+    }
+}
+
+impl FieldMarks<'_, '_> {
+    /// The names of the quirks, in the order of the vocabulary.
+    pub fn quirks_in_order(&self) -> impl Iterator<Item = &'static str> {
+        let quirks = Quirk::ALL.iter().map(|quirk| quirk.name());
+        quirks.filter(|name| self.quirks.contains(name))
     }
 }
 

@@ -7,7 +7,7 @@ use super::style::Style;
 use crate::package::expr::{Expressions, Record};
 use crate::package::items::{Call, Spelled};
 use crate::package::language::Language;
-use crate::sample::{Profile, Samples};
+use crate::sample::Profile;
 use crate::target::Targets;
 use fc_spec::model::{Direction, Kind, Operation, Side};
 
@@ -50,12 +50,8 @@ pub enum Sample<'p, 'm> {
 pub const BYTES: &str = "any bytes";
 
 /// What an app does with an operation; `None` without a code.
-pub fn app<'p, 'm>(
-    context: &'p Context<'m>,
-    samples: &Samples<'m>,
-    operation: &'p Operation,
-) -> Option<Sample<'p, 'm>> {
-    let example = || example(context, samples, operation, Direction::Request);
+pub fn app<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
+    let example = || example(context, operation, Direction::Request);
     Some(match operation.kind() {
         Kind::Command => Sample::Call(context.package.call(operation)?, example()?),
         Kind::Report => Sample::Take(context.package.call(operation)?),
@@ -70,12 +66,8 @@ pub fn app<'p, 'm>(
 }
 
 /// What a robot does with an operation; `None` without a code, and for a stream of the app.
-pub fn robot<'p, 'm>(
-    context: &'p Context<'m>,
-    samples: &Samples<'m>,
-    operation: &'p Operation,
-) -> Option<Sample<'p, 'm>> {
-    let example = |direction| example(context, samples, operation, direction);
+pub fn robot<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
+    let example = |direction| example(context, operation, direction);
     Some(match operation.kind() {
         Kind::Command => {
             let call = context.package.call(operation)?;
@@ -96,15 +88,16 @@ pub fn robot<'p, 'm>(
 }
 
 /// The spec's example of a body; `None` for a stream of bytes.
-fn example<'p, 'm>(
-    context: &'p Context<'m>,
-    samples: &Samples<'m>,
+fn example<'p>(
+    context: &'p Context<'_>,
     operation: &Operation,
     direction: Direction,
 ) -> Option<Record<'p>> {
     let body = operation.body(direction)?;
-    let value = samples.body(operation, direction, Profile::Example);
-    Some(Expressions::new(&context.package, samples).record(&body.ty, &value))
+    let value = context
+        .samples()
+        .body(operation, direction, Profile::Example);
+    Some(Expressions::new(&context.package).record(&body.ty, &value))
 }
 
 /// All samples of a package, in the order in which a file has them.
@@ -143,7 +136,7 @@ pub enum Verb {
 
 impl<'p, 'm> SampleRun<'p, 'm> {
     /// The samples of a package, with values from `samples`.
-    pub fn build(context: &'p Context<'m>, samples: &Samples<'m>) -> Self {
+    pub fn build(context: &'p Context<'m>) -> Self {
         let mut steps = Vec::new();
         let mut add = |verb, operation, sample: Option<Sample<'p, 'm>>| {
             steps.extend(sample.map(|sample| SampleStep {
@@ -154,22 +147,22 @@ impl<'p, 'm> SampleRun<'p, 'm> {
         };
         let commands = context.commands();
         for Call { operation, .. } in &commands {
-            add(Verb::Call, *operation, app(context, samples, operation));
+            add(Verb::Call, *operation, app(context, operation));
         }
         for Call { operation, .. } in context.reports() {
-            add(Verb::Take, operation, app(context, samples, operation));
-            add(Verb::Push, operation, robot(context, samples, operation));
+            add(Verb::Take, operation, app(context, operation));
+            add(Verb::Push, operation, robot(context, operation));
         }
         let streams = context.package.streams.iter().map(|stream| stream.of);
         for operation in streams.clone().filter(|it| it.sender == Side::Robot) {
-            add(Verb::Subscribe, operation, app(context, samples, operation));
-            add(Verb::Stream, operation, robot(context, samples, operation));
+            add(Verb::Subscribe, operation, app(context, operation));
+            add(Verb::Stream, operation, robot(context, operation));
         }
         for operation in streams.filter(|it| it.sender == Side::App) {
-            add(Verb::Send, operation, app(context, samples, operation));
+            add(Verb::Send, operation, app(context, operation));
         }
         let answers = commands.iter();
-        let answers = answers.filter_map(|it| robot(context, samples, it.operation));
+        let answers = answers.filter_map(|it| robot(context, it.operation));
         Self {
             answers: answers.collect(),
             steps,

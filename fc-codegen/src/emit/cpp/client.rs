@@ -1,8 +1,7 @@
 //! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
 
 use super::groups::{NamedGroup, with_commands, with_reports};
-use super::layout::{Includes, literal};
-use super::types::namespace;
+use super::layout::{Includes, header_file, literal, source_file};
 use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -11,22 +10,13 @@ use crate::package::source::Source;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    for name in ["chrono", "memory", "optional", "utility", "variant"] {
-        includes.standard(name);
-    }
-    includes.own(format!("{space}/messages.hpp"));
-    includes.own(format!("{space}/protocol.hpp"));
-    includes.own("fc_runtime/client.hpp");
-    includes.own("fc_runtime/following.hpp");
-    includes.own("fc_runtime/types.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+    let includes = Includes::new(
+        context,
+        &["chrono", "memory", "optional", "utility", "variant"],
+        &["messages", "protocol"],
+        &["client", "following", "types"],
+    );
+    header_file(context, &includes, |out| {
         reports(out, groups);
         out.blank();
         client(out, groups);
@@ -36,8 +26,7 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         }
         out.blank();
         each(out, groups);
-    });
-    out.finish()
+    })
 }
 
 fn reports(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
@@ -271,15 +260,8 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/client.hpp\""));
-    out.blank();
-    out.line("#include \"fc_runtime/any_report.hpp\"");
-    out.blank();
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let before = "#include \"fc_runtime/any_report.hpp\"\n\n";
+    source_file(context, "client", before, |out| {
         out.line(
             "\
 std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {
@@ -303,6 +285,5 @@ Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
         for calls in with_commands(groups, "Calls") {
             out.line(format!("template class {calls}<Client>;"));
         }
-    });
-    out.finish()
+    })
 }

@@ -2,7 +2,6 @@
 
 use super::groups::{self, NamedGroup};
 use super::layout::{float, integer, literal, raw};
-use super::messages::opens;
 use super::process;
 use super::types::{Header, namespace};
 use crate::package::conditions::Asked;
@@ -12,7 +11,7 @@ use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::process::has_states;
 use crate::package::source::Source;
-use crate::sample::{Profile, Samples};
+use crate::sample::Profile;
 use fc_spec::model::{
     Direction, EnumRepr, EnumType, EnumValue, Field, Number, Operation, Scalar, Type, Value,
 };
@@ -20,7 +19,6 @@ use fc_spec::model::{
 /// The source of a header.
 pub fn source(
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
     groups: &[&NamedGroup<'_, '_>],
 ) -> String {
@@ -40,20 +38,20 @@ pub fn source(
     out.line("// clang-format off");
     out.blank();
     if !header.items.is_empty() {
-        types(&mut out, context, samples, header);
+        types(&mut out, context, header);
     }
     groups::define(&mut out, context, groups);
     out.finish()
 }
 
 /// What is declared of the message types of a header, and of their operations.
-fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) {
+fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
     let space = &namespace(context);
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
             out.blank();
             match &item.shape {
-                Shape::Record(_, fields) => record(out, context, samples, item, fields),
+                Shape::Record(_, fields) => record(out, context, item, fields),
                 Shape::Enum(shape, values) => enumeration(out, space, item, shape, values),
                 Shape::Choice(..) => {}
             }
@@ -72,7 +70,7 @@ fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header:
     out.blank();
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
-            if let Some(call) = opens(context, item) {
+            if let Some(call) = context.package.opened_by(item) {
                 process::define_call(out, context, &call);
             }
         }
@@ -90,21 +88,18 @@ fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header:
     });
 }
 
-fn record(
-    out: &mut Source,
-    context: &Context<'_>,
-    samples: &Samples<'_>,
-    item: &Item<'_>,
-    fields: &[Spelled<'_, Field>],
-) {
+fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Spelled<'_, Field>]) {
     let space = &namespace(context);
     let name = &item.ty.name;
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     let marks = fields
         .iter()
         .map(|field| FieldMarks::build(field.of, fields));
     let marks: Vec<_> = fields.iter().zip(marks).collect();
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let example = context
+        .samples()
+        .named(item.ty.of, Profile::Example)
+        .to_string();
     out.line("template <>");
     out.enclose(&format!("struct Fields<{space}::{name}> {{"), "};", |out| {
         let spec_name = literal(&item.ty.of.name);
@@ -234,7 +229,7 @@ fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
 /// Under which values of the fields beside it a field is there.
 fn asks(
     space: &str,
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     field: &Spelled<'_, Field>,
     condition: &Asked<'_, '_>,
 ) -> String {

@@ -15,7 +15,6 @@ use crate::package::items::{Call, Item, Shape, Spelled};
 use crate::package::language::Case;
 use crate::package::process::has_states;
 use crate::package::source::Source;
-use crate::sample::Samples;
 use fc_spec::model::{
     Direction, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type, Value,
     Variant,
@@ -24,7 +23,6 @@ use fc_spec::model::{
 /// A header, and the groups whose operations are in it.
 pub fn header(
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
     groups: &[&NamedGroup<'_, '_>],
 ) -> String {
@@ -37,7 +35,7 @@ pub fn header(
         includes.own(format!("{space}/groups/{id}.hpp"));
     }
     if !header.items.is_empty() {
-        types(&mut body, &mut includes, context, samples, header);
+        types(&mut body, &mut includes, context, header);
     }
     groups::declare(&mut body, &mut includes, context, groups);
     let mut out = Source::cpp();
@@ -54,7 +52,6 @@ fn types(
     body: &mut Source,
     includes: &mut Includes,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
 ) {
     let space = &namespace(context);
@@ -63,7 +60,7 @@ fn types(
             out.blank();
             match &item.shape {
                 Shape::Record(_, fields) => {
-                    structure(out, includes, context, samples, item, fields);
+                    structure(out, includes, context, item, fields);
                 }
                 Shape::Enum(shape, values) => {
                     enumeration(out, includes, context, item, shape, values);
@@ -77,7 +74,7 @@ fn types(
     let calls: Vec<Call<'_>> = header
         .items
         .iter()
-        .filter_map(|it| opens(context, it))
+        .filter_map(|it| context.package.opened_by(it))
         .collect();
     body.blank();
     body.namespace("fc_runtime", |out| {
@@ -102,24 +99,15 @@ fn types(
     });
 }
 
-/// The command or report that an item opens, if it has a code.
-pub fn opens<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Option<Call<'p>> {
-    match item.body_of()? {
-        (operation, Direction::Request) => context.package.call(operation),
-        (_, Direction::Response) => None,
-    }
-}
-
 fn structure(
     out: &mut Source,
     includes: &mut Includes,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
     out.docs(&facts::item_docs(context, item));
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     includes.own("fc_runtime/json.hpp");
     let name = &item.ty.name;
     out.enclose(&format!("struct {name} {{"), "};", |out| {

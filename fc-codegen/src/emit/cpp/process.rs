@@ -171,7 +171,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         let known = states.values.iter();
         let known =
             known.map(|it| format!("{held} == {space}::{}::{}", enumerators(item), it.name));
-        let known = any_of(known.collect());
+        let known = any_of(&known.collect::<Vec<_>>());
         let (request, ty) = (&call.request.ty.name, &item.ty.name);
         out.line(format!(
             "bool Command<{space}::{request}>::is_accepted_in(const {space}::{ty}& state) noexcept {{"
@@ -183,7 +183,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
 }
 
 /// `a || b`.
-fn any_of(conditions: Vec<String>) -> String {
+fn any_of(conditions: &[String]) -> String {
     if conditions.is_empty() {
         return "false".to_owned();
     }
@@ -301,7 +301,7 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let failed = failures
         .iter()
         .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_error(it); }})"));
-    function(out, "is_failure", &any_of(failed.collect()));
+    function(out, "is_failure", &any_of(&failed.collect::<Vec<_>>()));
     out.line(format!(
         "bool {of}::is_in_order({message} report, {message} previous) {{"
     ));

@@ -1,7 +1,7 @@
 //! The protocol as a value: header, envelopes, result codes, ports, limits and operations.
 
 use super::groups::NamedGroup;
-use super::layout::{Includes, integer, literal};
+use super::layout::{Includes, header_file, integer, literal, source_file};
 use super::types::namespace;
 use crate::package::about;
 use crate::package::context::{Context, page_of};
@@ -18,25 +18,19 @@ use fc_spec::model::{
 
 /// The header.
 pub fn header(context: &Context<'_>) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    includes.standard("cstdint");
-    includes.standard("string_view");
-    includes.own("fc_runtime/call.hpp");
-    includes.own("fc_runtime/protocol.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+    let includes = Includes::new(
+        context,
+        &["cstdint", "string_view"],
+        &[],
+        &["call", "protocol"],
+    );
+    header_file(context, &includes, |out| {
         out.docs(&about::protocol(context.model()));
         out.line("[[nodiscard]] const fc_runtime::Protocol& protocol();");
         out.blank();
         results(out, context);
         streams(out, context);
-    });
-    out.finish()
+    })
 }
 
 fn results(out: &mut Source, context: &Context<'_>) {
@@ -80,17 +74,10 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/protocol.hpp\""));
-    out.blank();
-    out.line("#include <limits>");
-    out.blank();
-    out.line(format!("#include \"{space}/messages.hpp\""));
-    out.blank();
-    out.line("// Tables, a line for each entry.");
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let before = format!(
+        "#include <limits>\n\n#include \"{space}/messages.hpp\"\n\n// Tables, a line for each entry.\n"
+    );
+    source_file(context, "protocol", &before, |out| {
         out.line("namespace {");
         out.blank();
         out.line("using namespace std::string_view_literals;");
@@ -142,8 +129,7 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
                 out.line("return {static_cast<std::int64_t>(code), std::string(text(code))};");
             },
         );
-    });
-    out.finish()
+    })
 }
 
 fn header_layout(out: &mut Source, context: &Context<'_>, frame: &FrameFacts<'_, '_>) {
@@ -270,8 +256,8 @@ fn operation_info(out: &mut Source, context: &Context<'_>, operation: &Operation
         Some(_) => format!("std::uint16_t{{{}}}", operation.code.spelling),
         None => "std::nullopt".to_owned(),
     };
-    let effect = operation.effect().map_or("unknown", Effect::name);
-    let effect = Case::Pascal.apply(effect);
+    let effect = operation.effect().unwrap_or(Effect::Unknown);
+    let effect = Case::Pascal.apply(effect.name());
     let ack = match &operation.exchange {
         Exchange::Report { ack, .. } => {
             format!(

@@ -2,8 +2,7 @@
 //! the spec's examples, and typed pushing of reports.
 
 use super::groups::{NamedGroup, with_commands, with_reports};
-use super::layout::Includes;
-use super::types::namespace;
+use super::layout::{Includes, header_file, source_file};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -13,20 +12,13 @@ use crate::package::source::Source;
 
 /// The header.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    includes.standard("memory");
-    includes.standard("string_view");
-    includes.own(format!("{space}/messages.hpp"));
-    includes.own(format!("{space}/protocol.hpp"));
-    includes.own("fc_runtime/server.hpp");
-    includes.own("fc_runtime/stacked.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+    let includes = Includes::new(
+        context,
+        &["memory", "string_view"],
+        &["messages", "protocol"],
+        &["server", "stacked"],
+    );
+    header_file(context, &includes, |out| {
         robot(out, context, groups);
         out.blank();
         partial(out, groups);
@@ -42,8 +34,7 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         );
         out.blank();
         reporter(out, groups);
-    });
-    out.finish()
+    })
 }
 
 fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) {
@@ -308,23 +299,18 @@ pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
-    let space = &namespace(context);
     let ranges = pass_through(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/robot.hpp\""));
-    out.blank();
-    out.line("#include <utility>");
-    out.blank();
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let before = "#include <utility>\n\n";
+    source_file(context, "robot", before, |out| {
         let unknown = UNKNOWN.to_owned();
         for name in ranges.iter().map(|(name, _)| name).chain([&unknown]) {
             out.blank();
             let open = format!(
                 "fc_runtime::RawReplied Robot::{name}(const fc_runtime::Context& /*context*/, std::string_view /*text*/) {{"
             );
-            out.enclose(&open, "}", |out| out.line("return fc_runtime::unknown_command(protocol());"));
+            out.enclose(&open, "}", |out| {
+                out.line("return fc_runtime::unknown_command(protocol());");
+            });
         }
         out.blank();
         out.line(
@@ -365,6 +351,5 @@ ExampleRobot::~ExampleRobot() = default;",
                 out.line(serve_raw(UNKNOWN));
             });
         });
-    });
-    out.finish()
+    })
 }

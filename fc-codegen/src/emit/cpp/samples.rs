@@ -11,7 +11,6 @@ use crate::package::language::CPP as LANGUAGE;
 use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
-use crate::sample::Samples;
 use fc_spec::model::Operation;
 
 /// C++ as it stands on a page.
@@ -213,9 +212,9 @@ fn either(out: &mut Source, result: &str, has: &str, more: &str, error: &str) {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>) -> String {
+pub fn samples_file(context: &Context<'_>) -> String {
     let writer = Writer::new(context);
-    let run = &SampleRun::build(context, samples);
+    let run = &SampleRun::build(context);
     let space = &namespace(context);
     let mut out = Source::cpp();
     out.line("// The samples of the documentation. They call every command and receive every report and stream.");

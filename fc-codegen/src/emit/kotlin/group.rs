@@ -10,7 +10,6 @@ use crate::package::docs::Docs;
 use crate::package::group::Group;
 use crate::package::language::{KOTLIN, Role};
 use crate::package::source::Source;
-use crate::sample::Samples;
 
 /// The part of a class that a group has: `UpperBodyClient` of `Client`.
 pub fn part_name(group: &Group<'_, '_>, whole: &str) -> String {
@@ -36,13 +35,13 @@ pub fn part_of(
 }
 
 /// The file of a group, or of the types that several share.
-pub fn group_file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> Source {
+pub fn group_file(context: &Context<'_>, group: &Group<'_, '_>) -> Source {
     let mut out = Source::new(&STYLE);
     operations::part(&mut out, context, group);
     client::part(&mut out, context, group);
     robot::part(&mut out, context, group);
     streams::part(&mut out, context, group);
-    messages::types(&mut out, context, samples, group.types);
+    messages::types(&mut out, context, group.types);
     out
 }
 

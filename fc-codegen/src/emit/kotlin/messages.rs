@@ -12,15 +12,15 @@ use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::FieldMarks;
 use crate::package::process::{has_states, next_values};
 use crate::package::source::Source;
-use crate::sample::{Profile, Samples};
+use crate::sample::Profile;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
 /// Message types.
-pub fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, items: &[Item<'_>]) {
+pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
     for item in items {
         out.blank();
         match &item.shape {
-            Shape::Record(_, fields) => message(out, context, samples, item, fields),
+            Shape::Record(_, fields) => message(out, context, item, fields),
             Shape::Enum(shape, values) => enumeration(out, context, item, shape, values),
             Shape::Choice(_, variants) => choice(out, context, item, variants),
         }
@@ -40,7 +40,6 @@ fn constant(context: &Context<'_>, field: &Field) -> String {
 fn message(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
@@ -50,7 +49,7 @@ fn message(
     supers.extend(choices_of(context, item));
     let head = format!("public class {name} private constructor(content: Content)");
     out.block(heading(out, &head, &supers), |out| {
-        let expressions = Expressions::new(&context.package, samples);
+        let expressions = Expressions::new(&context.package);
         for field in fields {
             let condition = sentence(&expressions, field, fields, spelled);
             out.documented(&facts::field_docs(&STYLE, field, condition));
@@ -80,7 +79,7 @@ fn message(
         out.blank();
         builder(out, context, name, fields);
         out.blank();
-        companion(out, context, samples, item, fields);
+        companion(out, context, item, fields);
     });
 }
 
@@ -173,13 +172,15 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
 fn companion(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
     let name = &item.ty.name;
     let mut arguments = vec![literal(name)];
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let example = context
+        .samples()
+        .named(item.ty.of, Profile::Example)
+        .to_string();
     if example != "{}" {
         arguments.push(literal(&example));
     }

@@ -20,7 +20,6 @@ use crate::package::language::{KOTLIN, Role};
 use crate::package::name::free;
 use crate::package::source::Source;
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
 use crate::target::Targets;
 use fc_spec::model::Model;
 use std::collections::HashSet;
@@ -30,7 +29,6 @@ use text::STYLE;
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &KOTLIN, &STYLE, Some(targets));
-    let samples = &Samples::new(model);
     let id = &model.protocol.id;
     // A keyword is no name of a package either.
     let package = KOTLIN
@@ -42,7 +40,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("Operations", operations::operations_file(&groups)),
         ("Client", client::client_file(context, &groups)),
         ("Robot", robot::robot_file(context, &groups)),
-        ("Tables", tables::tables_file(context, samples)),
+        ("Tables", tables::tables_file(context)),
     ];
     let own = groups.iter().map(|group| {
         let names = wholes.iter().map(|it| it.0).chain([SHARED]);
@@ -54,7 +52,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
             }
             None => SHARED.to_owned(),
         };
-        (name, group::group_file(context, samples, group))
+        (name, group::group_file(context, group))
     });
     let own: Vec<_> = own.collect();
     let wholes = wholes.into_iter();
@@ -71,7 +69,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let files = files.map(|(name, body)| whole(&format!("{folder}/{name}.kt"), &body, &[]));
     let samples = whole(
         samples::SHOWN.file,
-        &samples::samples_file(context, samples).finish(),
+        &samples::samples_file(context).finish(),
         samples::IMPORTED,
     );
     files.chain([samples]).collect()

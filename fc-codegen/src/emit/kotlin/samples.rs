@@ -13,7 +13,6 @@ use crate::package::name::free;
 use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
-use crate::sample::Samples;
 use fc_spec::model::Type;
 
 /// Kotlin as it stands on a page.
@@ -148,8 +147,8 @@ fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
 
 /// All samples, and a function that runs them.
 #[must_use]
-pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
-    let run = &SampleRun::build(context, samples);
+pub fn samples_file(context: &Context<'_>) -> Source {
+    let run = &SampleRun::build(context);
     let mut out = Source::new(&STYLE);
     robot(&mut out, context, run);
     for step in run.steps() {

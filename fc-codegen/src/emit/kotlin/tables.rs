@@ -7,13 +7,12 @@ use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
-use crate::sample::Samples;
 use fc_spec::model::Type;
 
 /// The file.
-pub fn tables_file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
+pub fn tables_file(context: &Context<'_>) -> Source {
     let mut out = Source::new(&STYLE);
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     out.docs(&Docs::said(&about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {

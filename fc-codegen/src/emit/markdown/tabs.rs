@@ -5,7 +5,6 @@ use crate::package::context::Context;
 use crate::package::samples::{self, Sample, Shown};
 use crate::package::source::Source;
 use crate::product::Product;
-use crate::sample::Samples;
 use crate::target::{Targets, below, part};
 use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
@@ -65,7 +64,6 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         };
         let language = (shown.language)(targets);
         let context = Context::new(&model, language, shown.style, None);
-        let samples = Samples::new(&model);
         let tab = |sample: Sample<'_, '_>| {
             let mut out = Source::new(context.style);
             (shown.write)(&mut out, &context, &sample);
@@ -75,8 +73,8 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
             }
         };
         let both = model.operations.par_iter().map(|operation| {
-            let app = samples::app(&context, &samples, operation);
-            let robot = samples::robot(&context, &samples, operation);
+            let app = samples::app(&context, operation);
+            let robot = samples::robot(&context, operation);
             (operation.name.as_str(), [app, robot].map(|it| it.map(tab)))
         });
         for (name, [app, robot]) in both.collect::<Vec<_>>() {

@@ -11,12 +11,10 @@ use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::group::Group;
 use crate::package::source::Source;
-use crate::sample::Samples;
 
 /// The file of a group, and of those that cannot be parted from it.
 pub fn group_file(
     context: &Context<'_>,
-    samples: &Samples<'_>,
     plan: &ModulePlan<'_, '_>,
     home: &Group<'_, '_>,
 ) -> String {
@@ -24,9 +22,9 @@ pub fn group_file(
     let items: Vec<_> = groups.iter().flat_map(|group| group.types).collect();
     let mut used = Used::default();
     let mut body = Source::new(&PYTHON);
-    messages::types(&mut body, &mut used, context, samples, &items);
+    messages::types(&mut body, &mut used, context, &items);
     if groups.iter().any(|group| !group.operations.is_empty()) {
-        operations::values(&mut body, context, samples, &groups);
+        operations::values(&mut body, context, &groups);
     }
     for group in &groups {
         client::any_report(&mut body, group);

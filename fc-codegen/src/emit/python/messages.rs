@@ -14,7 +14,7 @@ use crate::package::language::Case;
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::name::free;
 use crate::package::source::Source;
-use crate::sample::{Profile, Samples};
+use crate::sample::Profile;
 use fc_spec::model::{
     Direction, EnumRepr, Field, Operation, Scalar, Type, TypeShape, Value, Variant,
 };
@@ -24,7 +24,6 @@ pub fn types<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     items: &[&'m Item<'_>],
 ) {
     // Annotations of fields are read late, but not the constants of classes, which may be values of enums.
@@ -40,7 +39,7 @@ pub fn types<'m>(
     for item in items {
         if let Shape::Record(_, fields) = &item.shape {
             out.gap();
-            structure(out, used, context, samples, item, fields);
+            structure(out, used, context, item, fields);
             if let Some(command) = asks(item) {
                 errors(out, context, command);
             }
@@ -73,19 +72,21 @@ fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
     fields: &'m [Spelled<'_, Field>],
 ) {
     used.library("dataclasses", "dataclass");
     used.library("dataclasses", "field");
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     out.line("@dataclass(slots=True, kw_only=True)");
     let head = format!("class {}(rt.Message)", item.ty.name);
     out.suite(&head, |out| {
         out.docstring(&facts::item_docs(context, item));
         out.blank();
-        let example = samples.named(item.ty.of, Profile::Example).to_string();
+        let example = context
+            .samples()
+            .named(item.ty.of, Profile::Example)
+            .to_string();
         if example != "{}" {
             used.library("typing", "ClassVar");
             assign_text(out, "__example__: ClassVar[str]", &example);
@@ -208,7 +209,7 @@ pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
 fn key(
     field: &Spelled<'_, Field>,
     fields: &[Spelled<'_, Field>],
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
 ) -> Code {
     let marks = FieldMarks::build(field.of, fields);
     let values = |ty: &Type, values: &[Scalar]| {
@@ -260,7 +261,7 @@ struct Default {
 /// The defaults of a message's fields.
 fn defaults(
     context: &Context<'_>,
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     fields: &[Spelled<'_, Field>],
 ) -> Vec<Default> {
     let defaults = fields.iter().filter_map(|field| {

@@ -20,7 +20,6 @@ mod stubs;
 use crate::package::context::Context;
 use crate::package::language::{PYTHON, Role};
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
 use crate::target::Targets;
 use fc_spec::model::Model;
 use modules::ModulePlan;
@@ -29,7 +28,6 @@ use modules::ModulePlan;
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.python(), &source::PYTHON, Some(targets));
-    let samples = &Samples::new(model);
     let plan = &ModulePlan::build(context);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();
@@ -52,18 +50,18 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         (
             samples::SHOWN.file.to_owned(),
             all,
-            samples::samples_file(context, samples, &package),
+            samples::samples_file(context, &package),
         ),
     ];
     if !context.package.tables.is_empty() {
-        files.push((source("tables.py"), all, root::tables(context, samples)));
+        files.push((source("tables.py"), all, root::tables(context)));
     }
     if ids {
         let path = format!("groups/{}.py", plan.ids());
         files.push((source(&path), all, root::ids(context)));
     }
     files.extend(plan.files().map(|home| {
-        let text = group::group_file(context, samples, plan, home);
+        let text = group::group_file(context, plan, home);
         let path = format!("groups/{}.py", home.name);
         (source(&path), home.file(), text)
     }));

@@ -11,26 +11,20 @@ use crate::package::language::Case;
 use crate::package::name::free;
 use crate::package::process::{set_off, state};
 use crate::package::source::Source;
-use crate::sample::Samples;
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
     StructRef, Type, Value,
 };
 
 /// The operations of these groups, as values. Reports come first, for commands name them.
-pub fn values(
-    out: &mut Source,
-    context: &Context<'_>,
-    samples: &Samples<'_>,
-    groups: &[&NamedGroup<'_, '_>],
-) {
+pub fn values(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_, '_>]) {
     out.gap();
     for kind in KINDS {
         let operations = groups.iter().flat_map(|group| &group.operations);
         for operation in operations.filter(|it| it.kind() == kind) {
             let before = format!("{}: Final = ", constant(context, operation));
             out.blank();
-            value(context, samples, operation).write(out, &before, "");
+            value(context, operation).write(out, &before, "");
             out.docstring(&Docs::titled(&operation.title));
         }
     }
@@ -77,7 +71,7 @@ pub fn ack(ack: Ack) -> Code {
     Code::call("rt.AckPolicy", vec![timeout.into(), retries.into()])
 }
 
-fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) -> Code {
+fn value(context: &Context<'_>, operation: &Operation) -> Code {
     let code = match operation.code.value {
         Some(_) => operation.code.spelling.clone(),
         None => "None".to_owned(),
@@ -99,7 +93,7 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
             let effect = Case::Screaming.apply(effect.name());
             set("effect", format!("rt.Effect.{effect}").into());
             if let Some(accepted) = accepted {
-                set("preconditions", preconditions(context, samples, accepted));
+                set("preconditions", preconditions(context, accepted));
             }
             if let Some(error) = context.package.error_type(operation) {
                 set("errors", error.into());
@@ -168,13 +162,13 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
     Code::call(word, items)
 }
 
-fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accepted) -> Code {
+fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Code {
     let mut items = Vec::new();
     match &accepted.states {
         None => {}
         Some(AcceptedIn::Any) => items.push(Code::named("any_state", "True")),
         Some(AcceptedIn::States(sets)) => {
-            let sets = sets.iter().map(|set| states(context, samples, set));
+            let sets = sets.iter().map(|set| states(context, set));
             items.push(Code::named("states", Code::tuple(sets.collect())));
         }
     }
@@ -185,8 +179,8 @@ fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accept
     Code::call("rt.Preconditions", items)
 }
 
-fn states(context: &Context<'_>, samples: &Samples<'_>, set: &StateSet) -> Code {
-    let expressions = Expressions::new(&context.package, samples);
+fn states(context: &Context<'_>, set: &StateSet) -> Code {
+    let expressions = Expressions::new(&context.package);
     let ty = Type::Named(set.ty.clone());
     let values = set.values.iter().map(|wire| {
         let value = expressions.value(&ty, &Value::from(wire));

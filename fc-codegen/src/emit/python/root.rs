@@ -10,7 +10,6 @@ use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
-use crate::sample::Samples;
 use fc_spec::model::Type;
 
 /// `__all__` where it is made of others, for those who run the package.
@@ -183,10 +182,10 @@ if __name__ == \"__main__\":
 }
 
 /// `tables.py`.
-pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
+pub fn tables(context: &Context<'_>) -> String {
     let mut constants = Constants::default();
     let mut body = Source::new(&PYTHON);
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for table in &context.package.tables {
         let row = context.name_of(&table.row);
         constants.types.insert(row.to_owned());

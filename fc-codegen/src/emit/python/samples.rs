@@ -8,7 +8,6 @@ use crate::package::expr::Record;
 use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
-use crate::sample::Samples;
 use crate::target::Targets;
 
 /// Python as it stands on a page.
@@ -83,13 +82,13 @@ fn write(out: &mut Source, names: &mut Constants, sample: &Sample<'_, '_>) {
 fn assign_content(out: &mut Source, names: &mut Constants, value: Option<&Record<'_>>) {
     match value {
         Some(value) => names.record(value).write(out, "content = ", ""),
-        None => out.line(format!("content = b{:?}", BYTES)),
+        None => out.line(format!("content = b{BYTES:?}")),
     }
 }
 
 /// The test that type-checks and runs every sample.
-pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>, package: &str) -> String {
-    let run = &SampleRun::build(context, samples);
+pub fn samples_file(context: &Context<'_>, package: &str) -> String {
+    let run = &SampleRun::build(context);
     let mut names = Constants::default();
     names
         .types

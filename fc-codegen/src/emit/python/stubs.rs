@@ -25,16 +25,19 @@ fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
     out
 }
 
-/// A class with the parts of all groups.
+/// The bases of a class: a part of each group, then its `own`.
+fn bases_of(plan: &ModulePlan<'_, '_>, part: GroupPart, own: &[&str]) -> Vec<Code> {
+    let parts = plan.parts(part).into_iter();
+    parts.chain(own.iter().copied()).map(Code::from).collect()
+}
+
 fn class(
     out: &mut Source,
     name: &str,
-    parts: &[&str],
-    own: &[&str],
+    bases: Vec<Code>,
     about: &[&'static str],
     body: impl FnOnce(&mut Source),
 ) {
-    let bases = parts.iter().chain(own).map(|it| Code::from(*it)).collect();
     out.gap();
     Code::Call(format!("class {name}("), bases, ")").write(out, "", ":");
     out.enclose("", "", |out| {
@@ -80,31 +83,17 @@ pub fn client(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
         "一个机器人，从 app 一侧看：每条指令一个方法。",
         "A robot as seen from the app: one method per command.",
     ];
-    let calls = plan.parts(GroupPart::Calls);
-    class(
-        &mut out,
-        "Client",
-        &calls,
-        &["rt.Client[AnyReport]"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = bases_of(plan, GroupPart::Calls, &["rt.Client[AnyReport]"]);
+    class(&mut out, "Client", bases, &about, |out| {
+        speaks(out, context);
+    });
     if has_streams {
         let about = [
             "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
             "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
         ];
-        let streams = plan.parts(GroupPart::Streams);
-        class(
-            &mut out,
-            "Streams",
-            &streams,
-            &["rt.Streams"],
-            &about,
-            |_| (),
-        );
+        let bases = bases_of(plan, GroupPart::Streams, &["rt.Streams"]);
+        class(&mut out, "Streams", bases, &about, |_| ());
     }
     out.finish()
 }
@@ -125,17 +114,10 @@ pub fn sync(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
         "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
         "A robot as seen from the app: one method per command, which waits for the response.",
     ];
-    let calls = plan.parts(GroupPart::SyncCalls);
-    class(
-        &mut out,
-        "Client",
-        &calls,
-        &["rt.SyncClient[AnyReport]"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = bases_of(plan, GroupPart::SyncCalls, &["rt.SyncClient[AnyReport]"]);
+    class(&mut out, "Client", bases, &about, |out| {
+        speaks(out, context);
+    });
     out.finish()
 }
 
@@ -163,60 +145,33 @@ pub fn robot(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
         "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
     ];
-    let handlers = plan.parts(GroupPart::PartialHandlers);
-    class(
-        &mut out,
-        "PartialRobot",
-        &handlers,
-        &["Robot"],
-        &about,
-        |_| (),
-    );
+    let bases = bases_of(plan, GroupPart::PartialHandlers, &["Robot"]);
+    class(&mut out, "PartialRobot", bases, &about, |_| ());
     let about = [
         "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
         "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
         "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion=True` 时假装成功。",
         "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion=True`, it pretends success.",
     ];
-    class(
-        &mut out,
-        "ExampleRobot",
-        &[],
-        &["rt.ExampleRobot"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = vec!["rt.ExampleRobot".into()];
+    class(&mut out, "ExampleRobot", bases, &about, |out| {
+        speaks(out, context);
+    });
     let about = [
         "发送上报：每种上报一个方法。",
         "Pushes reports: one method per report.",
         "`to` 是某个连接的编号；不给出时，向全部连接上报。",
         "`to` is the number of a connection. Without it, a report goes to all of them.",
     ];
-    let reporters = plan.parts(GroupPart::Reporter);
-    class(
-        &mut out,
-        "Reporter",
-        &reporters,
-        &["rt.Reporter"],
-        &about,
-        |_| (),
-    );
+    let bases = bases_of(plan, GroupPart::Reporter, &["rt.Reporter"]);
+    class(&mut out, "Reporter", bases, &about, |_| ());
     if !context.package.streams.is_empty() {
         let about = [
             "机器人发送的数据流：每个数据流一个方法。",
             "Sends the streams of the robot: one method per stream.",
         ];
-        let streamers = plan.parts(GroupPart::Streamer);
-        class(
-            &mut out,
-            "Streamer",
-            &streamers,
-            &["rt.Streamer"],
-            &about,
-            |_| (),
-        );
+        let bases = bases_of(plan, GroupPart::Streamer, &["rt.Streamer"]);
+        class(&mut out, "Streamer", bases, &about, |_| ());
     }
     out.finish()
 }
@@ -228,26 +183,19 @@ fn complete(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
         "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后，改为继承 `Robot`。",
         "A robot with some of the commands inherits from `PartialRobot`. The methods are the same, and each is optional. Once the robot has all commands, inherit from `Robot`.",
     ];
-    let handlers = plan.parts(GroupPart::Handlers);
-    class(
-        out,
-        "Robot",
-        &handlers,
-        &["rt.Robot", "ABC"],
-        &about,
-        |out| {
-            speaks(out, context);
-            for (name, range) in pass_through(context) {
-                let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
-                let parameters = parameters.map(Code::from).to_vec();
-                let open = format!("async def {name}(");
-                out.blank();
-                out.line("@rt.left_out");
-                method(out, &open, parameters, "rt.Json", |out| {
-                    out.docstring(&about::range(range));
-                    out.line("raise NotImplementedError");
-                });
-            }
-        },
-    );
+    let bases = bases_of(plan, GroupPart::Handlers, &["rt.Robot", "ABC"]);
+    class(out, "Robot", bases, &about, |out| {
+        speaks(out, context);
+        for (name, range) in pass_through(context) {
+            let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
+            let parameters = parameters.map(Code::from).to_vec();
+            let open = format!("async def {name}(");
+            out.blank();
+            out.line("@rt.left_out");
+            method(out, &open, parameters, "rt.Json", |out| {
+                out.docstring(&about::range(range));
+                out.line("raise NotImplementedError");
+            });
+        }
+    });
 }

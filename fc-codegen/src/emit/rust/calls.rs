@@ -8,7 +8,7 @@ use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::{Call, Module};
 use crate::package::process;
-use fc_spec::model::{Direction, Kind};
+use fc_spec::model::Kind;
 
 /// The methods of the messages of a module. Whatever they take from elsewhere stands with its path, since each stub has
 /// a feature of its own.
@@ -32,12 +32,9 @@ pub fn methods(out: &mut Source, context: &Context<'_>, module: &Module<'_>) {
 
 /// Those of a kind whose requests the module holds.
 fn calls<'p>(context: &'p Context<'_>, module: &'p Module<'_>, kind: Kind) -> Vec<Call<'p>> {
-    let requests = module.items.iter().filter_map(|item| {
-        let (operation, direction) = item.body_of()?;
-        (operation.kind() == kind && direction == Direction::Request).then_some(operation)
-    });
-    let calls = requests.filter_map(|operation| context.package.call(operation));
-    calls.collect()
+    let items = module.items.iter();
+    let calls = items.filter_map(|item| context.package.opened_by(item));
+    calls.filter(|call| call.operation.kind() == kind).collect()
 }
 
 /// An `impl` of a stub, if it has any method here.

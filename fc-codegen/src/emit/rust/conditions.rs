@@ -7,7 +7,7 @@ use crate::package::expr::{Expr, Expressions};
 use fc_spec::model::{Type, Value};
 
 /// The attribute of a field that may be absent: `when(mode = 2 | 3)`.
-pub fn attribute(expressions: &Expressions<'_, '_, '_>, condition: &Asked<'_, '_>) -> String {
+pub fn attribute(expressions: &Expressions<'_, '_>, condition: &Asked<'_, '_>) -> String {
     let asked = condition.each(" | ", |other, wire| match &other.ty {
         Type::Named(_) => enum_wire(wire),
         ty => constant(&expressions.value(ty, &Value::from(wire))),

@@ -13,19 +13,19 @@ use crate::package::conditions::sentence;
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
-use crate::package::items::{Item, Module, Shape, Spelled};
+use crate::package::items::{Call, Item, Module, Shape, Spelled};
 use crate::package::marks::{Bound, FieldMarks};
-use crate::sample::{Profile, Samples};
+use crate::sample::Profile;
 use fc_spec::model::{Direction, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
 /// A module of message types.
-pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
+pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
     let mut body = Source::rust();
     let mut used = Used::default();
     for item in &module.items {
         body.blank();
-        declaration(&mut body, &mut used, context, samples, item);
+        declaration(&mut body, &mut used, context, item);
     }
     calls::methods(&mut body, context, module);
 
@@ -49,9 +49,9 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
 }
 
 /// One type as its module declares it.
-pub fn item(context: &Context<'_>, samples: &Samples<'_>, item: &Item<'_>) -> String {
+pub fn item(context: &Context<'_>, item: &Item<'_>) -> String {
     let mut out = Source::rust();
-    declaration(&mut out, &mut Used::default(), context, samples, item);
+    declaration(&mut out, &mut Used::default(), context, item);
     out.finish()
 }
 
@@ -59,12 +59,11 @@ fn declaration<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
 ) {
     match &item.shape {
         Shape::Record(_, fields) => {
-            structure(out, used, context, samples, item, fields);
+            structure(out, used, context, item, fields);
             if let Some((command, Direction::Request)) = item.body_of() {
                 errors(out, used, context, command);
             }
@@ -106,11 +105,10 @@ fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
     fields: &'m [Spelled<'_, Field>],
 ) {
-    let role = Role::of(item);
+    let call = context.package.opened_by(item);
     out.docs(&facts::item_docs(context, item));
     let sensitive = fields.iter().any(|field| field.sensitive);
     let defaults = fields
@@ -126,24 +124,23 @@ fn structure<'m>(
     if fields.iter().any(|field| field.details().default.is_some()) {
         derives.push("Defaults");
     }
-    derives.extend(role.derive());
+    derives.extend(call.map(|call| match call.operation.kind() {
+        Kind::Report => "Report",
+        Kind::Command | Kind::Stream => "Command",
+    }));
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
     used.runtime.insert("Extra");
-    if let (Some(_), Role::Body { operation, .. }) = (role.derive(), &role) {
-        used.types.extend(process::types(context, operation));
-    }
     out.list("#[derive(", &derives, ")]");
-    role.attribute(out, context);
-    if let Role::Body {
-        operation,
-        direction: Direction::Request,
-    } = role
-        && role.derive().is_some()
-    {
+    if let Some(Call { operation, .. }) = call {
+        used.types.extend(process::types(context, operation));
+        operation_attribute(out, context, operation);
         accepted_in(out, used, context, operation);
     }
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let example = context
+        .samples()
+        .named(item.ty.of, Profile::Example)
+        .to_string();
     if example != "{}" {
         out.attribute(
             "#[fc(",
@@ -152,7 +149,7 @@ fn structure<'m>(
         );
     }
 
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -206,74 +203,33 @@ const OWN_DERIVES: &[&str] = &[
     "Report",
 ];
 
-/// What a struct is to an operation.
-enum Role<'m> {
-    /// A type of its own, or an object inside a body.
-    Part,
-    /// The whole body of one side.
-    Body {
-        operation: &'m Operation,
-        direction: Direction,
-    },
-}
-
-impl<'m> Role<'m> {
-    fn of(item: &Item<'m>) -> Self {
-        match item.body_of() {
-            Some((operation, direction)) => Self::Body {
-                operation,
-                direction,
-            },
-            None => Self::Part,
+/// The attribute that ties a request to its code.
+fn operation_attribute(out: &mut Source, context: &Context<'_>, operation: &Operation) {
+    let mut items = vec![
+        format!("code = {}", operation.code.spelling),
+        format!("name = {}", literal(&operation.name)),
+    ];
+    match &operation.exchange {
+        Exchange::Command {
+            effect, messages, ..
+        } => {
+            items.push(format!("effect = \"{}\"", effect.name()));
+            let response = context.name_of(&messages.response.ty);
+            items.push(format!("response = {response}"));
+            let error = context.package.error_type(operation);
+            items.extend(error.map(|error| format!("error = {error}")));
+            items.extend(process::sets_off(context, operation));
         }
-    }
-
-    /// The derive that ties a request to its code.
-    fn derive(&self) -> Option<&'static str> {
-        match self {
-            Self::Body {
-                operation,
-                direction: Direction::Request,
-            } if operation.code.value.is_some() => match operation.kind() {
-                Kind::Command => Some("Command"),
-                Kind::Report => Some("Report"),
-                Kind::Stream => None,
-            },
-            _ => None,
+        Exchange::Report { ack, .. } => {
+            items.push(format!(
+                "ack(timeout_ms = {}, retries = {})",
+                ack.timeout_ms, ack.retries
+            ));
+            items.extend(process::stage(context, operation));
         }
+        Exchange::Stream(_) => {}
     }
-
-    /// The attribute that goes with the derive.
-    fn attribute(&self, out: &mut Source, context: &Context<'_>) {
-        let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else {
-            return;
-        };
-        let mut items = vec![
-            format!("code = {}", operation.code.spelling),
-            format!("name = {}", literal(&operation.name)),
-        ];
-        match &operation.exchange {
-            Exchange::Command {
-                effect, messages, ..
-            } => {
-                items.push(format!("effect = \"{}\"", effect.name()));
-                let response = context.name_of(&messages.response.ty);
-                items.push(format!("response = {response}"));
-                let error = context.package.error_type(operation);
-                items.extend(error.map(|error| format!("error = {error}")));
-                items.extend(process::sets_off(context, operation));
-            }
-            Exchange::Report { ack, .. } => {
-                items.push(format!(
-                    "ack(timeout_ms = {}, retries = {})",
-                    ack.timeout_ms, ack.retries
-                ));
-                items.extend(process::stage(context, operation));
-            }
-            Exchange::Stream(_) => {}
-        }
-        out.attribute("#[fc(", &items, ")]");
-    }
+    out.attribute("#[fc(", &items, ")]");
 }
 
 /// In which states a command is accepted, as its derive is told.

@@ -25,7 +25,6 @@ mod streams;
 mod tables;
 
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
 use crate::target::Targets;
 use context::Context;
 use fc_spec::model::Model;
@@ -35,10 +34,9 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.rust(), &source::RUST, Some(targets));
-    let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
-            samples::samples_file(context, samples, targets.krate())
+            samples::samples_file(context, targets.krate())
         }),
         file("src/blocking.rs", || blocking::blocking_file(context)),
         file("src/client.rs", || client::client_file(context)),
@@ -64,7 +62,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         File {
             path: format!("src/messages/{}.rs", module.id),
             from,
-            text: Box::new(move || messages::module(context, samples, module)),
+            text: Box::new(move || messages::module(context, module)),
         }
     }));
     files
@@ -77,12 +75,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 #[must_use]
 pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
     let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
-    let samples = Samples::new(model);
     let items = context.package.items();
     let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
-    let items: Vec<_> = items
-        .map(|item| messages::item(&context, &samples, item))
-        .collect();
+    let items: Vec<_> = items.map(|item| messages::item(&context, item)).collect();
     items.join("\n")
 }
 

@@ -115,8 +115,8 @@ fn constants(out: &mut Source, wire: &WireFacts<'_, '_>) {
         "&'static [u8]",
         &bytes(&frame.reserved_kinds),
     );
-    constant("plain", "u8", &frame.plain.to_string());
-    constant("gzip", "Option<u8>", &format!("{:?}", frame.gzip));
+    constant("PLAIN", "u8", &frame.plain.to_string());
+    constant("GZIP", "Option<u8>", &format!("{:?}", frame.gzip));
     let zero = frame.takes_zero_plain_length;
     constant("zero_plain_length", "bool", &zero.to_string());
 }

@@ -8,7 +8,6 @@ use super::source::{RUST, Source};
 use crate::package::expr::Record;
 use crate::package::name::free;
 use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
-use crate::sample::Samples;
 use crate::target::Targets;
 
 /// How the pages show the package.
@@ -72,13 +71,13 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
             });
         }
         Sample::Send(stream, value) => {
-            let (name, content) = (&stream.of.name, assign_content(out, value.as_ref()));
-            out.line(format!("streams.send_{name}(1, {content}).await?;"));
+            let (name, carried) = (&stream.of.name, assign_content(out, value.as_ref()));
+            out.line(format!("streams.send_{name}(1, {carried}).await?;"));
         }
         Sample::Stream(stream, value) => {
-            let (name, content) = (&stream.of.name, assign_content(out, value.as_ref()));
+            let (name, carried) = (&stream.of.name, assign_content(out, value.as_ref()));
             out.line(format!(
-                "let taken = streamer.send_{name}({audience}::All, 1, {content}).await?;"
+                "let taken = streamer.send_{name}({audience}::All, 1, {carried}).await?;"
             ));
             out.line("println!(\"{taken} data connections took it\");");
         }
@@ -103,7 +102,7 @@ fn assign(out: &mut Source, name: &str, value: &Record<'_>) {
 /// Writes what a stream carries, if more than a word, and returns the word for it.
 fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
     let Some(value) = value else {
-        return format!("b{:?}", BYTES);
+        return format!("b{BYTES:?}");
     };
     assign(out, "content", value);
     "&content".to_owned()
@@ -111,8 +110,8 @@ fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn samples_file(context: &Context<'_>, samples: &Samples<'_>, krate: &str) -> String {
-    let run = &SampleRun::build(context, samples);
+pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
+    let run = &SampleRun::build(context);
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::rust();

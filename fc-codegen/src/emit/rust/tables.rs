@@ -7,7 +7,6 @@ use crate::package::about;
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions, Record};
 use crate::package::items::Spelled;
-use crate::sample::Samples;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
 
@@ -85,8 +84,7 @@ fn table_function(
     let row = &package.item(&table.row).ty.name;
     used.types.insert(row.to_string());
     out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
-        let samples = Samples::new(package.model);
-        let expressions = Expressions::new(package, &samples);
+        let expressions = Expressions::new(package);
         let rows = table.rows.iter();
         let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
         let rows = Expr::List(rows.collect());

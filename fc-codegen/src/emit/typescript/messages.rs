@@ -24,7 +24,7 @@ pub const ABOUT: [&str; 2] = [
 ];
 
 /// `messages.ts` of a group: its message types, and what it adds to the stubs.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = source::file();
     let mut docs = Docs::default();
     about::group(&mut docs, group.of);
@@ -56,7 +56,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>)
         out.blank();
         match &item.shape {
             Shape::Record(_, fields) => {
-                structure(&mut out, context, samples, item, fields);
+                structure(&mut out, context, item, fields);
                 if let Some((command, Direction::Request)) = item.body_of() {
                     errors(&mut out, context, command);
                 }
@@ -81,7 +81,6 @@ pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
 fn structure(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
@@ -98,7 +97,7 @@ fn structure(
         None => facts::type_docs(context, item),
     };
     out.docs(&docs);
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     out.block(format!("export interface {}", item.ty.name), |out| {
         for field in fields {
             let condition = sentence(&expressions, field, fields, spelled);

@@ -91,8 +91,8 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("operations.ts", protocol::file(context, groups)),
         ("protocol.ts", data::file(context, groups)),
         ("robot.ts", robot::file(context, groups)),
-        (samples::SHOWN.file, samples::file(context, samples)),
-        ("tables.ts", tables::file(context, samples)),
+        (samples::SHOWN.file, samples::file(context)),
+        ("tables.ts", tables::file(context)),
         ("wire.ts", wire::file(context)),
     ] {
         files.push((path.to_owned(), "the spec", text));

@@ -203,7 +203,7 @@ fn example(
         return Layout::word("() => ({})");
     };
     let value = samples.body(operation, direction, Profile::Example);
-    let record = Expressions::new(&context.package, samples).record(&body.ty, &value);
+    let record = Expressions::new(&context.package).record(&body.ty, &value);
     let value = constant(context, &Expr::Record(record), false);
     Layout::Around("() => (", Box::new(value), ")")
 }

@@ -9,7 +9,6 @@ use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
 use crate::package::name::free;
 use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::package::style::Style;
-use crate::sample::Samples;
 use std::collections::BTreeSet;
 
 /// TypeScript as it stands on a page.
@@ -107,8 +106,7 @@ impl<'p, 'm> Names<'p, 'm> {
         match value {
             Some(value) => self.assign(out, "content", value),
             None => out.line(format!(
-                "const content = new TextEncoder().encode('{}')",
-                BYTES
+                "const content = new TextEncoder().encode('{BYTES}')"
             )),
         }
     }
@@ -123,8 +121,8 @@ impl<'p, 'm> Names<'p, 'm> {
 }
 
 /// `samples.ts`: all samples, and a function that runs them.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let run = &SampleRun::build(context, samples);
+pub fn file(context: &Context<'_>) -> String {
+    let run = &SampleRun::build(context);
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut names = Names::new(context);

@@ -20,7 +20,7 @@ pub const ABOUT: [&str; 2] = [
 ];
 
 /// The schemas of a group.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(ABOUT);
     let items = group.items();
     let kinds = items.iter().map(|item| imported(context, kind(item)));
@@ -34,7 +34,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>)
             &format!("../{from}/schemas.ts"),
         );
     }
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for item in items {
         out.blank();
         let name = &item.ty.name;
@@ -55,7 +55,7 @@ fn kind(item: &Item<'_>) -> &'static str {
     }
 }
 
-fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_, '_>, item: &Item<'_>) -> Layout {
+fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_>, item: &Item<'_>) -> Layout {
     let name = &item.ty.name;
     let (is, members) = match &item.shape {
         Shape::Record(_, fields) => {
@@ -125,7 +125,7 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
 
 fn field(
     context: &Context<'_>,
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     fields: &[Spelled<'_, Field>],
     field: &Spelled<'_, Field>,
 ) -> Layout {
@@ -136,21 +136,17 @@ fn field(
         let value = expressions.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
-    let quirk = |name: &'static str| (Case::Camel.apply(name), marks.quirks.contains(&name));
-    let flags = [
-        ("optional".into(), field.optional),
-        ("safe".into(), is_safe(field)),
-        quirk("empty_is_absent"),
-        quirk("lenient_number"),
-        quirk("lenient_bool"),
-        ("sensitive".into(), field.sensitive),
-    ];
     let mut members: Vec<(Cow<'_, str>, Layout)> = vec![
         ("key".into(), Layout::text(&field.wire)),
         ("type".into(), type_schema(context, &field.ty)),
     ];
-    let flags = flags.into_iter();
-    members.extend(flags.filter_map(|(key, is)| Layout::flag(key, is)));
+    let mut flag = |key, is| members.extend(Layout::flag(key, is));
+    flag("optional".into(), field.optional);
+    flag("safe".into(), is_safe(field));
+    for quirk in marks.quirks_in_order() {
+        flag(Case::Camel.apply(quirk), true);
+    }
+    flag("sensitive".into(), field.sensitive);
     if !marks.also.is_empty() {
         members.push(("also".into(), Layout::texts(marks.also)));
     }
