@@ -148,7 +148,7 @@ pub struct Step<'p> {
     pub holder: &'p str,
     /// Its name there.
     pub name: &'p str,
-    /// Whether it may be absent.
+    /// `true` if it may be absent.
     pub optional: bool,
 }
 

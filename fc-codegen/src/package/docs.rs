@@ -42,6 +42,13 @@ impl<'t> Docs<'t> {
         docs
     }
 
+    /// A short comment that is written unchanged, links included.
+    pub fn linked(text: String) -> Self {
+        let mut docs = Self::default();
+        docs.raw(text);
+        docs
+    }
+
     /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
     pub fn text(&mut self, text: &'t Text) {
         self.paragraph(text.zh.as_str());

@@ -14,6 +14,10 @@ pub struct FieldMarks<'f, 'm> {
     pub constraints: Vec<(&'static str, Bound<'f>)>,
     /// The names of the quirks.
     pub quirks: Vec<&'static str>,
+    /// `true` if numbers or bools are also read from other forms.
+    pub is_lenient: bool,
+    /// `true` if empty values are read as absent.
+    pub empty_is_absent: bool,
     /// The condition of an optional field.
     pub condition: Option<Asked<'f, 'm>>,
 }
@@ -36,11 +40,14 @@ impl<'f, 'm> FieldMarks<'f, 'm> {
     pub fn build(field: &'f Field, fields: &'f [Spelled<'m, Field>]) -> Self {
         let details = field.details();
         let form = field.wire_form;
+        let has = |quirk| details.quirks.contains(&quirk);
         Self {
             also: &details.also,
             form: (form != WireForm::Plain).then(|| form.name()),
             constraints: details.constraints().map(bound).collect(),
             quirks: details.quirks.iter().map(|quirk| quirk.name()).collect(),
+            is_lenient: has(Quirk::LenientNumber) || has(Quirk::LenientBool),
+            empty_is_absent: has(Quirk::EmptyIsAbsent),
             condition: asked(field, fields).filter(|_| field.optional),
         }
     }

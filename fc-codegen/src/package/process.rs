@@ -19,12 +19,12 @@ pub fn set_off<'m>(
     })
 }
 
-/// Whether a command sets off a report that can be followed.
+/// Returns `true` if a command sets off a report that can be followed.
 pub fn is_followed(context: &Context<'_>, command: &Operation) -> bool {
     set_off(context, command).next().is_some()
 }
 
-/// Whether the values of an enum are states of a process.
+/// Returns `true` if the values of an enum are states of a process.
 pub fn has_states(shape: &EnumType) -> bool {
     let mut values = shape.values.iter();
     shape.order.is_some() || values.any(|value| value.is_final || value.is_error)

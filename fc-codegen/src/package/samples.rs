@@ -179,12 +179,12 @@ impl<'p, 'm> SampleRun<'p, 'm> {
         self.steps.iter().filter(move |step| step.verb == verb)
     }
 
-    /// Whether any step does this.
+    /// Returns `true` if any step does this.
     pub fn has(&self, verb: Verb) -> bool {
         self.that(verb).next().is_some()
     }
 
-    /// Whether any step needs the data port.
+    /// Returns `true` if any step needs the data port.
     pub fn has_streams(&self) -> bool {
         self.has(Verb::Subscribe) || self.has(Verb::Send)
     }

@@ -31,8 +31,8 @@ pub struct WireFacts<'p, 'm> {
 
 /// The bytes of a frame.
 pub struct FrameFacts<'p, 'm> {
-    /// Whether integers begin with their most significant byte.
-    pub is_big_endian: bool,
+    /// The order of the bytes of integers.
+    pub byte_order: ByteOrder,
     /// The fields of the header.
     pub header: &'p [Spelled<'m, HeaderField>],
     /// The algorithm of the digest in the header.
@@ -47,7 +47,7 @@ pub struct FrameFacts<'p, 'm> {
     pub plain: u8,
     /// The same for packed data.
     pub gzip: Option<u8>,
-    /// Whether a plain frame may state 0 as the length of its data.
+    /// `true` if a plain frame may state 0 as the length of its data.
     pub takes_zero_plain_length: bool,
 }
 
@@ -106,12 +106,17 @@ impl<'p, 'm> WireFacts<'p, 'm> {
 }
 
 impl<'p, 'm> FrameFacts<'p, 'm> {
+    /// Returns `true` if integers begin with their most significant byte.
+    pub fn is_big_endian(&self) -> bool {
+        self.byte_order == ByteOrder::Big
+    }
+
     fn build(model: &'m Model, header: &'p [Spelled<'m, HeaderField>]) -> Self {
         let frame = &model.frame;
         let kinds = &frame.kinds;
         let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
         Self {
-            is_big_endian: frame.byte_order == ByteOrder::Big,
+            byte_order: frame.byte_order,
             header,
             digest: frame.header.iter().find_map(HeaderField::digest),
             heads: [

@@ -232,14 +232,9 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     let commands = with_commands(groups, "Commands");
     let reports = with_reports(groups, "Reports");
     for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
-        let mut docs = Docs::default();
-        docs.paragraph(format!(
-            "对每一种{zh}调用一次 `visit`，参数是该类型的一个值。"
-        ));
-        docs.paragraph(format!(
-            "Calls `visit` once for each {what}, with a value of its type."
-        ));
-        out.documented(&docs);
+        let zh = format!("对每一种{zh}调用一次 `visit`，参数是该类型的一个值。");
+        let en = format!("Calls `visit` once for each {what}, with a value of its type.");
+        out.documented(&Docs::named(zh, en));
         out.line("template <class Visitor>");
         let visit = if lists.is_empty() {
             "/*visit*/"
@@ -261,7 +256,7 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 /// The source.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let before = "#include \"fc_runtime/any_report.hpp\"\n\n";
-    source_file(context, "client", before, |out| {
+    source_file(context, "client.hpp", before, |out| {
         out.line(
             "\
 std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {

@@ -16,7 +16,7 @@ use std::ops::Deref;
 /// A group with operations, and the names of its parts.
 pub struct NamedGroup<'p, 'm> {
     group: Group<'p, 'm>,
-    /// The beginning of its types: `Identity`.
+    /// The beginning of the names of its types: `Identity`.
     stem: String,
     /// The namespace that the parts of all groups are in.
     space: String,

@@ -115,7 +115,7 @@ pub fn source_file(
 ) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/{header}.hpp\""));
+    out.line(format!("#include \"{space}/{header}\""));
     out.blank();
     out.line(before);
     out.line("// clang-format off");

@@ -77,7 +77,7 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let before = format!(
         "#include <limits>\n\n#include \"{space}/messages.hpp\"\n\n// Tables, a line for each entry.\n"
     );
-    source_file(context, "protocol", &before, |out| {
+    source_file(context, "protocol.hpp", &before, |out| {
         out.line("namespace {");
         out.blank();
         out.line("using namespace std::string_view_literals;");
@@ -135,7 +135,7 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
 fn header_layout(out: &mut Source, context: &Context<'_>, frame: &FrameFacts<'_, '_>) {
     let length = context.model().frame.header_len();
     out.line(format!("protocol.header.length = {length};"));
-    let is_big = frame.is_big_endian;
+    let is_big = frame.is_big_endian();
     out.line(format!("protocol.header.big_endian = {is_big};"));
     out.enclose("protocol.header.fields = {", "};", |out| {
         for field in frame.header {

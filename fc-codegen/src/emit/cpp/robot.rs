@@ -301,7 +301,7 @@ pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let ranges = pass_through(context);
     let before = "#include <utility>\n\n";
-    source_file(context, "robot", before, |out| {
+    source_file(context, "robot.hpp", before, |out| {
         let unknown = UNKNOWN.to_owned();
         for name in ranges.iter().map(|(name, _)| name).chain([&unknown]) {
             out.blank();

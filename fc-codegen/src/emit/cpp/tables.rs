@@ -28,7 +28,7 @@ pub fn source(context: &Context<'_>) -> String {
     let package = &context.package;
     let expressions = Expressions::new(package);
     let before = "// A line for each row.\n";
-    source_file(context, "tables", before, |out| {
+    source_file(context, "tables.hpp", before, |out| {
         for table in &package.tables {
             let row = context.name_of(&table.row);
             out.blank();

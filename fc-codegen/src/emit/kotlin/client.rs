@@ -138,8 +138,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &format!("): {response} ="),
         &format!("connection.call(Operations.{method}, request)"),
     );
-    let mut docs = Docs::default();
-    docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
+    let docs = Docs::linked(format!("[{method}]，供 Java 使用。[{method}] for Java."));
     let mut for_java = |parameter: &str, body: &str| {
         out.documented(&docs);
         deprecated(out, operation);
@@ -168,8 +167,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
             continue;
         };
         let reported_type = &reported.request.ty.name;
-        let mut docs = Docs::default();
-        docs.raw(format!(
+        let mut docs = Docs::linked(format!(
             "[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。\n\
              [{method}]: returns the response, and then each [{reported_type}] that the command sets off.",
         ));

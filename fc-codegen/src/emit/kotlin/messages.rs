@@ -115,14 +115,10 @@ fn spelled(value: &Expr<'_>) -> String {
 
 /// A comment of the generator's own: on one line if it is short.
 pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
-    let mut docs = Docs::default();
     if columns_of(zh) + en.len() <= SHORT {
-        docs.raw([zh, en].concat());
-    } else {
-        docs.paragraph(zh);
-        docs.paragraph(en);
+        return Docs::linked([zh, en].concat());
     }
-    docs
+    Docs::said(&[zh, en])
 }
 
 /// Columns of a comment on one line.
@@ -138,11 +134,9 @@ fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>)
 }
 
 fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
-    let mut docs = Docs::default();
-    docs.raw(format!(
+    out.docs(&Docs::linked(format!(
         "逐项设置 [{name}] 的字段。Collects the fields of a [{name}]."
-    ));
-    out.docs(&docs);
+    )));
     let head = "public class Builder internal constructor(from: ";
     let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
     let head = heading(out, &format!("{head}{name}?)"), &supers);
@@ -155,9 +149,7 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
             let (property, constant) = (&field.name, constant(context, field));
             let mark = if field.optional { "?" } else { "" };
             let ty = type_of(context, &field.ty);
-            let mut docs = Docs::default();
-            docs.raw(format!("[{name}.{property}]"));
-            out.documented(&docs);
+            out.documented(&Docs::linked(format!("[{name}.{property}]")));
             let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
             let put = format!("put({constant}, {property})");
             if out.has_room([&head, " ", &put]) {
@@ -207,7 +199,7 @@ fn companion(
             for key in marks.also {
                 made.extend([".also(", &literal(key), ")"]);
             }
-            if marks.quirks.contains(&"empty_is_absent") {
+            if marks.empty_is_absent {
                 made.push_str(".emptyIsAbsent()");
             }
             if field.sensitive {

@@ -78,7 +78,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_, '_>]) {
         let fields: Vec<String> = frame.header.iter().map(|it| header(it)).collect();
         let open = "override val header: HeaderLayout = HeaderLayout(";
         out.enclose(open, ")", |out| {
-            out.line(format!("{},", frame.is_big_endian));
+            out.line(format!("{},", frame.is_big_endian()));
             out.lines("listOf(", &fields, "),");
         });
         out.blank();

@@ -245,9 +245,9 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.line(format!(
                     "    server.push(audience, Operations.{method}, report)"
                 ));
-                let mut docs = Docs::default();
-                docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-                out.documented(&docs);
+                out.documented(&Docs::linked(format!(
+                    "[{method}]，供 Java 使用。[{method}] for Java."
+                )));
                 out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
                 out.line(format!(
                     "    server.pushAsync(audience, Operations.{method}, report)"

@@ -151,7 +151,7 @@ pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -
     if marks.form == Some("string") {
         out.push_str(".quoted()");
     }
-    if marks.quirks.iter().any(|it| it.starts_with("lenient_")) {
+    if marks.is_lenient {
         out.push_str(".lenient()");
     }
     let is_of_list = |bound: &Bound<'_>| matches!(bound, Bound::Range(..));

@@ -88,9 +88,9 @@ pub fn part_of(
     body: impl FnOnce(&mut Source),
 ) {
     let (id, [class, zh, en]) = (group.id, about);
-    let mut docs = Docs::default();
-    docs.paragraph(format!("`{class}` 的一部分：`{id}` 组的{zh}。"));
-    docs.paragraph(format!("Part of `{class}`: the {en} of the group `{id}`."));
+    let zh = format!("`{class}` 的一部分：`{id}` 组的{zh}。");
+    let en = format!("Part of `{class}`: the {en} of the group `{id}`.");
+    let docs = Docs::named(zh, en);
     out.gap();
     out.suite(&format!("class {name}({base})"), |out| {
         out.docstring(&docs);

@@ -157,8 +157,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
         for (name, number) in &wire.ports {
             set(out, name, number.to_string().into());
         }
-        let order = if frame.is_big_endian { "big" } else { "little" };
-        set(out, "byte_order", text(order));
+        set(out, "byte_order", text(frame.byte_order.name()));
         out.enclose("header=(", "),", |out| {
             for field in frame.header {
                 out.comment(&COMMENT, &Docs::titled(&field.text));

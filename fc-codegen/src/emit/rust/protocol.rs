@@ -155,15 +155,10 @@ fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
 
 fn header(out: &mut Source, context: &Context<'_>) {
     let frame = &context.model().frame;
-    let mut docs = Docs::default();
-    docs.paragraph(format!(
-        "包头，共 {} 字节，其后是数据区。",
-        frame.header_len()
-    ));
-    docs.paragraph(format!(
-        "The header: {} bytes before the data area.",
-        frame.header_len()
-    ));
+    let length = frame.header_len();
+    let zh = format!("包头，共 {length} 字节，其后是数据区。");
+    let en = format!("The header: {length} bytes before the data area.");
+    let mut docs = Docs::named(zh, en);
     docs.text(&frame.data);
     if let Some(page) = context.page("reference/wire.md") {
         docs.paragraph(page);

@@ -193,13 +193,9 @@ const FOR_BOTH: &[&str] = &[
 /// `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(format!(
-        "app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`"
-    ));
-    docs.paragraph(format!(
-        "The names for an app and a robot, in one line: `use {krate}::prelude::*;`"
-    ));
+    let zh = format!("app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`");
+    let en = format!("The names for an app and a robot, in one line: `use {krate}::prelude::*;`");
+    let mut docs = Docs::named(zh, en);
     docs.paragraph(
         "It contains all message types, the stubs, and the related types of the runtime. A name that you \
          declare or import explicitly takes precedence over these.",
