@@ -3,7 +3,7 @@
 use super::style::Style;
 use crate::package::items::{Call, Item, Package, Shape, Spelled};
 use crate::package::language::Language;
-use crate::sample::Samples;
+use crate::sample::{Profile, Samples};
 use crate::target::Targets;
 use fc_spec::model::{
     Accepted, Direction, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef,
@@ -42,6 +42,13 @@ impl<'m> Context<'m> {
     /// The values that the spec gives as examples, or that are made up for it.
     pub fn samples(&self) -> Samples<'m> {
         Samples::new(self.model())
+    }
+
+    /// The spec's example of a message type, as JSON.
+    pub fn example(&self, item: &Item<'_>) -> String {
+        self.samples()
+            .named(item.ty.of, Profile::Example)
+            .to_string()
     }
 
     /// The end of a comment: links to the spec and to the page in each language.

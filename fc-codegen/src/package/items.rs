@@ -346,6 +346,14 @@ impl<'m> Package<'m> {
         self.call(operation).filter(|_| is_request)
     }
 
+    /// The command whose request a type is, with the enum of the errors that it declares.
+    #[must_use]
+    pub fn declared_by<'i>(&self, item: &Item<'i>) -> Option<(&'i Operation, &str)> {
+        let (command, side) = item.body_of()?;
+        let errors = self.error_type(command)?;
+        (side == Direction::Request).then_some((command, errors))
+    }
+
     /// A stream with its name; `None` without a code.
     #[must_use]
     pub fn stream(&self, operation: &Operation) -> Option<&Spelled<'m, Operation>> {

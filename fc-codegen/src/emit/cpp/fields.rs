@@ -11,10 +11,7 @@ use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::process::has_states;
 use crate::package::source::Source;
-use crate::sample::Profile;
-use fc_spec::model::{
-    Direction, EnumRepr, EnumType, EnumValue, Field, Number, Operation, Scalar, Type, Value,
-};
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Number, Scalar, Type, Value};
 
 /// The source of a header.
 pub fn source(
@@ -62,9 +59,7 @@ fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
         for item in &header.items {
             out.blank();
             functions(out, item);
-            if let Some((command, Direction::Request)) = item.body_of() {
-                errors(out, context, command);
-            }
+            errors(out, context, item);
         }
     });
     out.blank();
@@ -96,10 +91,7 @@ fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Sp
         .iter()
         .map(|field| FieldMarks::build(field.of, fields));
     let marks: Vec<_> = fields.iter().zip(marks).collect();
-    let example = context
-        .samples()
-        .named(item.ty.of, Profile::Example)
-        .to_string();
+    let example = context.example(item);
     out.line("template <>");
     out.enclose(&format!("struct Fields<{space}::{name}> {{"), "};", |out| {
         let spec_name = literal(&item.ty.of.name);
@@ -325,8 +317,8 @@ fn enumeration(
 }
 
 /// The text that is sent beside each error that a command declares.
-fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
-    let Some(name) = context.package.error_type(command) else {
+fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
+    let Some((command, name)) = context.package.declared_by(item) else {
         return;
     };
     out.enclose(

@@ -16,8 +16,7 @@ use crate::package::language::Case;
 use crate::package::process::has_states;
 use crate::package::source::Source;
 use fc_spec::model::{
-    Direction, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type, Value,
-    Variant,
+    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Type, Value, Variant,
 };
 
 /// A header, and the groups whose operations are in it.
@@ -163,9 +162,7 @@ fn structure(
         format!("const {name}& message"),
     ];
     out.parameters("std::ostream& operator<<(", &parameters, ");");
-    if let Some((command, Direction::Request)) = item.body_of() {
-        errors(out, includes, context, command);
-    }
+    errors(out, includes, context, item);
 }
 
 /// Returns `true` for a required field that begins unset. A list begins empty. A struct or a choice begins
@@ -203,9 +200,9 @@ pub fn spelled(value: &Expr<'_>) -> String {
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     includes.standard("cstdint");

@@ -12,7 +12,6 @@ use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::FieldMarks;
 use crate::package::process::{has_states, next_values};
 use crate::package::source::Source;
-use crate::sample::Profile;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
 /// Message types.
@@ -169,10 +168,7 @@ fn companion(
 ) {
     let name = &item.ty.name;
     let mut arguments = vec![literal(name)];
-    let example = context
-        .samples()
-        .named(item.ty.of, Profile::Example)
-        .to_string();
+    let example = context.example(item);
     if example != "{}" {
         arguments.push(literal(&example));
     }

@@ -14,10 +14,7 @@ use crate::package::language::Case;
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::name::free;
 use crate::package::source::Source;
-use crate::sample::Profile;
-use fc_spec::model::{
-    Direction, EnumRepr, Field, Operation, Scalar, Type, TypeShape, Value, Variant,
-};
+use fc_spec::model::{EnumRepr, Field, Scalar, Type, TypeShape, Value, Variant};
 
 /// Message types.
 pub fn types<'m>(
@@ -40,9 +37,7 @@ pub fn types<'m>(
         if let Shape::Record(_, fields) = &item.shape {
             out.gap();
             structure(out, used, context, item, fields);
-            if let Some(command) = asks(item) {
-                errors(out, context, command);
-            }
+            errors(out, context, item);
         }
     }
     // These are made of structs, where they stand.
@@ -56,16 +51,10 @@ pub fn types<'m>(
 
 /// What message types are called, and the errors beside them.
 pub fn names<'n>(context: &'n Context<'_>, items: &[&'n Item<'_>]) -> Vec<&'n str> {
-    let errors = |item: &Item<'n>| context.package.error_type(asks(item)?);
+    let errors = |item: &Item<'n>| Some(context.package.declared_by(item)?.1);
     let names = items.iter();
     let names = names.flat_map(|item| std::iter::once(&*item.ty.name).chain(errors(item)));
     names.collect()
-}
-
-/// The operation whose request an item is.
-fn asks<'m>(item: &Item<'m>) -> Option<&'m Operation> {
-    let (operation, side) = item.body_of()?;
-    (side == Direction::Request).then_some(operation)
 }
 
 fn structure<'m>(
@@ -83,10 +72,7 @@ fn structure<'m>(
     out.suite(&head, |out| {
         out.docstring(&facts::item_docs(context, item));
         out.blank();
-        let example = context
-            .samples()
-            .named(item.ty.of, Profile::Example)
-            .to_string();
+        let example = context.example(item);
         if example != "{}" {
             used.library("typing", "ClassVar");
             assign_text(out, "__example__: ClassVar[str]", &example);
@@ -286,9 +272,9 @@ fn defaults(
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     out.gap();

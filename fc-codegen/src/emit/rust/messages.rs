@@ -15,8 +15,7 @@ use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Call, Item, Module, Shape, Spelled};
 use crate::package::marks::{Bound, FieldMarks};
-use crate::sample::Profile;
-use fc_spec::model::{Direction, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
+use fc_spec::model::{Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
 /// A module of message types.
@@ -64,9 +63,7 @@ fn declaration<'m>(
     match &item.shape {
         Shape::Record(_, fields) => {
             structure(out, used, context, item, fields);
-            if let Some((command, Direction::Request)) = item.body_of() {
-                errors(out, used, context, command);
-            }
+            errors(out, used, context, item);
         }
         Shape::Enum(shape, values) => {
             used.derives.insert("OpenEnum");
@@ -137,10 +134,7 @@ fn structure<'m>(
         operation_attribute(out, context, operation);
         accepted_in(out, used, context, operation);
     }
-    let example = context
-        .samples()
-        .named(item.ty.of, Profile::Example)
-        .to_string();
+    let example = context.example(item);
     if example != "{}" {
         out.attribute(
             "#[fc(",
@@ -294,9 +288,9 @@ fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> V
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     used.derives.insert("DeclaredError");
