@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
-use fc_codegen::surface::package::clashes;
+use fc_codegen::package::items::clashes;
 use fc_codegen::target::{FILE, part};
 use fc_spec::model::{Dump, Model};
 

@@ -1,7 +1,7 @@
 //! All that stands in the way of making products of a spec: its own faults, and names that a language cannot have.
 
-use crate::surface::language::Language;
-use crate::surface::package::clashes;
+use crate::package::items::clashes;
+use crate::package::language::Language;
 use fc_spec::diagnostic::Faults;
 use fc_spec::index::places;
 use fc_spec::load::{Partial, Trees};

@@ -1,7 +1,7 @@
 //! Targets that other programs make.
 
+use crate::package::language as languages;
 use crate::product::Artifact;
-use crate::surface::language as surface;
 use crate::target::{TargetError, below};
 use serde::Deserialize;
 use serde_yaml::Value as Options;
@@ -20,7 +20,7 @@ pub struct Plugin {
     /// Directory of its files, from the root.
     pub out: String,
     /// The programming language in which its names have to be free, if it says one.
-    pub names: Option<&'static surface::Language>,
+    pub names: Option<&'static languages::Language>,
     /// Whose part of the protocol it gets; all of it where nobody is named.
     pub audience: Option<String>,
     /// Longest run of the program.

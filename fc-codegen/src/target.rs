@@ -18,9 +18,9 @@
 pub use crate::plugin::Plugin;
 
 use crate::check::Requirements;
+use crate::package::language as languages;
 use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
 use crate::product::{Artifact, Product};
-use crate::surface::language as surface;
 use fc_spec::model::{Lang, Languages, Model, ProjectionError, Text};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -169,7 +169,11 @@ fn products() -> String {
 }
 
 fn languages() -> String {
-    quoted(surface::Language::ALL.iter().map(|language| language.name))
+    quoted(
+        languages::Language::ALL
+            .iter()
+            .map(|language| language.name),
+    )
 }
 
 fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
@@ -338,12 +342,12 @@ impl Targets {
 
     /// The programming languages in which the names of the spec have to be free.
     #[must_use]
-    pub fn languages(&self) -> Vec<&'static surface::Language> {
+    pub fn languages(&self) -> Vec<&'static languages::Language> {
         let packages = self
             .products()
             .flat_map(|product| self.languages_of(product));
         let plugins = self.plugins.iter().filter_map(|plugin| plugin.names);
-        let mut languages: Vec<&surface::Language> = Vec::new();
+        let mut languages: Vec<&languages::Language> = Vec::new();
         for language in packages.chain(plugins) {
             if !languages.iter().any(|known| known.name == language.name) {
                 languages.push(language);
@@ -353,13 +357,13 @@ impl Targets {
     }
 
     /// The programming languages that a product is written in.
-    fn languages_of(&self, product: Product) -> Vec<&'static surface::Language> {
+    fn languages_of(&self, product: Product) -> Vec<&'static languages::Language> {
         match product {
             Product::Rust => vec![self.rust()],
-            Product::TypeScript => vec![&surface::TYPESCRIPT],
+            Product::TypeScript => vec![&languages::TYPESCRIPT],
             Product::Python => vec![self.python()],
-            Product::Kotlin => vec![&surface::KOTLIN, &surface::JAVA],
-            Product::Cpp => vec![&surface::CPP],
+            Product::Kotlin => vec![&languages::KOTLIN, &languages::JAVA],
+            Product::Cpp => vec![&languages::CPP],
             Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
         }
     }
@@ -402,21 +406,21 @@ impl Targets {
 
     /// Rust as the Rust package spells it.
     #[must_use]
-    pub fn rust(&self) -> &'static surface::Language {
+    pub fn rust(&self) -> &'static languages::Language {
         if self.newtypes {
-            &surface::RUST_WITH_IDS
+            &languages::RUST_WITH_IDS
         } else {
-            &surface::RUST
+            &languages::RUST
         }
     }
 
     /// How names are spelled in the Python package.
     #[must_use]
-    pub fn python(&self) -> &'static surface::Language {
+    pub fn python(&self) -> &'static languages::Language {
         if self.newtypes {
-            &surface::PYTHON_WITH_IDS
+            &languages::PYTHON_WITH_IDS
         } else {
-            &surface::PYTHON
+            &languages::PYTHON
         }
     }
 
@@ -551,7 +555,7 @@ impl WrittenTarget {
             return Err(TargetError::Missing { name, key: "out" });
         };
         let names = match self.names {
-            Some(language) => match surface::Language::named(&language) {
+            Some(language) => match languages::Language::named(&language) {
                 Some(known) => Some(known),
                 None => {
                     return Err(TargetError::Language {

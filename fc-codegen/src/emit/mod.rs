@@ -8,7 +8,6 @@ mod packed;
 pub mod python;
 pub mod rust;
 pub mod schema;
-mod stub;
 pub mod typescript;
 pub mod vectors;
 

@@ -20,6 +20,7 @@ mod emit_python;
 mod emit_rust;
 mod emit_typescript;
 mod emit_vectors;
+mod emitters;
 mod error_names;
 #[allow(dead_code, reason = "a part of it is used here")]
 #[path = "../../../fc-spec/tests/it/good_spec.rs"]

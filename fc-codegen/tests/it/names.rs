@@ -4,10 +4,10 @@
 //! `# expect: FC0209 at 6:3 in Kotlin`.
 
 use crate::good_spec;
-use fc_codegen::surface::language::{
+use fc_codegen::package::items::clashes;
+use fc_codegen::package::language::{
     CPP, JAVA, KOTLIN, Language, PYTHON, RUST, RUST_WITH_IDS, Role, TYPESCRIPT,
 };
-use fc_codegen::surface::package::clashes;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::index::places;
 use fc_spec::load::load;
@@ -29,7 +29,7 @@ fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
     let places = places(&sources);
     let model = loaded.model().expect("it has no errors");
     let clashes = clashes(&model, &Language::ALL);
-    let say = |clash: &fc_codegen::surface::name::Clash<'_>| {
+    let say = |clash: &fc_codegen::package::name::Clash<'_>| {
         let fault = clash.fault(&places).expect("it has a place");
         assert_eq!(sources.path(fault.primary.span), shown, "{fault:?}");
         let at = sources.line_col(fault.primary.span);

@@ -56,13 +56,13 @@ impl Model {
 
     fn fits_type(&self, ty: &Type, value: &Value) -> bool {
         match (ty, value) {
-            (Type::Json, _) | (Type::Bool, Value::Bool(_)) | (Type::Float(_), Value::Number(_)) => {
-                true
-            }
+            (Type::Json, _)
+            | (Type::Bool, Value::Bool(_))
+            | (Type::Float(_), Value::Number(_))
+            | (Type::String | Type::Base64, Value::String(_)) => true,
             (Type::Int(_) | Type::TimestampMs | Type::TimestampS, Value::Number(number)) => {
                 matches!(number, Number::Int(_))
             }
-            (Type::String | Type::Base64, Value::String(_)) => true,
             (Type::Array(item), Value::Array(items)) => {
                 items.iter().all(|value| self.fits_type(item, value))
             }

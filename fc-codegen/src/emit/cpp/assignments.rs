@@ -2,9 +2,9 @@
 
 use super::tables::spelled_in;
 use super::types::name_in;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
-use crate::surface::expr::{Expr, Record};
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Record};
+use crate::package::source::Source;
 use fc_spec::model::Type;
 use std::collections::BTreeSet;
 

@@ -1,66 +1,41 @@
 //! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
 
-use super::groups::Group;
-use super::layout::{Includes, literal};
-use super::types::namespace;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
+use super::groups::{NamedGroup, with_commands, with_reports};
+use super::layout::{Includes, header_file, literal, source_file};
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::source::Source;
 
 /// The header.
-pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    for name in ["chrono", "memory", "optional", "utility", "variant"] {
-        includes.standard(name);
-    }
-    includes.own(format!("{space}/messages.hpp"));
-    includes.own(format!("{space}/protocol.hpp"));
-    includes.own("fc_runtime/client.hpp");
-    includes.own("fc_runtime/following.hpp");
-    includes.own("fc_runtime/types.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
+    let includes = Includes::new(
+        context,
+        &["chrono", "memory", "optional", "utility", "variant"],
+        &["messages", "protocol"],
+        &["client", "following", "types"],
+    );
+    header_file(context, &includes, |out| {
         reports(out, groups);
         out.blank();
         client(out, groups);
         out.blank();
-        for group in calling(groups) {
-            out.line(format!(
-                "extern template class {}<Client>;",
-                group.named("Calls")
-            ));
+        for calls in with_commands(groups, "Calls") {
+            out.line(format!("extern template class {calls}<Client>;"));
         }
         out.blank();
         each(out, groups);
-    });
-    out.finish()
+    })
 }
 
-/// The groups that have commands.
-fn calling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
-    groups.iter().filter(|group| !group.commands.is_empty())
-}
-
-/// The groups that have reports.
-fn reporting<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
-    groups.iter().filter(|group| !group.reports.is_empty())
-}
-
-fn reports(out: &mut Source, groups: &[Group<'_>]) {
+fn reports(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.docs(&Docs::said(&[
         "任意一个上报；功能码不在规范中的，原样保留。",
         "Any report. A report with a code that is not in the spec is kept unchanged.",
     ]));
-    let lists = reporting(groups).map(|group| group.named("Reports"));
-    let raw = "fc_runtime::Types<fc_runtime::RawReport>".to_owned();
-    let lists: Vec<String> = lists.chain([raw]).collect();
+    let mut lists = with_reports(groups, "Reports");
+    lists.push("fc_runtime::Types<fc_runtime::RawReport>".to_owned());
     out.alias("AnyReport", "fc_runtime::VariantOf", &lists);
     out.blank();
     out.line(
@@ -94,7 +69,7 @@ class Reports {
     );
 }
 
-fn client(out: &mut Source, groups: &[Group<'_>]) {
+fn client(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 一个机器人，从 app 一侧看：每条指令一个方法，等到响应才返回。
@@ -103,9 +78,8 @@ fn client(out: &mut Source, groups: &[Group<'_>]) {
 /// copies share one connection. Any thread can use it. To call without waiting, use
 /// `connection().call_async`.",
     );
-    let bases: Vec<String> = calling(groups)
-        .map(|group| format!("public {}<Client>", group.named("Calls")))
-        .collect();
+    let bases = with_commands(groups, "Calls").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}<Client>")).collect();
     out.class("Client", &bases);
     out.line(
         " public:
@@ -163,13 +137,13 @@ fn client(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The commands of a group as methods of the client.
-pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，是 `Client`（`Self`）的方法。",
         "The commands of a group as methods of `Client` (`Self`).",
     ]));
     out.line("template <class Self>");
-    out.line(format!("class {} {{", group.name("Calls")));
+    out.line(format!("class {} {{", group.part("Calls")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for command in &group.commands {
@@ -187,7 +161,7 @@ pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
         out.line("template <class Self>");
         out.line(format!(
             "fc_runtime::Called<{response}> {}<Self>::{}(const {request}& request, const fc_runtime::CallOptions& options) const {{",
-            group.name("Calls"),
+            group.part("Calls"),
             command.method
         ));
         out.line("  return static_cast<const Self*>(this)->connection().call(request, options);");
@@ -222,7 +196,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 }
 
 /// The types of a group's requests and of its reports.
-pub fn lists(out: &mut Source, group: &Group<'_>) {
+pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
     for (part, zh, en, calls) in [
         (
             "Commands",
@@ -241,7 +215,7 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
             continue;
         }
         out.line(format!("/// {zh}{en}"));
-        out.line(format!("using {} = fc_runtime::Types<", group.name(part)));
+        out.line(format!("using {} = fc_runtime::Types<", group.part(part)));
         // A comment on each keeps it on a line of its own, and with an end behind the last a type more changes no line of
         // another.
         for call in calls {
@@ -254,19 +228,13 @@ pub fn lists(out: &mut Source, group: &Group<'_>) {
 }
 
 /// A function over the types of all commands, and one over those of all reports.
-fn each(out: &mut Source, groups: &[Group<'_>]) {
-    let commands: Vec<String> = calling(groups).map(|it| it.named("Commands")).collect();
-    let reports: Vec<String> = reporting(groups).map(|it| it.named("Reports")).collect();
+fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
+    let commands = with_commands(groups, "Commands");
+    let reports = with_reports(groups, "Reports");
     for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
-        let mut docs = Docs::default();
-        docs.paragraph(format!(
-            "对每一种{zh}调用一次 `visit`，参数是该类型的一个值。"
-        ));
-        docs.paragraph(format!(
-            "Calls `visit` once for each {what}, with a value of its type."
-        ));
-        out.blank();
-        out.docs(&docs);
+        let zh = format!("对每一种{zh}调用一次 `visit`，参数是该类型的一个值。");
+        let en = format!("Calls `visit` once for each {what}, with a value of its type.");
+        out.documented(&Docs::named(zh, en));
         out.line("template <class Visitor>");
         let visit = if lists.is_empty() {
             "/*visit*/"
@@ -286,16 +254,9 @@ fn each(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/client.hpp\""));
-    out.blank();
-    out.line("#include \"fc_runtime/any_report.hpp\"");
-    out.blank();
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
+    let before = "#include \"fc_runtime/any_report.hpp\"\n\n";
+    source_file(context, "client.hpp", before, |out| {
         out.line(
             "\
 std::optional<AnyReport> Reports::next(std::chrono::milliseconds wait) const {
@@ -316,9 +277,8 @@ Client Client::connect_lazy(const fc_runtime::ClientConfig& config) {
 }",
         );
         out.blank();
-        for group in calling(groups) {
-            out.line(format!("template class {}<Client>;", group.named("Calls")));
+        for calls in with_commands(groups, "Calls") {
+            out.line(format!("template class {calls}<Client>;"));
         }
-    });
-    out.finish()
+    })
 }

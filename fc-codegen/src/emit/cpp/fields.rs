@@ -1,27 +1,23 @@
 //! The sources beside the headers of groups: what each message names of its fields, and each enum of its values.
 
-use super::groups::{self, Group};
+use super::groups::{self, NamedGroup};
 use super::layout::{float, integer, literal, raw};
-use super::messages::opens;
 use super::process;
 use super::types::{Header, namespace};
-use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
-use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Shape, Spelled};
-use fc_spec::model::{
-    Condition, Constraint, Direction, EnumRepr, EnumType, EnumValue, Field, Number, Operation,
-    Quirk, Scalar, Type, Value, WireForm,
-};
+use crate::package::conditions::Asked;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::process::has_states;
+use crate::package::source::Source;
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Number, Scalar, Type, Value};
 
 /// The source of a header.
 pub fn source(
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
-    groups: &[&Group<'_>],
+    groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
     let mut out = Source::cpp();
@@ -39,20 +35,20 @@ pub fn source(
     out.line("// clang-format off");
     out.blank();
     if !header.items.is_empty() {
-        types(&mut out, context, samples, header);
+        types(&mut out, context, header);
     }
     groups::define(&mut out, context, groups);
     out.finish()
 }
 
 /// What is declared of the message types of a header, and of their operations.
-fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header: &Header<'_, '_>) {
+fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
     let space = &namespace(context);
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
             out.blank();
             match &item.shape {
-                Shape::Record(_, fields) => record(out, context, samples, item, fields),
+                Shape::Record(_, fields) => record(out, context, item, fields),
                 Shape::Enum(shape, values) => enumeration(out, space, item, shape, values),
                 Shape::Choice(..) => {}
             }
@@ -63,15 +59,13 @@ fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header:
         for item in &header.items {
             out.blank();
             functions(out, item);
-            if let Some((command, Direction::Request)) = item.body_of() {
-                errors(out, context, command);
-            }
+            errors(out, context, item);
         }
     });
     out.blank();
     out.namespace("fc_runtime", |out| {
         for item in &header.items {
-            if let Some(call) = opens(context, item) {
+            if let Some(call) = context.package.opened_by(item) {
                 process::define_call(out, context, &call);
             }
         }
@@ -89,21 +83,15 @@ fn types(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, header:
     });
 }
 
-fn record(
-    out: &mut Source,
-    context: &Context<'_>,
-    samples: &Samples<'_>,
-    item: &Item<'_>,
-    fields: &[Spelled<'_, Field>],
-) {
+fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Spelled<'_, Field>]) {
     let space = &namespace(context);
     let name = &item.ty.name;
-    let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let expressions = Expressions::new(&context.package);
+    let marks = fields
+        .iter()
+        .map(|field| FieldMarks::build(field.of, fields));
+    let marks: Vec<_> = fields.iter().zip(marks).collect();
+    let example = context.example(item);
     out.line("template <>");
     out.enclose(&format!("struct Fields<{space}::{name}> {{"), "};", |out| {
         let spec_name = literal(&item.ty.of.name);
@@ -114,8 +102,8 @@ fn record(
             "static constexpr std::string_view example = {};",
             raw(&example)
         ));
-        for field in fields {
-            lists(out, field);
+        for (field, marks) in &marks {
+            lists(out, field, marks);
         }
         out.blank();
         let (visit, message) = match fields {
@@ -125,18 +113,15 @@ fn record(
         out.line("template <class Visitor, class Message>");
         let open = format!("static void each(Visitor& {visit}, Message& {message}) {{");
         out.enclose(&open, "}", |out| {
-            for field in fields {
-                out.line(format!(
-                    "visit({}, message.{});",
-                    field_of(field),
-                    field.name
-                ));
+            for (field, marks) in &marks {
+                let of = field_of(field, marks);
+                out.line(format!("visit({of}, message.{});", field.name));
             }
         });
-        let asked: Vec<String> = fields
-            .iter()
-            .filter_map(|it| asks(space, &conditions, it))
-            .collect();
+        let asked = marks.iter().filter_map(|(field, marks)| {
+            Some(asks(space, &expressions, field, marks.condition.as_ref()?))
+        });
+        let asked: Vec<String> = asked.collect();
         let (visit, message) = match asked.as_slice() {
             [] => ("/*asked*/", "/*message*/"),
             _ => ("asked", "message"),
@@ -153,29 +138,25 @@ fn record(
 }
 
 /// The other keys of a field, and the values that it takes alone.
-fn lists(out: &mut Source, field: &Spelled<'_, Field>) {
-    let details = field.details();
-    if !details.also.is_empty() {
-        let keys: Vec<String> = details.also.iter().map(|key| literal(key)).collect();
+fn lists(out: &mut Source, field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) {
+    let mut list = |ty: &str, name: &str, items: Vec<String>| {
+        let (field, items) = (&field.name, items.join(", "));
         out.line(format!(
-            "static constexpr std::string_view also_{}[] = {{{}}};",
-            field.name,
-            keys.join(", ")
+            "static constexpr {ty} {name}_{field}[] = {{{items}}};"
         ));
+    };
+    if !marks.also.is_empty() {
+        let keys = marks.also.iter().map(|key| literal(key));
+        list("std::string_view", "also", keys.collect());
     }
-    if !details.only.is_empty() {
-        let is_text = matches!(details.only.first(), Some(Scalar::String(_)));
-        let ty = if is_text {
-            "std::string_view"
-        } else {
-            "std::int64_t"
-        };
-        let taken: Vec<String> = details.only.iter().map(taken).collect();
-        out.line(format!(
-            "static constexpr {ty} only_{}[] = {{{}}};",
-            field.name,
-            taken.join(", ")
-        ));
+    for (name, bound) in &marks.constraints {
+        if let Bound::Values(values) = bound {
+            let ty = match values.first() {
+                Some(Scalar::String(_)) => "std::string_view",
+                _ => "std::int64_t",
+            };
+            list(ty, name, values.iter().map(taken).collect());
+        }
     }
 }
 
@@ -206,38 +187,26 @@ fn number(value: &Number) -> String {
 }
 
 /// A field as it is named to a visitor.
-fn field_of(field: &Spelled<'_, Field>) -> String {
-    let details = field.details();
+fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
     let mut out = format!("Field({})", literal(&field.wire));
-    match field.wire_form {
-        WireForm::Plain => {}
-        WireForm::String => out.push_str(".quoted()"),
-        WireForm::Number => out.push_str(".numeric()"),
-    }
-    for constraint in details.constraints() {
-        let said = match constraint {
-            Constraint::Min(min) => format!(".min({})", number(min)),
-            Constraint::Max(max) => format!(".max({})", number(max)),
-            Constraint::Length(least, most) => {
-                format!(
-                    ".length({}, {})",
-                    integer(least.into()),
-                    integer(most.into())
-                )
-            }
-            Constraint::Pattern(pattern) => format!(".pattern({})", raw(pattern.portable())),
-            Constraint::Only(_) => format!(".only(only_{})", field.name),
+    out.push_str(match marks.form {
+        None => "",
+        Some("string") => ".quoted()",
+        Some(_) => ".numeric()",
+    });
+    for (name, bound) in &marks.constraints {
+        let value = match bound {
+            Bound::Number(value) => number(value),
+            Bound::Range(least, most) => [*least, *most].map(|it| integer(it.into())).join(", "),
+            Bound::Pattern(pattern) => raw(pattern),
+            Bound::Values(_) => format!("{name}_{}", field.name),
         };
-        out.push_str(&said);
+        out.extend([".", name, "(", &value, ")"]);
     }
-    for quirk in &details.quirks {
-        out.push_str(match quirk {
-            Quirk::EmptyIsAbsent => ".empty_is_absent()",
-            Quirk::LenientNumber => ".lenient_number()",
-            Quirk::LenientBool => ".lenient_bool()",
-        });
+    for quirk in &marks.quirks {
+        out.extend([".", quirk, "()"]);
     }
-    if !details.also.is_empty() {
+    if !marks.also.is_empty() {
         out.extend([".also(also_", &field.name, ")"]);
     }
     if *field.of.ty.item() == Type::Base64 {
@@ -252,55 +221,35 @@ fn field_of(field: &Spelled<'_, Field>) -> String {
 /// Under which values of the fields beside it a field is there.
 fn asks(
     space: &str,
-    conditions: &Conditions<'_, '_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     field: &Spelled<'_, Field>,
-) -> Option<String> {
-    let condition = field.details().condition.as_ref();
-    let condition = condition.filter(|_| field.optional)?;
-    let (word, not) = match condition {
-        Condition::When(_) => ("when", ""),
-        Condition::Unless(_) => ("unless", "!"),
+    condition: &Asked<'_, '_>,
+) -> String {
+    let holds = condition.fields.iter().map(|(other, values)| {
+        let each = values.iter().map(|wire| {
+            let value = expressions.value(&other.ty, &Value::from(wire));
+            format!("message.{} == {}", other.name, compared(space, &value))
+        });
+        let each: Vec<String> = each.collect();
+        match each.as_slice() {
+            [only] => only.clone(),
+            each => format!("({})", each.join(" || ")),
+        }
+    });
+    let holds = holds.collect::<Vec<_>>().join(" && ");
+    let holds = match condition.word {
+        "unless" => format!("!({holds})"),
+        _ => holds,
     };
-    let holds: Vec<String> = condition
-        .asked()
-        .iter()
-        .filter_map(|asked| {
-            let beside = conditions.fields.iter().find(|it| it.wire == asked.wire)?;
-            let each = asked.values.iter();
-            let each = each.map(|wire| {
-                let value = compared(space, &conditions.value(beside, wire));
-                format!("message.{} == {value}", beside.name)
-            });
-            let each: Vec<String> = each.collect();
-            Some(match each.as_slice() {
-                [only] => only.clone(),
-                each => format!("({})", each.join(" || ")),
-            })
-        })
-        .collect();
-    let said: Vec<String> = condition
-        .asked()
-        .iter()
-        .map(|asked| {
-            let values: Vec<String> = asked
-                .values
-                .iter()
-                .map(|it| Value::from(it).to_string())
-                .collect();
-            format!("`{}` is {}", asked.wire, values.join(" or "))
-        })
-        .collect();
-    Some(format!(
-        "asked.asks({}, message.{}, {}, {});",
-        literal(&field.wire),
-        field.name,
-        if not.is_empty() {
-            holds.join(" && ")
-        } else {
-            format!("{not}({})", holds.join(" && "))
-        },
-        literal(&format!("{word} {}", said.join(" and ")))
-    ))
+    let said = condition.fields.iter().map(|(other, values)| {
+        let values = values.iter().map(|it| Value::from(it).to_string());
+        let values: Vec<String> = values.collect();
+        format!("`{}` is {}", other.wire, values.join(" or "))
+    });
+    let said = said.collect::<Vec<_>>().join(" and ");
+    let said = literal(&format!("{} {said}", condition.word));
+    let (key, name) = (literal(&field.wire), &field.name);
+    format!("asked.asks({key}, message.{name}, {holds}, {said});")
 }
 
 /// A constant that a field is compared with.
@@ -368,8 +317,8 @@ fn enumeration(
 }
 
 /// The text that is sent beside each error that a command declares.
-fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
-    let Some(name) = context.package.error_type(command) else {
+fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
+    let Some((command, name)) = context.package.declared_by(item) else {
         return;
     };
     out.enclose(
@@ -440,7 +389,7 @@ fn of_enum(out: &mut Source, item: &Item<'_>, shape: &EnumType, values: &[Spelle
     out.line(format!(
         "bool is_known({by_value} value) noexcept {{ return {found} != nullptr; }}"
     ));
-    if process::is_state(shape, values) {
+    if has_states(shape) {
         process::define(out, item, &by_value, shape, values);
     }
     out.line(format!(

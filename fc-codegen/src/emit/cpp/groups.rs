@@ -4,92 +4,91 @@
 use super::layout::Includes;
 use super::types::{Header, namespace};
 use super::{client, protocol, robot};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::Call;
-use fc_spec::model::{Kind, Operation};
+use crate::package::context::Context;
+use crate::package::group::Group;
+use crate::package::items::Package;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::source::Source;
 use std::collections::BTreeMap;
+use std::ops::Deref;
 
-/// A group with its operations.
-pub struct Group<'p> {
-    /// Its id.
-    pub id: &'p str,
-    /// Its id as types of its own begin: `Identity`.
+/// A group with operations, and the names of its parts.
+pub struct NamedGroup<'p, 'm> {
+    group: Group<'p, 'm>,
+    /// The beginning of the names of its types: `Identity`.
     stem: String,
     /// The namespace that the parts of all groups are in.
     space: String,
-    /// All of its operations.
-    pub operations: Vec<&'p Operation>,
-    /// The commands among them that have a code.
-    pub commands: Vec<Call<'p>>,
-    /// The reports among them that have a code.
-    pub reports: Vec<Call<'p>>,
-    /// Names of its parts that a message type has already.
-    taken: Vec<&'p str>,
+    package: &'p Package<'m>,
 }
 
-impl Group<'_> {
-    /// The name of a type of its own: `IdentityCalls`.
-    pub fn name(&self, part: &str) -> String {
+impl<'p, 'm> Deref for NamedGroup<'p, 'm> {
+    type Target = Group<'p, 'm>;
+
+    fn deref(&self) -> &Group<'p, 'm> {
+        &self.group
+    }
+}
+
+impl NamedGroup<'_, '_> {
+    /// The name of a part inside of the namespace: `IdentityCalls`.
+    pub fn part(&self, part: &str) -> String {
         let name = [&self.stem, part].concat();
-        free(&[&name], |name| self.taken.contains(&name))
+        let is_taken = |name: &str| self.package.items().any(|item| item.ty.name == name);
+        free(&[&name], is_taken)
     }
 
-    /// The same as it is named outside: `groups::IdentityCalls`.
+    /// The same outside: `groups::IdentityCalls`.
     pub fn named(&self, part: &str) -> String {
-        format!("{}::{}", self.space, self.name(part))
+        format!("{}::{}", self.space, self.part(part))
     }
 
-    /// A function of its own as it is named outside: `groups::serve_identity`.
+    /// The name of a function outside of the namespace: `groups::serve_identity`.
     pub fn function(&self, verb: &str) -> String {
         format!("{}::{verb}_{}", self.space, self.id)
     }
 }
 
 /// The groups that have operations, in the order of the spec.
-pub fn groups<'p>(context: &'p Context<'_>) -> Vec<Group<'p>> {
+pub fn groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
     let package = &context.package;
-    let model = context.model();
     let is_table = |name: &str| package.tables.iter().any(|table| table.name == name);
     let space = free(&["groups", "command_groups"], is_table);
-    let mut groups: Vec<Group<'p>> = Vec::new();
-    for group in &model.groups {
-        let operations: Vec<&Operation> = model
-            .operations
-            .iter()
-            .filter(|operation| operation.group == group.id)
-            .collect();
-        if operations.is_empty() {
-            continue;
-        }
-        let calls = |kind: Kind| {
-            let operations = operations.iter().filter(|it| it.kind() == kind);
-            operations.filter_map(|it| package.call(it)).collect()
-        };
-        let stem = Case::Pascal.apply(&group.id);
+    let mut groups: Vec<NamedGroup<'p, 'm>> = Vec::new();
+    let all = Group::all(package).into_iter();
+    for group in all.filter(|it| !it.operations.is_empty()) {
+        let stem = Case::Pascal.apply(group.id);
         let stem = free(&[&stem], |stem| groups.iter().any(|it| it.stem == stem));
-        groups.push(Group {
-            id: &group.id,
+        groups.push(NamedGroup {
+            group,
             stem,
             space: space.clone(),
-            commands: calls(Kind::Command),
-            reports: calls(Kind::Report),
-            operations,
-            taken: package.items().map(|item| &*item.ty.name).collect(),
+            package,
         });
     }
     groups
 }
 
+/// The names of a part of the groups that have commands.
+pub fn with_commands(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
+    let groups = groups.iter().filter(|group| !group.commands.is_empty());
+    groups.map(|group| group.named(part)).collect()
+}
+
+/// The names of a part of the groups that have reports.
+pub fn with_reports(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
+    let groups = groups.iter().filter(|group| !group.reports.is_empty());
+    groups.map(|group| group.named(part)).collect()
+}
+
 /// The groups whose operations are in a header.
-pub fn of_header<'g, 'p>(
-    groups: &'g [Group<'p>],
+pub fn of_header<'g, 'p, 'm>(
+    groups: &'g [NamedGroup<'p, 'm>],
     header: &Header<'_, '_>,
     homes: &BTreeMap<&str, &str>,
-) -> Vec<&'g Group<'p>> {
-    let is_here = |group: &&Group<'_>| homes.get(group.id) == Some(&header.id);
+) -> Vec<&'g NamedGroup<'p, 'm>> {
+    let is_here = |group: &&NamedGroup<'_, '_>| homes.get(group.id) == Some(&header.id);
     groups.iter().filter(is_here).collect()
 }
 
@@ -98,7 +97,7 @@ pub fn declare(
     out: &mut Source,
     includes: &mut Includes,
     context: &Context<'_>,
-    groups: &[&Group<'_>],
+    groups: &[&NamedGroup<'_, '_>],
 ) {
     let Some(first) = groups.first() else {
         return;
@@ -139,7 +138,7 @@ pub fn declare(
 }
 
 /// What the source has of them.
-pub fn define(out: &mut Source, context: &Context<'_>, groups: &[&Group<'_>]) {
+pub fn define(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_, '_>]) {
     let Some(first) = groups.first() else {
         return;
     };

@@ -1,9 +1,10 @@
 //! What clang-format does, in Google's style, beyond any language: parameters, files, namespaces.
 
-use crate::emit::stub::docs::columns_of;
-use crate::emit::stub::source::{Source, join};
-use crate::emit::stub::style::{Comment, Style};
-use crate::surface::package::Item;
+use super::types::namespace;
+use crate::package::context::Context;
+use crate::package::docs::columns_of;
+use crate::package::source::{Source, join};
+use crate::package::style::{Comment, Style};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -22,7 +23,6 @@ pub static CPP: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("`{name}`"),
-    elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
     integer: |value| value.to_string(),
     redacted: "Never printed.",
 };
@@ -51,6 +51,22 @@ pub struct Includes {
 }
 
 impl Includes {
+    /// Headers of the standard library, of the package and of the runtime, without their folders and endings.
+    pub fn new(
+        context: &Context<'_>,
+        standard: &[&'static str],
+        package: &[&str],
+        runtime: &[&str],
+    ) -> Self {
+        let space = &namespace(context);
+        let package = package.iter().map(|name| format!("{space}/{name}.hpp"));
+        let runtime = runtime.iter().map(|name| format!("fc_runtime/{name}.hpp"));
+        Self {
+            standard: standard.iter().copied().collect(),
+            own: package.chain(runtime).collect(),
+        }
+    }
+
     /// A header of the standard library.
     pub fn standard(&mut self, name: &'static str) {
         self.standard.insert(name);
@@ -73,6 +89,39 @@ impl Includes {
             out.line(format!("#include \"{path}\""));
         }
     }
+}
+
+/// A header with the namespace of the package.
+pub fn header_file(
+    context: &Context<'_>,
+    includes: &Includes,
+    body: impl FnOnce(&mut Source),
+) -> String {
+    let mut out = Source::cpp();
+    out.line("#pragma once");
+    out.blank();
+    includes.lines(&mut out);
+    out.blank();
+    out.namespace(&namespace(context), body);
+    out.finish()
+}
+
+/// The source of a header, with lines before the namespace of the package.
+pub fn source_file(
+    context: &Context<'_>,
+    header: &str,
+    before: &str,
+    body: impl FnOnce(&mut Source),
+) -> String {
+    let space = &namespace(context);
+    let mut out = Source::cpp();
+    out.line(format!("#include \"{space}/{header}\""));
+    out.blank();
+    out.line(before);
+    out.line("// clang-format off");
+    out.blank();
+    out.namespace(space, body);
+    out.finish()
 }
 
 impl Source {

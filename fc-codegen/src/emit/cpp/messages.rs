@@ -1,31 +1,29 @@
 //! The headers of groups: their message types, which are structs, enums and choices, what ties requests to their codes, and
 //! what both stubs have of their operations.
 
-use super::groups::{self, Group};
+use super::groups::{self, NamedGroup};
 use super::layout::{CPP, Includes, integer, literal};
 use super::process;
 use super::tables;
 use super::types::{Header, integer_type, name_of, namespace};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Call, Item, Shape, Spelled};
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::process::has_states;
+use crate::package::source::Source;
 use fc_spec::model::{
-    Direction, Effect, EnumRepr, EnumType, EnumValue, Field, Kind, Number, Operation, Scalar, Type,
-    Value, Variant,
+    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Type, Value, Variant,
 };
 
 /// A header, and the groups whose operations are in it.
 pub fn header(
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
-    groups: &[&Group<'_>],
+    groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
     let mut body = Source::cpp();
@@ -36,7 +34,7 @@ pub fn header(
         includes.own(format!("{space}/groups/{id}.hpp"));
     }
     if !header.items.is_empty() {
-        types(&mut body, &mut includes, context, samples, header);
+        types(&mut body, &mut includes, context, header);
     }
     groups::declare(&mut body, &mut includes, context, groups);
     let mut out = Source::cpp();
@@ -53,7 +51,6 @@ fn types(
     body: &mut Source,
     includes: &mut Includes,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     header: &Header<'_, '_>,
 ) {
     let space = &namespace(context);
@@ -62,7 +59,7 @@ fn types(
             out.blank();
             match &item.shape {
                 Shape::Record(_, fields) => {
-                    structure(out, includes, context, samples, item, fields);
+                    structure(out, includes, context, item, fields);
                 }
                 Shape::Enum(shape, values) => {
                     enumeration(out, includes, context, item, shape, values);
@@ -76,7 +73,7 @@ fn types(
     let calls: Vec<Call<'_>> = header
         .items
         .iter()
-        .filter_map(|it| opens(context, it))
+        .filter_map(|it| context.package.opened_by(it))
         .collect();
     body.blank();
     body.namespace("fc_runtime", |out| {
@@ -101,37 +98,21 @@ fn types(
     });
 }
 
-/// The command or report that an item opens, if it has a code.
-pub fn opens<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Option<Call<'p>> {
-    match item.body_of()? {
-        (operation, Direction::Request) => context.package.call(operation),
-        (_, Direction::Response) => None,
-    }
-}
-
 fn structure(
     out: &mut Source,
     includes: &mut Includes,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
     out.docs(&facts::item_docs(context, item));
-    let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
+    let expressions = Expressions::new(&context.package);
     includes.own("fc_runtime/json.hpp");
     let name = &item.ty.name;
     out.enclose(&format!("struct {name} {{"), "};", |out| {
         for field in fields {
-            out.docs(&facts::field_docs(
-                &CPP,
-                field,
-                conditions.sentence(field, spelled),
-            ));
+            let condition = sentence(&expressions, field, fields, spelled);
+            out.docs(&facts::field_docs(&CPP, field, condition));
             used(includes, &field.ty);
             let mut ty = name_of(context, &field.ty);
             if field.optional {
@@ -181,9 +162,7 @@ fn structure(
         format!("const {name}& message"),
     ];
     out.parameters("std::ostream& operator<<(", &parameters, ");");
-    if let Some((command, Direction::Request)) = item.body_of() {
-        errors(out, includes, context, command);
-    }
+    errors(out, includes, context, item);
 }
 
 /// Returns `true` for a required field that begins unset. A list begins empty. A struct or a choice begins
@@ -221,20 +200,19 @@ pub fn spelled(value: &Expr<'_>) -> String {
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     includes.standard("cstdint");
-    out.blank();
-    out.docs(&about::errors(context, command));
+    out.documented(&about::errors(context, command));
     out.enclose(
         &format!("enum class {name} : std::int64_t {{"),
         "};",
         |out| {
             for (error, result) in package.errors(command) {
-                out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+                out.docs(&about::error(error, result.of));
                 out.line(format!(
                     "{} = {},",
                     result.name,
@@ -259,18 +237,13 @@ fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let ty = item.ty.of;
     let name = &item.ty.name;
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if !shape.closed {
-        docs.paragraph("其他值原样保留。Any other value is kept unchanged.");
-    }
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
-    out.docs(&docs);
+    let open = if shape.closed {
+        ""
+    } else {
+        "其他值原样保留。Any other value is kept unchanged."
+    };
+    out.docs(&about::enumeration(context, item.ty.of, open));
     let each = |out: &mut Source| {
         for value in values {
             out.docs(&facts::value_docs(value));
@@ -302,7 +275,7 @@ fn enumeration(
     out.line(format!(
         "[[nodiscard]] bool is_known({by_value} value) noexcept;"
     ));
-    if process::is_state(shape, values) {
+    if has_states(shape) {
         process::declare(out, &by_value, shape);
     }
     let parameters = ["std::ostream& out".to_owned(), format!("{by_value} value")];
@@ -412,7 +385,7 @@ fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
             out.parameters("static constexpr Error errors[] = {", &all, "};");
         }
         if let Some(effect) = call.operation.effect() {
-            let effect = effect_name(effect);
+            let effect = Case::Pascal.apply(effect.name());
             out.line(format!(
                 "static constexpr Effect effect = Effect::{effect};"
             ));
@@ -427,14 +400,4 @@ fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
             out.parameters("static bool is_in_order(", &parameters, ");");
         }
     });
-}
-
-/// An effect as the runtime calls it.
-pub fn effect_name(effect: Effect) -> &'static str {
-    match effect {
-        Effect::Read => "Read",
-        Effect::Config => "Config",
-        Effect::Motion => "Motion",
-        Effect::Unknown => "Unknown",
-    }
 }

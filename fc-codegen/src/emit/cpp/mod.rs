@@ -16,10 +16,9 @@ pub mod samples;
 mod tables;
 mod types;
 
-use crate::emit::stub::context::Context;
+use crate::package::context::Context;
+use crate::package::language::CPP;
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
-use crate::surface::language::CPP;
 use crate::target::Targets;
 use fc_spec::model::Model;
 
@@ -30,7 +29,6 @@ const SOURCES: &str = "sources.cmake";
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &CPP, &layout::CPP, Some(targets));
-    let samples = &Samples::new(model);
     let space = &types::namespace(context);
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);
@@ -68,9 +66,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         let id = header.id;
         let here = &groups::of_header(groups, header, &homes);
         let path = format!("include/{space}/groups/{id}.hpp");
-        files.push((path, messages::header(context, samples, header, here)));
+        files.push((path, messages::header(context, header, here)));
         let path = format!("src/groups/{id}.cpp");
-        files.push((path, fields::source(context, samples, header, here)));
+        files.push((path, fields::source(context, header, here)));
     }
     files.push((SOURCES.to_owned(), sources(&ids, has_tables)));
     let artifact = |(path, text): (String, String)| {
@@ -83,7 +81,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let generated = files
         .into_iter()
         .map(|(path, text)| (format!("generated/{path}"), text));
-    let tests = [(samples::FILE.to_owned(), samples::file(context, samples))];
+    let tests = [(samples::FILE.to_owned(), samples::samples_file(context))];
     generated.chain(tests).map(artifact).collect()
 }
 

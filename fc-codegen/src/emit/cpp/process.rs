@@ -2,19 +2,13 @@
 
 use super::fields::enumerators;
 use super::types::namespace;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::process::{set_off, state};
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Item, Shape, Spelled};
+use crate::package::context::{Context, Step};
+use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::process::{has_states, next_values, set_off, state};
+use crate::package::source::Source;
 use fc_spec::model::{
-    Accepted, Direction, EnumRepr, EnumType, EnumValue, Exchange, Field, Kind, Operation,
-    StateOrder, StructRef, Type, TypeRef,
+    Direction, EnumRepr, EnumType, EnumValue, Exchange, Kind, Operation, StateOrder, StructRef,
 };
-
-/// Returns `true` if the values of an enum are states of a process.
-pub fn is_state(shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> bool {
-    shape.order.is_some() || values.iter().any(|value| value.is_final || value.is_error)
-}
 
 /// Declares the functions over the states of an enum.
 pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
@@ -109,10 +103,7 @@ pub fn define(
                 out.line("if (!is_known(value) || !is_known(previous)) return true;");
             }
             for value in values.iter().filter(|value| !value.then.is_empty()) {
-                let then = value
-                    .then
-                    .iter()
-                    .filter_map(|next| values.iter().find(|known| known.of.name == *next));
+                let then = next_values(value, values);
                 let then: Vec<String> = then.map(|known| is("value", known)).collect();
                 let then = then.join(" || ");
                 out.line(format!("if ({}) return {then};", is("previous", value)));
@@ -159,12 +150,8 @@ pub fn define(
 /// Declares the functions that check the states in which a command is accepted.
 pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let space = &namespace(context);
-    let sets = command
-        .accepted()
-        .into_iter()
-        .flat_map(Accepted::state_sets);
-    for set in sets {
-        let ty = context.name_of(&set.ty);
+    for states in context.accepted_states(command) {
+        let ty = &states.item.ty.name;
         out.line(format!(
             "static bool is_accepted_in(const {space}::{ty}& state) noexcept;"
         ));
@@ -174,32 +161,17 @@ pub fn declare_accepted(out: &mut Source, context: &Context<'_>, command: &Opera
 /// Defines the functions of [`declare_accepted`].
 fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &namespace(context);
-    let sets = call
-        .operation
-        .accepted()
-        .into_iter()
-        .flat_map(Accepted::state_sets);
-    for set in sets {
-        let item = context.package.item(&set.ty);
-        let Shape::Enum(shape, known) = &item.shape else {
-            continue;
-        };
-        let held = if shape.repr == EnumRepr::String {
+    for states in context.accepted_states(call.operation) {
+        let item = states.item;
+        let held = if states.shape.repr == EnumRepr::String {
             "state.value()"
         } else {
             "state"
         };
-        let known = known
-            .iter()
-            .filter(|value| set.values.contains(&value.wire));
+        let known = states.values.iter();
         let known =
             known.map(|it| format!("{held} == {space}::{}::{}", enumerators(item), it.name));
-        let known: Vec<String> = known.collect();
-        let known = if known.is_empty() {
-            "false".to_owned()
-        } else {
-            known.join(" || ")
-        };
+        let known = any_of(&known.collect::<Vec<_>>());
         let (request, ty) = (&call.request.ty.name, &item.ty.name);
         out.line(format!(
             "bool Command<{space}::{request}>::is_accepted_in(const {space}::{ty}& state) noexcept {{"
@@ -208,6 +180,14 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         out.line("}");
         out.blank();
     }
+}
+
+/// `a || b`.
+fn any_of(conditions: &[String]) -> String {
+    if conditions.is_empty() {
+        return "false".to_owned();
+    }
+    conditions.join(" || ")
 }
 
 /// Declares the functions that tie a command to the reports that it sets off.
@@ -284,10 +264,10 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let way = body.and_then(|body| {
         let (keys, ty) = state(context, call.operation)?;
         let item = context.package.item(ty);
-        let Shape::Enum(shape, values) = &item.shape else {
+        let Shape::Enum(shape, _) = &item.shape else {
             return None;
         };
-        let says = is_state(shape, values);
+        let says = has_states(shape);
         Some((at(context, "report", body, keys), says))
     });
     let mut failures = Vec::new();
@@ -321,13 +301,7 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let failed = failures
         .iter()
         .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_error(it); }})"));
-    let failed: Vec<String> = failed.collect();
-    let failed = if failed.is_empty() {
-        "false".to_owned()
-    } else {
-        failed.join(" || ")
-    };
-    function(out, "is_failure", &failed);
+    function(out, "is_failure", &any_of(&failed.collect::<Vec<_>>()));
     out.line(format!(
         "bool {of}::is_in_order({message} report, {message} previous) {{"
     ));
@@ -351,17 +325,9 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
 /// A pointer to a field inside a message. It is null if a field on the path is absent.
 fn at(context: &Context<'_>, message: &str, body: &StructRef, keys: &[String]) -> String {
     let space = &namespace(context);
-    let mut holder: Option<&TypeRef> = Some(body);
     let mut out = format!("&{message}");
-    for field in context.model().way(body, keys) {
-        let field: &Field = field;
-        let Some(ty) = holder else { break };
-        let (ty, name) = (context.name_of(ty), context.field_name(ty, field));
-        out = format!("detail::at({out}, &{space}::{ty}::{name})");
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
+    for Step { holder, name, .. } in context.steps(body, keys) {
+        out = format!("detail::at({out}, &{space}::{holder}::{name})");
     }
     out
 }

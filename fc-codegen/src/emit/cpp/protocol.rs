@@ -1,54 +1,43 @@
 //! The protocol as a value: header, envelopes, result codes, ports, limits and operations.
 
-use super::groups::Group;
-use super::layout::{Includes, integer, literal};
-use super::messages::effect_name;
+use super::groups::NamedGroup;
+use super::layout::{Includes, header_file, integer, literal, source_file};
 use super::types::namespace;
-use crate::emit::stub::about;
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Spelled;
+use crate::package::about;
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Spelled;
+use crate::package::language::Case;
+use crate::package::source::Source;
+use crate::package::wire::{FrameFacts, WireFacts};
 use fc_spec::model::{
-    ByteOrder, Cadence, DigestAlgorithm, Direction, EncodingRole, EnvelopeField, EnvelopeRole,
-    Exchange, HeaderField, HeaderQuirk, HeaderRole, Kind, Operation, ResultRole, Type,
+    Cadence, DigestAlgorithm, Direction, Effect, EnvelopeField, Exchange, HeaderField, HeaderRole,
+    Operation, Type,
 };
 
 /// The header.
 pub fn header(context: &Context<'_>) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    includes.standard("cstdint");
-    includes.standard("string_view");
-    includes.own("fc_runtime/call.hpp");
-    includes.own("fc_runtime/protocol.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
-        let protocol = &context.model().protocol;
-        let mut docs = Docs::of(&protocol.title);
-        docs.text(&protocol.about);
-        docs.paragraph(format!("Version {} of the spec.", protocol.version));
-        out.docs(&docs);
+    let includes = Includes::new(
+        context,
+        &["cstdint", "string_view"],
+        &[],
+        &["call", "protocol"],
+    );
+    header_file(context, &includes, |out| {
+        out.docs(&about::protocol(context.model()));
         out.line("[[nodiscard]] const fc_runtime::Protocol& protocol();");
         out.blank();
         results(out, context);
         streams(out, context);
-    });
-    out.finish()
+    })
 }
 
 fn results(out: &mut Source, context: &Context<'_>) {
     out.docs(&about::results(context));
     out.enclose("enum class ResultCode : std::int64_t {", "};", |out| {
         for result in &context.package.results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
-            out.docs(&docs);
+            out.docs(&about::result(result.of));
             out.line(format!(
                 "{} = {},",
                 result.name,
@@ -83,31 +72,29 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/protocol.hpp\""));
-    out.blank();
-    out.line("#include <limits>");
-    out.blank();
-    out.line(format!("#include \"{space}/messages.hpp\""));
-    out.blank();
-    out.line("// Tables, a line for each entry.");
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let before = format!(
+        "#include <limits>\n\n#include \"{space}/messages.hpp\"\n\n// Tables, a line for each entry.\n"
+    );
+    source_file(context, "protocol.hpp", &before, |out| {
         out.line("namespace {");
         out.blank();
         out.line("using namespace std::string_view_literals;");
         out.blank();
         out.enclose("fc_runtime::Protocol make_protocol() {", "}", |out| {
             out.line("fc_runtime::Protocol protocol;");
-            addresses(out, context);
-            header_layout(out, context);
-            frames(out, context);
+            let wire = &WireFacts::build(context);
+            out.line(format!("protocol.name = {};", literal(wire.name)));
+            out.line(format!("protocol.host = {};", literal(wire.host)));
+            for (name, number) in &wire.ports {
+                out.line(format!("protocol.{name} = {number};"));
+            }
+            header_layout(out, context, &wire.frame);
+            frames(out, wire);
             envelope(out, "request", &context.package.request_envelope);
             envelope(out, "response", &context.package.response_envelope);
-            defaults(out, context);
+            defaults(out, wire);
             for group in groups {
                 out.line(format!("{}(protocol.operations);", group.function("add")));
             }
@@ -142,59 +129,29 @@ pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
                 out.line("return {static_cast<std::int64_t>(code), std::string(text(code))};");
             },
         );
-    });
-    out.finish()
+    })
 }
 
-fn addresses(out: &mut Source, context: &Context<'_>) {
-    let model = context.model();
-    let ports = &model.transport.ports;
-    out.line(format!("protocol.name = {};", literal(&model.protocol.id)));
-    out.line(format!(
-        "protocol.host = {};",
-        literal(&model.transport.host)
-    ));
-    out.line(format!("protocol.command_port = {};", ports.command.number));
-    out.line(format!("protocol.data_port = {};", ports.data.number));
-}
-
-fn header_layout(out: &mut Source, context: &Context<'_>) {
-    let frame = &context.model().frame;
-    out.line(format!("protocol.header.length = {};", frame.header_len()));
-    let is_big = frame.byte_order == ByteOrder::Big;
+fn header_layout(out: &mut Source, context: &Context<'_>, frame: &FrameFacts<'_, '_>) {
+    let length = context.model().frame.header_len();
+    out.line(format!("protocol.header.length = {length};"));
+    let is_big = frame.is_big_endian();
     out.line(format!("protocol.header.big_endian = {is_big};"));
     out.enclose("protocol.header.fields = {", "};", |out| {
-        for field in &context.package.header {
+        for field in frame.header {
             header_field(out, field);
         }
     });
-    let digests = context
-        .package
-        .header
-        .iter()
-        .find_map(|field| field.digest());
-    let digest = match digests {
-        None => "None",
-        Some(DigestAlgorithm::Md5) => "Md5",
-        Some(DigestAlgorithm::Crc32) => "Crc32",
-    };
+    let digest = frame.digest.map_or("none", DigestAlgorithm::name);
+    let digest = Case::Pascal.apply(digest);
     out.line(format!(
         "protocol.header.digest = fc_runtime::DigestAlgorithm::{digest};"
     ));
 }
 
 fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
-    let role = match field.role {
-        Some(HeaderRole::Head) => "Head",
-        Some(HeaderRole::Kind) => "Kind",
-        Some(HeaderRole::Code) => "Code",
-        Some(HeaderRole::Id) => "Id",
-        Some(HeaderRole::Encoding) => "Encoding",
-        Some(HeaderRole::TotalLength) => "TotalLength",
-        Some(HeaderRole::PlainLength) => "PlainLength",
-        Some(HeaderRole::Digest) => "Digest",
-        Some(HeaderRole::Status) | None => "Fixed",
-    };
+    let role = field.role.filter(|role| *role != HeaderRole::Status);
+    let role = Case::Pascal.apply(role.map_or("fixed", HeaderRole::name));
     out.line(format!(
         "{{fc_runtime::HeaderRole::{role}, {}, {}, {}}},  // {}",
         field.offset,
@@ -210,58 +167,37 @@ fn bytes(bytes: &[u8]) -> String {
     format!("\"{}\"sv", escaped.concat())
 }
 
-fn frames(out: &mut Source, context: &Context<'_>) {
-    let frame = &context.model().frame;
-    let kinds = &frame.kinds;
-    out.line(format!(
-        "protocol.request_head = {};",
-        bytes(&frame.request_head)
-    ));
-    out.line(format!(
-        "protocol.response_head = {};",
-        bytes(&frame.response_head)
-    ));
-    out.line(format!("protocol.stream_kind = {};", kinds.stream.value));
-    out.line(format!("protocol.command_kind = {};", kinds.command.value));
-    out.line(format!("protocol.report_kind = {};", kinds.report.value));
-    let reserved: Vec<String> = kinds
-        .reserved
-        .iter()
-        .map(|it| it.value.to_string())
-        .collect();
-    out.line(format!(
-        "protocol.reserved_kinds = {{{}}};",
-        reserved.join(", ")
-    ));
-    let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
-    let plain = encoding(EncodingRole::Plain).unwrap_or_default();
-    out.line(format!("protocol.plain_encoding = {plain};"));
-    if let Some(gzip) = encoding(EncodingRole::Gzip) {
+fn frames(out: &mut Source, wire: &WireFacts<'_, '_>) {
+    let frame = &wire.frame;
+    for (name, head) in frame.heads {
+        out.line(format!("protocol.{name} = {};", bytes(head)));
+    }
+    for (name, kind) in frame.kinds {
+        out.line(format!("protocol.{name}_kind = {kind};"));
+    }
+    let reserved = frame.reserved_kinds.iter().map(u8::to_string);
+    let reserved = reserved.collect::<Vec<_>>().join(", ");
+    out.line(format!("protocol.reserved_kinds = {{{reserved}}};"));
+    out.line(format!("protocol.plain_encoding = {};", frame.plain));
+    if let Some(gzip) = frame.gzip {
         out.line(format!("protocol.gzip_encoding = std::uint8_t{{{gzip}}};"));
     }
-    let zero = frame.has_quirk(HeaderQuirk::ZeroWhenPlain);
+    let zero = frame.takes_zero_plain_length;
     out.line(format!("protocol.zero_plain_length = {zero};"));
-    for role in ResultRole::ALL {
-        let mut results = context.model().results.iter();
-        if let Some(result) = results.find(|result| result.role == Some(*role)) {
-            out.line(format!(
-                "protocol.results.{} = {{{}, {}}};",
-                role.name(),
-                integer(result.code.into()),
-                literal(&result.text.zh)
-            ));
-        }
+    for result in wire.results.iter().filter(|it| it.result.is_some()) {
+        let (code, text) = result.code_and_text();
+        let (role, code) = (result.role, integer(code.into()));
+        out.line(format!(
+            "protocol.results.{role} = {{{code}, {}}};",
+            literal(text)
+        ));
     }
 }
 
 fn envelope(out: &mut Source, side: &str, keys: &[Spelled<'_, EnvelopeField>]) {
     out.enclose(&format!("protocol.{side}_envelope = {{"), "};", |out| {
         for key in keys {
-            let role = match key.role {
-                EnvelopeRole::Time => "Time",
-                EnvelopeRole::ResultCode => "ResultCode",
-                EnvelopeRole::ResultText => "ResultText",
-            };
+            let role = Case::Pascal.apply(key.role.name());
             let range = match &key.of.ty {
                 Type::Int(kind) => {
                     let ty = super::types::integer_type(kind.name());
@@ -279,35 +215,21 @@ fn envelope(out: &mut Source, side: &str, keys: &[Spelled<'_, EnvelopeField>]) {
     });
 }
 
-fn defaults(out: &mut Source, context: &Context<'_>) {
-    let calls = &context.model().calls;
-    let limits = &context.model().limits;
+fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
     let duration = |ms: u32| format!("std::chrono::milliseconds({ms})");
-    out.line(format!(
-        "protocol.defaults.call_timeout = {};",
-        duration(calls.timeout_ms)
-    ));
-    let handler = duration(calls.handler_timeout_ms);
-    out.line(format!("protocol.defaults.handler_timeout = {handler};"));
-    if let Some(age) = calls.max_age_ms {
-        out.line(format!("protocol.defaults.max_age = {};", duration(age)));
+    let max_age = wire.max_age_ms.map(|age| ("max_age", age));
+    for (name, ms) in wire.times.iter().copied().chain(max_age) {
+        out.line(format!("protocol.defaults.{name} = {};", duration(ms)));
     }
-    let (timeout, retries) = (duration(calls.ack.timeout_ms), calls.ack.retries);
+    let (timeout, retries) = (duration(wire.ack.timeout_ms), wire.ack.retries);
     out.line(format!("protocol.defaults.ack = {{{timeout}, {retries}}};"));
-    for (name, value) in [
-        ("frame_bytes", limits.frame_bytes),
-        ("inflated_bytes", limits.inflated_bytes),
-        ("json_depth", limits.json_depth),
-        ("in_flight", limits.in_flight),
-        ("queued_reports", limits.queued_reports),
-        ("connections", limits.connections),
-    ] {
+    for (name, value) in wire.limits {
         out.line(format!("protocol.defaults.limits.{name} = {value};"));
     }
 }
 
 /// What tells the protocol of a group's operations, as the header declares it.
-pub fn declare_operations(out: &mut Source, group: &Group<'_>) {
+pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 把这一组的指令、上报和数据流加到 `protocol().operations` 中。");
     out.line("/// Adds the operations of the group to those of `protocol()`.");
     let open = format!("void add_{}(", group.id);
@@ -316,7 +238,7 @@ pub fn declare_operations(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The function for that.
-pub fn operations(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn operations(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "void add_{}(std::vector<fc_runtime::OperationInfo>& operations) {{",
         group.id
@@ -329,16 +251,13 @@ pub fn operations(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 fn operation_info(out: &mut Source, context: &Context<'_>, operation: &Operation) {
-    let kind = match operation.kind() {
-        Kind::Command => "Command",
-        Kind::Report => "Report",
-        Kind::Stream => "Stream",
-    };
+    let kind = Case::Pascal.apply(operation.kind().name());
     let code = match operation.code.value {
         Some(_) => format!("std::uint16_t{{{}}}", operation.code.spelling),
         None => "std::nullopt".to_owned(),
     };
-    let effect = operation.effect().map_or("Unknown", effect_name);
+    let effect = operation.effect().unwrap_or(Effect::Unknown);
+    let effect = Case::Pascal.apply(effect.name());
     let ack = match &operation.exchange {
         Exchange::Report { ack, .. } => {
             format!(

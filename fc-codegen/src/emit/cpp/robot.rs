@@ -1,31 +1,24 @@
 //! The robot's stub: a class to derive from whose methods are those of its groups, one per command, one that answers with
 //! the spec's examples, and typed pushing of reports.
 
-use super::groups::Group;
-use super::layout::Includes;
-use super::types::namespace;
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::emit::stub::source::Source;
+use super::groups::{NamedGroup, with_commands, with_reports};
+use super::layout::{Includes, header_file, source_file};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::ranges::{UNKNOWN, pass_through};
+use crate::package::source::Source;
 
 /// The header.
-pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    includes.standard("memory");
-    includes.standard("string_view");
-    includes.own(format!("{space}/messages.hpp"));
-    includes.own(format!("{space}/protocol.hpp"));
-    includes.own("fc_runtime/server.hpp");
-    includes.own("fc_runtime/stacked.hpp");
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
+    let includes = Includes::new(
+        context,
+        &["memory", "string_view"],
+        &["messages", "protocol"],
+        &["server", "stacked"],
+    );
+    header_file(context, &includes, |out| {
         robot(out, context, groups);
         out.blank();
         partial(out, groups);
@@ -41,16 +34,10 @@ pub fn header(context: &Context<'_>, groups: &[Group<'_>]) -> String {
         );
         out.blank();
         reporter(out, groups);
-    });
-    out.finish()
+    })
 }
 
-/// The groups that have commands.
-fn handling<'g, 'p>(groups: &'g [Group<'p>]) -> impl Iterator<Item = &'g Group<'p>> {
-    groups.iter().filter(|group| !group.commands.is_empty())
-}
-
-fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
+fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
@@ -69,9 +56,8 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
 /// and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any
 /// more.",
     );
-    let bases: Vec<String> = handling(groups)
-        .map(|group| format!("public {}", group.named("Robot")))
-        .collect();
+    let bases = with_commands(groups, "Robot").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}")).collect();
     out.class("Robot", &bases);
     out.line(
         " public:
@@ -82,24 +68,15 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
     );
     out.enclose("", "};", |out| {
         for (name, range) in pass_through(context) {
-            let mut docs = Docs::of(&range.text);
-            docs.paragraph(format!(
-                "Codes {} to {} without a separate method.",
-                range.first_spelling, range.last_spelling
-            ));
-            raw(out, docs, &name);
+            raw(out, &about::range(range), &name);
         }
-        let other = [
-            "功能码不在规范中的指令。",
-            "Commands with a code that is not in the spec.",
-        ];
-        raw(out, Docs::said(&other), UNKNOWN);
+        raw(out, &about::unknown(), UNKNOWN);
     });
 }
 
 /// The commands of a group as a robot handles them.
-pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let name = group.name("Robot");
+pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let name = group.part("Robot");
     out.docs(&Docs::said(&[
         "一组指令，由 `Robot` 处理。",
         "The commands of a group as `Robot` handles them.",
@@ -108,11 +85,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     out.line(" public:");
     out.enclose("", "", |out| {
         for command in &group.commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(context.style, &mut docs, command.operation);
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&facts::method_docs(context, command.operation, |_| ()));
             let open = format!(
                 "virtual fc_runtime::Replied<{}> {}(",
                 command.response.ty.name, command.method
@@ -132,13 +105,13 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What `PartialRobot` and `ExampleRobot` do with the commands of a group.
-pub fn defaults(out: &mut Source, group: &Group<'_>) {
+pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
         "The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.",
     ]));
     out.line("template <class Base>");
-    out.line(format!("class {} : public Base {{", group.name("Defaults")));
+    out.line(format!("class {} : public Base {{", group.part("Defaults")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for command in &group.commands {
@@ -162,11 +135,8 @@ pub fn defaults(out: &mut Source, group: &Group<'_>) {
 }
 
 /// A method for commands without a type, which a robot need not have.
-fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
-    docs.paragraph("不实现此方法时，按未知指令拒绝。");
-    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
-    out.blank();
-    out.docs(&docs);
+fn raw(out: &mut Source, docs: &Docs<'_>, name: &str) {
+    out.documented(docs);
     let parameters = [
         "const fc_runtime::Context& context",
         "std::string_view text",
@@ -192,10 +162,10 @@ fn of_parts(
     name: &str,
     answers: &str,
     constructor: &str,
-    groups: &[Group<'_>],
+    groups: &[NamedGroup<'_, '_>],
 ) {
     let answers = format!("fc_runtime::{answers}<Robot, protocol>");
-    let parts = handling(groups).map(|group| group.named("Defaults"));
+    let parts = with_commands(groups, "Defaults");
     let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
     // The formatter would fill the lines, and another group would change all of them.
     out.line("// clang-format off");
@@ -209,7 +179,7 @@ fn of_parts(
     out.line("// clang-format on");
 }
 
-fn partial(out: &mut Source, groups: &[Group<'_>]) {
+fn partial(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
         "\
@@ -222,7 +192,7 @@ fn partial(out: &mut Source, groups: &[Group<'_>]) {
     );
 }
 
-fn example(out: &mut Source, groups: &[Group<'_>]) {
+fn example(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
         "\
@@ -238,7 +208,7 @@ fn example(out: &mut Source, groups: &[Group<'_>]) {
     );
 }
 
-fn reporter(out: &mut Source, groups: &[Group<'_>]) {
+fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     out.line(
         "\
 /// 发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
@@ -246,11 +216,8 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
 /// Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,
 /// the report goes to all connected apps. The server must outlive this object.",
     );
-    let bases: Vec<String> = groups
-        .iter()
-        .filter(|group| !group.reports.is_empty())
-        .map(|group| format!("public {}<Reporter>", group.named("Reporter")))
-        .collect();
+    let bases = with_reports(groups, "Reporter").into_iter();
+    let bases: Vec<String> = bases.map(|it| format!("public {it}<Reporter>")).collect();
     out.class("Reporter", &bases);
     out.line(
         " public:
@@ -266,21 +233,17 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The reports of a group as methods of the reporter.
-pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
         "The reports of a group as methods of `Reporter` (`Self`).",
     ]));
     out.line("template <class Self>");
-    out.line(format!("class {} {{", group.name("Reporter")));
+    out.line(format!("class {} {{", group.part("Reporter")));
     out.line(" public:");
     out.enclose("", "};", |out| {
         for report in &group.reports {
-            let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(context.style, &mut docs, report.operation);
-            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&facts::method_docs(context, report.operation, |_| ()));
             let parameters = [
                 format!("const {}& report", report.request.ty.name),
                 "std::optional<fc_runtime::ConnectionId> to = std::nullopt".to_owned(),
@@ -297,7 +260,7 @@ pub fn reporters(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What hands a request on to its method, as the header declares it.
-pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
+pub fn declare_serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 由机器人处理这一组的指令；其他指令没有结果。");
     out.line("/// Has a robot handle a command of the group; none if it is of another.");
     let open = format!(
@@ -305,7 +268,7 @@ pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
         group.id
     );
     let parameters = [
-        format!("{}& robot", group.name("Robot")),
+        format!("{}& robot", group.part("Robot")),
         "const fc_runtime::Context& context".to_owned(),
         "std::string_view text".to_owned(),
     ];
@@ -313,11 +276,11 @@ pub fn declare_serve(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The function for that.
-pub fn serve(out: &mut Source, group: &Group<'_>) {
+pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "std::optional<fc_runtime::Handled> serve_{}({}& robot, const fc_runtime::Context& context, std::string_view text) {{",
         group.id,
-        group.name("Robot")
+        group.part("Robot")
     );
     out.enclose(&open, "}", |out| {
         out.enclose("switch (context.code) {", "}", |out| {
@@ -335,24 +298,19 @@ pub fn serve(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The source.
-pub fn source(context: &Context<'_>, groups: &[Group<'_>]) -> String {
-    let space = &namespace(context);
+pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let ranges = pass_through(context);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/robot.hpp\""));
-    out.blank();
-    out.line("#include <utility>");
-    out.blank();
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let before = "#include <utility>\n\n";
+    source_file(context, "robot.hpp", before, |out| {
         let unknown = UNKNOWN.to_owned();
         for name in ranges.iter().map(|(name, _)| name).chain([&unknown]) {
             out.blank();
             let open = format!(
                 "fc_runtime::RawReplied Robot::{name}(const fc_runtime::Context& /*context*/, std::string_view /*text*/) {{"
             );
-            out.enclose(&open, "}", |out| out.line("return fc_runtime::unknown_command(protocol());"));
+            out.enclose(&open, "}", |out| {
+                out.line("return fc_runtime::unknown_command(protocol());");
+            });
         }
         out.blank();
         out.line(
@@ -367,7 +325,7 @@ ExampleRobot::~ExampleRobot() = default;",
         out.enclose("fc_runtime::Service service(std::shared_ptr<Robot> robot) {", "}", |out| {
             let open = "return [robot = std::move(robot)](const fc_runtime::Context& context, std::string_view text) -> fc_runtime::Handled {";
             out.enclose(open, "};", |out| {
-                for group in handling(groups) {
+                for group in groups.iter().filter(|it| !it.commands.is_empty()) {
                     let serve = group.function("serve");
                     out.line(format!(
                         "if (auto handled = {serve}(*robot, context, text)) return *std::move(handled);"
@@ -393,6 +351,5 @@ ExampleRobot::~ExampleRobot() = default;",
                 out.line(serve_raw(UNKNOWN));
             });
         });
-    });
-    out.finish()
+    })
 }

@@ -1,60 +1,34 @@
 //! The spec's tables of constants, each a function that answers its rows as typed values.
 
 use super::fields::enumerators;
-use super::layout::{Includes, float, integer, literal, raw};
-use super::types::{name_in, name_of, namespace};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions, Record};
+use super::layout::{Includes, float, header_file, integer, literal, raw, source_file};
+use super::types::{name_in, name_of};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::expr::{Expr, Expressions, Record};
 use fc_spec::model::Type;
 
 /// The header.
 pub fn header(context: &Context<'_>) -> String {
-    let space = &namespace(context);
-    let mut out = Source::cpp();
-    out.line("#pragma once");
-    out.blank();
-    let mut includes = Includes::default();
-    includes.standard("vector");
-    includes.own(format!("{space}/messages.hpp"));
-    includes.lines(&mut out);
-    out.blank();
-    out.namespace(space, |out| {
+    let includes = Includes::new(context, &["vector"], &["messages"], &[]);
+    header_file(context, &includes, |out| {
         for table in &context.package.tables {
-            let mut docs = Docs::of(&table.title);
-            docs.text(&table.about);
-            if let Some(store) = &table.kept {
-                docs.paragraph(facts::kept(store));
-            }
-            docs.paragraph(context.links(&table.location, "reference/tables.md"));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&about::table(context, table.of));
             let row = context.name_of(&table.row);
             out.line(format!(
                 "[[nodiscard]] const std::vector<{row}>& {}();",
                 table.name
             ));
         }
-    });
-    out.finish()
+    })
 }
 
 /// The source.
 pub fn source(context: &Context<'_>) -> String {
-    let space = &namespace(context);
     let package = &context.package;
-    let samples = Samples::new(package.model);
-    let expressions = Expressions::new(package, &samples);
-    let mut out = Source::cpp();
-    out.line(format!("#include \"{space}/tables.hpp\""));
-    out.blank();
-    out.line("// A line for each row.");
-    out.line("// clang-format off");
-    out.blank();
-    out.namespace(space, |out| {
+    let expressions = Expressions::new(package);
+    let before = "// A line for each row.\n";
+    source_file(context, "tables.hpp", before, |out| {
         for table in &package.tables {
             let row = context.name_of(&table.row);
             out.blank();
@@ -78,8 +52,7 @@ pub fn source(context: &Context<'_>) -> String {
                 },
             );
         }
-    });
-    out.finish()
+    })
 }
 
 /// A struct with all of its fields.

@@ -1,9 +1,10 @@
 //! The types of C++, and in which order and files those of the spec stand: what holds a type comes behind it.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::process::set_off;
-use crate::surface::language::{CPP, Role};
-use crate::surface::package::{Item, Shape};
+use crate::package::context::Context;
+use crate::package::cycles::{Needs, first_of_circle, reached};
+use crate::package::items::{Item, Shape};
+use crate::package::language::{CPP, Role};
+use crate::package::process::set_off;
 use fc_spec::model::{Accepted, Direction, Type, TypeRef};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -60,35 +61,14 @@ pub fn headers<'p, 'm>(
     context: &'p Context<'m>,
 ) -> (Vec<Header<'p, 'm>>, BTreeMap<&'p str, &'p str>) {
     let package = &context.package;
-    let mut needs: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for module in &package.modules {
+    let needs = package.modules.iter().map(|module| {
         let held = module.items.iter().flat_map(|item| held_by(context, item));
         let modules = held.map(|ty| package.module_of(ty).id.as_str());
-        needs.insert(&module.id, modules.collect());
-    }
-    // Whatever can be come to from a module, and from there back to it, is one header with it.
-    for _ in 0..needs.len() {
-        let before = needs.clone();
-        for reached in needs.values_mut() {
-            let further = reached.iter().filter_map(|id| before.get(id));
-            let further: Vec<&str> = further.flatten().copied().collect();
-            reached.extend(further);
-        }
-    }
-    let mut homes: BTreeMap<&str, &str> = BTreeMap::new();
-    for module in &package.modules {
-        let id = module.id.as_str();
-        let is_round = |other: &&&str| {
-            let back = needs
-                .get(**other)
-                .is_some_and(|reached| reached.contains(id));
-            back && needs
-                .get(id)
-                .is_some_and(|reached| reached.contains(**other))
-        };
-        let home = needs.keys().filter(|other| is_round(other)).min();
-        homes.insert(id, home.copied().unwrap_or(id));
-    }
+        (module.id.as_str(), modules.collect())
+    });
+    let needs = reached(&needs.collect::<Needs<'_>>());
+    let homes = needs.keys().map(|id| (*id, first_of_circle(&needs, id)));
+    let mut homes: BTreeMap<&str, &str> = homes.collect();
     let mut headers: Vec<Header<'p, 'm>> = Vec::new();
     for module in &package.modules {
         let home = homes.get(module.id.as_str()).copied().unwrap_or(&module.id);

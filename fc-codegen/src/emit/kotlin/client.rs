@@ -1,19 +1,20 @@
 //! The app's side: one method per command, and following.
 
-use super::group::{Group, heading, parts, wrapper};
+use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
 use super::operations::{deprecated, way};
 use super::streams;
 use super::text::STYLE;
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::{ending, set_off};
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Item};
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::{Call, Item};
+use crate::package::process::{ending, set_off};
+use crate::package::source::Source;
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
+pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let protocol = &context.package.name;
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
@@ -50,8 +51,7 @@ public fun data(): DataConnection = connection.data()
 /** 关闭连接。Closes the connection. */
 override fun close(): Unit = connection.close()",
         );
-        out.blank();
-        out.docs(&both("建立连接。", "Makes connections."));
+        out.documented(&both("建立连接。", "Makes connections."));
         out.block("public companion object", |out| {
             out.line(format!(
                 "\
@@ -93,22 +93,17 @@ const CONNECTION: &str =
     "/** 底层连接。The underlying connection: raw commands and options of a call. */";
 
 /// The methods for the commands of a group.
-pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.commands.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&group.docs("Client"));
-    out.block(
-        format!("public interface {}", group.part("Client")),
-        |out| {
-            out.line(CONNECTION);
-            out.line(format!("public val {PROPERTY}"));
-            for command in &group.commands {
-                call(out, context, command);
-            }
-        },
-    );
+    part_of(out, group, "Client", &part_name(group, "Client"), |out| {
+        out.line(CONNECTION);
+        out.line(format!("public val {PROPERTY}"));
+        for command in &group.commands {
+            call(out, context, command);
+        }
+    });
 }
 
 /// Whether a request can be made of nothing.
@@ -118,15 +113,11 @@ pub fn is_bare(item: &Item<'_>) -> bool {
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let operation = command.operation;
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(&STYLE, &mut docs, operation);
-    if context.package.error_type(operation).is_some() {
-        docs.raw("[fc.runtime.CallError.declared] returns the error of a refused call.");
-    }
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    let mut docs = facts::command_docs(context, operation, |_| {
+        "[fc.runtime.CallError.declared] returns the error of a refused call.".to_owned()
+    });
     docs.raw("@throws fc.runtime.CallError if the call fails");
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     deprecated(out, operation);
     out.line("@JvmSynthetic");
     let (method, request, response) = (
@@ -147,11 +138,9 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &format!("): {response} ="),
         &format!("connection.call(Operations.{method}, request)"),
     );
-    let mut docs = Docs::default();
-    docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
+    let docs = Docs::linked(format!("[{method}]，供 Java 使用。[{method}] for Java."));
     let mut for_java = |parameter: &str, body: &str| {
-        out.blank();
-        out.docs(&docs);
+        out.documented(&docs);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
@@ -178,8 +167,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
             continue;
         };
         let reported_type = &reported.request.ty.name;
-        let mut docs = Docs::default();
-        docs.raw(format!(
+        let mut docs = Docs::linked(format!(
             "[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。\n\
              [{method}]: returns the response, and then each [{reported_type}] that the command sets off.",
         ));
@@ -194,8 +182,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
         });
         let ties: Vec<String> = ties.collect();
         let kind = reported.method;
-        out.blank();
-        out.docs(&docs);
+        out.documented(&docs);
         deprecated(out, operation);
         out.line("@JvmSynthetic");
         let name = if followed.len() == 1 {

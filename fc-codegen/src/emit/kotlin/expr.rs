@@ -1,9 +1,9 @@
 //! Constants of the spec as Kotlin.
 
 use super::text::{integer, literal};
-use crate::emit::stub::source::Source;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::package::Spelled;
+use crate::package::expr::{Expr, Record};
+use crate::package::items::Spelled;
+use crate::package::source::Source;
 use fc_spec::model::{Field, FloatKind, IntKind, Type};
 
 /// How a message is made.

@@ -2,34 +2,24 @@
 
 use super::expr;
 use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
-use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::{Docs, columns_of};
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Module, Shape, Spelled};
-use fc_spec::model::{
-    Condition, EnumRepr, EnumType, EnumValue, Field, Quirk, StateOrder, Type, Value, Variant,
-};
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::docs::{Docs, columns_of};
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::marks::FieldMarks;
+use crate::package::process::{has_states, next_values};
+use crate::package::source::Source;
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
-/// The file of the types that several groups share.
-pub fn shared(context: &Context<'_>, samples: &Samples<'_>) -> Source {
-    let mut out = Source::new(&STYLE);
-    let mut modules = context.package.modules.iter();
-    if let Some(shared) = modules.find(|it| it.group.is_none()) {
-        module(&mut out, context, samples, shared);
-    }
-    out
-}
-
-/// The types of a module.
-pub fn module(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) {
-    for item in &module.items {
+/// Message types.
+pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
+    for item in items {
         out.blank();
         match &item.shape {
-            Shape::Record(_, fields) => message(out, context, samples, item, fields),
+            Shape::Record(_, fields) => message(out, context, item, fields),
             Shape::Enum(shape, values) => enumeration(out, context, item, shape, values),
             Shape::Choice(_, variants) => choice(out, context, item, variants),
         }
@@ -49,7 +39,6 @@ fn constant(context: &Context<'_>, field: &Field) -> String {
 fn message(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
@@ -59,22 +48,16 @@ fn message(
     supers.extend(choices_of(context, item));
     let head = format!("public class {name} private constructor(content: Content)");
     out.block(heading(out, &head, &supers), |out| {
-        let expressions = Expressions::new(&context.package, samples);
-        let conditions = Conditions {
-            fields,
-            expressions: &expressions,
-        };
+        let expressions = Expressions::new(&context.package);
         for field in fields {
-            let condition = conditions.sentence(field, spelled);
-            out.blank();
-            out.docs(&facts::field_docs(&STYLE, field, condition));
+            let condition = sentence(&expressions, field, fields, spelled);
+            out.documented(&facts::field_docs(&STYLE, field, condition));
             property(out, context, field);
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
                 let (property, ty) = (&field.name, type_of(context, &field.ty));
-                out.blank();
-                out.docs(&both(
+                out.documented(&both(
                     "同上；没有时为默认值。",
                     "The same, or the default if it is absent.",
                 ));
@@ -87,8 +70,7 @@ fn message(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "以此消息的内容为起点的构造器。",
             "A builder that starts with the content of this message.",
         ));
@@ -96,7 +78,7 @@ fn message(
         out.blank();
         builder(out, context, name, fields);
         out.blank();
-        companion(out, context, samples, item, fields);
+        companion(out, context, item, fields);
     });
 }
 
@@ -132,14 +114,10 @@ fn spelled(value: &Expr<'_>) -> String {
 
 /// A comment of the generator's own: on one line if it is short.
 pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
-    let mut docs = Docs::default();
     if columns_of(zh) + en.len() <= SHORT {
-        docs.raw([zh, en].concat());
-    } else {
-        docs.paragraph(zh);
-        docs.paragraph(en);
+        return Docs::linked([zh, en].concat());
     }
-    docs
+    Docs::said(&[zh, en])
 }
 
 /// Columns of a comment on one line.
@@ -155,11 +133,9 @@ fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>)
 }
 
 fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
-    let mut docs = Docs::default();
-    docs.raw(format!(
+    out.docs(&Docs::linked(format!(
         "逐项设置 [{name}] 的字段。Collects the fields of a [{name}]."
-    ));
-    out.docs(&docs);
+    )));
     let head = "public class Builder internal constructor(from: ";
     let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
     let head = heading(out, &format!("{head}{name}?)"), &supers);
@@ -172,10 +148,7 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
             let (property, constant) = (&field.name, constant(context, field));
             let mark = if field.optional { "?" } else { "" };
             let ty = type_of(context, &field.ty);
-            let mut docs = Docs::default();
-            docs.raw(format!("[{name}.{property}]"));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&Docs::linked(format!("[{name}.{property}]")));
             let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
             let put = format!("put({constant}, {property})");
             if out.has_room([&head, " ", &put]) {
@@ -190,13 +163,12 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
 fn companion(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
     let name = &item.ty.name;
     let mut arguments = vec![literal(name)];
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let example = context.example(item);
     if example != "{}" {
         arguments.push(literal(&example));
     }
@@ -212,17 +184,18 @@ fn companion(
     };
     out.block(head, |out| {
         for field in fields {
+            let marks = FieldMarks::build(field.of, fields);
             let how = if field.optional {
                 "optional"
             } else {
                 "required"
             };
             let wire = literal(&field.wire);
-            let mut made = format!("{how}({wire}, {})", codec(context, field));
-            for key in &field.details().also {
+            let mut made = format!("{how}({wire}, {})", codec(context, field, &marks));
+            for key in marks.also {
                 made.extend([".also(", &literal(key), ")"]);
             }
-            if field.details().quirks.contains(&Quirk::EmptyIsAbsent) {
+            if marks.empty_is_absent {
                 made.push_str(".emptyIsAbsent()");
             }
             if field.sensitive {
@@ -231,15 +204,13 @@ fn companion(
             out.line(format!("private val {} = {made}", constant(context, field)));
         }
         conditions(out, context, fields);
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "一个空的构造器，供 Java 使用。",
             "An empty builder, for Java.",
         ));
         out.line("@JvmStatic");
         out.line("public fun builder(): Builder = Builder(null)");
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "用 `build` 设置字段，构造消息。",
             "Builds a message with the fields that `build` sets.",
         ));
@@ -257,34 +228,22 @@ fn companion(
 
 /// Conditions come after all fields: they may ask a later one.
 fn conditions(out: &mut Source, context: &Context<'_>, fields: &[Spelled<'_, Field>]) {
-    let mut lines = Vec::new();
-    for field in fields.iter().filter(|field| field.optional) {
-        let Some(condition) = &field.details().condition else {
-            continue;
-        };
-        let word = match condition {
-            Condition::When(_) => "whenIs",
-            Condition::Unless(_) => "unlessIs",
-        };
-        let mut line = constant(context, field);
-        for asked in condition.asked() {
-            let beside = fields.iter().find(|beside| beside.wire == asked.wire);
-            let Some(beside) = beside else { continue };
-            let values: Vec<String> = asked.values.iter().map(scalar).collect();
-            let (beside, values) = (constant(context, beside), values.join(", "));
-            line.extend([".", word, "(", &beside, ", ", &values, ")"]);
-        }
-        lines.push(line);
-    }
+    let lines = fields.iter().filter_map(|field| {
+        let condition = FieldMarks::build(field.of, fields).condition?;
+        let asked = condition.fields.iter().map(|(other, values)| {
+            let values: Vec<String> = values.iter().map(scalar).collect();
+            let (word, other) = (condition.word, constant(context, other));
+            format!(".{word}Is({other}, {})", values.join(", "))
+        });
+        let asked: Vec<String> = asked.collect();
+        Some(constant(context, field) + &asked.concat())
+    });
+    let lines: Vec<String> = lines.collect();
     if lines.is_empty() {
         return;
     }
     out.blank();
-    out.block("init", |out| {
-        for line in lines {
-            out.line(line);
-        }
-    });
+    out.block("init", |out| out.line(lines.join("\n")));
 }
 
 fn enumeration(
@@ -294,13 +253,8 @@ fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let (name, ty) = (&item.ty.name, item.ty.of);
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    let name = &item.ty.name;
+    let docs = about::enumeration(context, item.ty.of, "");
     let (wire, base, kind) = match shape.repr {
         EnumRepr::Int(kind) => ("Long", "Int", Some(plain_codec(&Type::Int(kind)))),
         EnumRepr::String => ("String", "Text", None),
@@ -311,10 +265,7 @@ fn enumeration(
         arguments.push("isClosed = true".to_owned());
     }
     let arguments = arguments.join(", ");
-    let is_state = shape.order.is_some()
-        || values
-            .iter()
-            .any(|value| value.is_final || value.is_error || !value.then.is_empty());
+    let is_state = has_states(shape);
     let mut supers = vec![format!("{base}Value(wire)")];
     supers.extend(is_state.then(|| "State".to_owned()));
     out.docs(&docs);
@@ -333,13 +284,11 @@ override val isError: Boolean get() = steps.isError(wire)
 override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
             ));
         }
-        out.blank();
-        out.docs(&both("规范中的全部取值。", "The values of the spec."));
+        out.documented(&both("规范中的全部取值。", "The values of the spec."));
         let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
         out.block(head, |out| {
             for value in values {
-                out.blank();
-                out.docs(&facts::value_docs(value));
+                out.documented(&facts::value_docs(value));
                 out.line("@JvmField");
                 let (value, wire) = (&value.name, scalar(&value.wire));
                 out.line(format!("public val {value}: {name} = named({wire}, \"{value}\")"));
@@ -348,8 +297,7 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
                 out.blank();
                 steps(out, shape, values);
             }
-            out.blank();
-            out.docs(&both(
+            out.documented(&both(
                 "`wire` 对应的取值；规范中没有的值原样保留。",
                 "The value for `wire`. A value that is not in the spec is kept unchanged.",
             ));
@@ -371,29 +319,20 @@ fn steps(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) 
     out.line(format!(
         "private val steps = Steps(this, StateOrder.{order})"
     ));
-    let wire = |name: &str| {
-        let of = values.iter().find(|value| value.of.name == name);
-        of.map(|value| format!("{}.wire", value.name))
-    };
-    let marked = |of: &dyn Fn(&EnumValue) -> bool| {
-        let all = values.iter().filter(|value| of(value.of));
-        let all: Vec<String> = all.map(|value| format!("{}.wire", value.name)).collect();
-        all.join(", ")
-    };
-    let mut calls = Vec::new();
-    for value in values {
-        let then: Vec<String> = value.then.iter().filter_map(|it| wire(it)).collect();
-        if !then.is_empty() {
-            calls.push(format!("then({}.wire, {})", value.name, then.join(", ")));
+    let wire = |value: &Spelled<'_, EnumValue>| format!("{}.wire", value.name);
+    let mut call = |name: &str, values: Vec<String>, least: usize| {
+        if values.len() >= least {
+            out.line(format!("    .{name}({})", values.join(", ")));
         }
+    };
+    for value in values {
+        let next = next_values(value, values).map(wire);
+        call("then", [wire(value)].into_iter().chain(next).collect(), 2);
     }
-    let finals = marked(&|value| value.is_final);
-    let errors = marked(&|value| value.is_error);
-    calls.extend((!finals.is_empty()).then(|| format!("finals({finals})")));
-    calls.extend((!errors.is_empty()).then(|| format!("errors({errors})")));
-    for call in calls {
-        out.line(format!("    .{call}"));
-    }
+    let finals = values.iter().filter(|value| value.is_final);
+    call("finals", finals.map(wire).collect(), 1);
+    let errors = values.iter().filter(|value| value.is_error);
+    call("errors", errors.map(wire).collect(), 1);
 }
 
 fn choice(

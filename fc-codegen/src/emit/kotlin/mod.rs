@@ -14,12 +14,12 @@ mod streams;
 mod tables;
 mod text;
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::source::Source;
+use crate::package::context::Context;
+use crate::package::group::Group;
+use crate::package::language::{KOTLIN, Role};
+use crate::package::name::free;
+use crate::package::source::Source;
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::name::free;
 use crate::target::Targets;
 use fc_spec::model::Model;
 use std::collections::HashSet;
@@ -29,25 +29,30 @@ use text::STYLE;
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &KOTLIN, &STYLE, Some(targets));
-    let samples = &Samples::new(model);
     let id = &model.protocol.id;
     // A keyword is no name of a package either.
     let package = KOTLIN
         .spelling(Role::Module, id)
         .unwrap_or_else(|name| name);
-    let groups = group::all(context);
+    let groups = Group::all(&context.package);
     let wholes = [
-        ("Protocol", protocol::file(context, &groups)),
-        ("Operations", operations::file(&groups)),
-        ("Client", client::file(context, &groups)),
-        ("Robot", robot::file(context, &groups)),
-        ("Tables", tables::file(context, samples)),
-        ("SharedTypes", messages::shared(context, samples)),
+        ("Protocol", protocol::protocol_file(context, &groups)),
+        ("Operations", operations::operations_file(&groups)),
+        ("Client", client::client_file(context, &groups)),
+        ("Robot", robot::robot_file(context, &groups)),
+        ("Tables", tables::tables_file(context)),
     ];
     let own = groups.iter().map(|group| {
-        let is_taken = |name: &str| wholes.iter().any(|it| it.0.eq_ignore_ascii_case(name));
-        let name = free(&[&*group.name, &*group.part("Group")], is_taken);
-        (name, group::file(context, samples, group))
+        let names = wholes.iter().map(|it| it.0).chain([SHARED]);
+        let is_taken = |name: &str| names.clone().any(|it| it.eq_ignore_ascii_case(name));
+        let name = match group.of {
+            Some(_) => {
+                let wishes = ["", "Group"].map(|end| group::part_name(group, end));
+                free(&[&*wishes[0], &*wishes[1]], is_taken)
+            }
+            None => SHARED.to_owned(),
+        };
+        (name, group::group_file(context, group))
     });
     let own: Vec<_> = own.collect();
     let wholes = wholes.into_iter();
@@ -64,11 +69,14 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let files = files.map(|(name, body)| whole(&format!("{folder}/{name}.kt"), &body, &[]));
     let samples = whole(
         samples::SHOWN.file,
-        &samples::file(context, samples).finish(),
+        &samples::samples_file(context).finish(),
         samples::IMPORTED,
     );
     files.chain([samples]).collect()
 }
+
+/// The file of the types that several groups share.
+const SHARED: &str = "SharedTypes";
 
 /// What the package has from elsewhere; names of a spec are kept off them.
 const IMPORTED: &[&str] = &[
@@ -149,7 +157,7 @@ fn head(package: &str, body: &str, further: &[&str]) -> String {
 }
 
 /// A stream within the name of a method: `SubscribeMapImage`.
-fn method_of(stream: &crate::surface::package::Spelled<'_, fc_spec::model::Operation>) -> String {
+fn method_of(stream: &crate::package::items::Spelled<'_, fc_spec::model::Operation>) -> String {
     let name = KOTLIN.spelling(Role::Type, &stream.of.name);
     name.unwrap_or_else(|name| name).into_owned()
 }

@@ -1,20 +1,19 @@
 //! `Operations`: every command and report as a value, with what the runtime needs of it.
 
-use super::group::{Group, heading, parts};
+use super::group::{heading, part_name, part_of, parts};
 use super::messages::both;
 use super::text::{STYLE, literal};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::state;
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Call, Shape};
-use fc_spec::model::{
-    Accepted, Cadence, Exchange, Field, Kind, Operation, StructRef, Type, TypeRef,
-};
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Call;
+use crate::package::process::{has_states, state};
+use crate::package::source::Source;
+use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
 
 /// The file.
-pub fn file(groups: &[Group<'_>]) -> Source {
+pub fn operations_file(groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     out.docs(&Docs::said(&[
         "每条指令和每个上报。",
@@ -25,25 +24,19 @@ pub fn file(groups: &[Group<'_>]) -> Source {
     out
 }
 
-fn has_calls(group: &Group<'_>) -> bool {
+fn has_calls(group: &Group<'_, '_>) -> bool {
     !(group.commands.is_empty() && group.reports.is_empty())
 }
 
 /// The commands and reports of a group. Java has constants from an interface, and Kotlin has properties: neither has the other's.
-pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if !has_calls(group) {
         return;
     }
-    out.blank();
-    out.docs(&group.docs("Operations"));
-    let head = format!("public interface {}", group.part("Operations"));
-    out.block(head, |out| {
+    let name = part_name(group, "Operations");
+    part_of(out, group, "Operations", &name, |out| {
         for call in group.commands.iter().chain(&group.reports) {
-            let mut docs = facts::operation_docs(call.operation);
-            facts::operation_end(&STYLE, &mut docs, call.operation);
-            docs.paragraph(links(context, call.operation));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&facts::method_docs(context, call.operation, |_| ()));
             deprecated(out, call.operation);
             let (method, ty) = (call.method, type_of(call));
             let head = format!("public val {method}: {ty}");
@@ -54,8 +47,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
                 out.enclose(&head, "", |out| out.line(getter));
             }
         }
-        out.blank();
-        out.docs(&both(
+        out.documented(&both(
             "这些常量供 Java 使用。",
             "The same as constants, for Java.",
         ));
@@ -92,17 +84,13 @@ fn type_of(call: &Call<'_>) -> String {
     }
 }
 
-fn links(context: &Context<'_>, operation: &Operation) -> String {
-    context.links(&operation.location, &page_of(operation))
-}
-
 /// The head of a constant.
 fn constant(out: &mut Source, context: &Context<'_>, call: &Call<'_>) -> String {
-    let mut docs = Docs::of(&call.operation.title);
-    docs.paragraph(links(context, call.operation));
-    out.blank();
-    out.docs(&docs);
-    deprecated(out, call.operation);
+    let operation = call.operation;
+    let mut docs = Docs::titled(&operation.title);
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    out.documented(&docs);
+    deprecated(out, operation);
     out.line("@JvmField");
     format!("public val {}: {} =", call.method, type_of(call))
 }
@@ -158,21 +146,12 @@ fn titled(operation: &Operation) -> String {
 
 /// The states in which a command is accepted.
 fn accepted(context: &Context<'_>, operation: &Operation) -> Vec<String> {
-    let mut states = Vec::new();
-    let sets = operation
-        .accepted()
-        .map(Accepted::state_sets)
-        .unwrap_or_default();
-    for set in sets {
-        let item = context.package.item(&set.ty);
-        if let Shape::Enum(_, known) = &item.shape {
-            let known = known
-                .iter()
-                .filter(|value| set.values.contains(&value.wire));
-            states.extend(known.map(|value| format!("{}.{}", item.ty.name, value.name)));
-        }
-    }
-    states
+    let states = context.accepted_states(operation);
+    let states = states.iter().flat_map(|states| {
+        let values = states.values.iter();
+        values.map(|value| format!("{}.{}", states.item.ty.name, value.name))
+    });
+    states.collect()
 }
 
 fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
@@ -199,12 +178,13 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
         made.push(format!("    .every({every})"));
     }
     let body = &messages.request.ty;
-    let state = state(context, operation).map(|(keys, _)| way(context, body, keys, "report"));
-    // An enum of which nothing is said as a state tells nothing of failures either.
+    let state = state(context, operation).filter(|(keys, _)| is_state(context, body, keys));
+    // An enum without states has no failures either.
     let failing = failures.iter().filter(|keys| is_state(context, body, keys));
     let failing = failing.map(|keys| way(context, body, keys, "report"));
     let mut failing: Vec<String> = failing.collect();
-    if let Some(state) = state.filter(|_| has_state(context, operation)) {
+    if let Some((keys, _)) = state {
+        let state = way(context, body, keys, "report");
         made.push(format!("    .state {{ report -> {state} }}"));
         if !failing.is_empty() {
             failing.insert(0, state);
@@ -223,38 +203,20 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
     out.enclose(&head, "", |out| made.iter().for_each(|line| out.line(line)));
 }
 
-fn has_state(context: &Context<'_>, report: &Operation) -> bool {
-    let shape = state(context, report).map(|(_, ty)| &context.package.item(ty).shape);
-    matches!(shape, Some(Shape::Enum(shape, _)) if says(shape))
-}
-
 fn is_state(context: &Context<'_>, body: &StructRef, keys: &[String]) -> bool {
     let at = context.model().enum_at(body, keys);
-    at.is_some_and(|(_, shape)| says(shape))
-}
-
-fn says(shape: &fc_spec::model::EnumType) -> bool {
-    let mut values = shape.values.iter();
-    shape.order.is_some() || values.any(|it| it.is_final || it.is_error || !it.then.is_empty())
+    at.is_some_and(|(_, shape)| has_states(shape))
 }
 
 /// The way to a field: `report.data?.status`.
 pub fn way(context: &Context<'_>, body: &StructRef, keys: &[String], from: &str) -> String {
     let mut out = from.to_owned();
-    let mut holder: Option<&TypeRef> = Some(body);
     let mut dot = ".";
-    for field in context.model().way(body, keys) {
-        let field: &Field = field;
-        let name = holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field));
-        out.push_str(dot);
-        out.push_str(name);
-        if field.optional {
+    for step in context.steps(body, keys) {
+        out.extend([dot, step.name]);
+        if step.optional {
             dot = "?.";
         }
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
     }
     out
 }

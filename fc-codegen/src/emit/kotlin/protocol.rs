@@ -1,20 +1,20 @@
 //! The protocol itself: header, envelopes, result codes, ports and limits.
 
-use super::group::{Group, parts};
+use super::group::parts;
 use super::messages::both;
 use super::text::{STYLE, integer, literal, plain_codec, type_of};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Spelled;
-use fc_spec::model::{
-    ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole,
-    ResultRole,
-};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::group::Group;
+use crate::package::items::Spelled;
+use crate::package::language::Case;
+use crate::package::source::Source;
+use crate::package::wire::WireFacts;
+use fc_spec::model::{DigestAlgorithm, EnvelopeField, HeaderField, HeaderRole};
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
+pub fn protocol_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     protocol(&mut out, context, groups);
     let package = &context.package;
@@ -30,8 +30,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
             &package.response_envelope,
         ),
     ] {
-        out.blank();
-        out.docs(&Docs::said(said));
+        out.documented(&Docs::said(said));
         envelope(&mut out, context, name, fields);
     }
     out.blank();
@@ -39,107 +38,65 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     out
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_>]) {
-    let model = context.model();
-    let (frame, kinds) = (&model.frame, &model.frame.kinds);
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
-    out.docs(&docs);
-    out.block(
-        format!("public object {} : Protocol()", context.package.name),
-        |out| {
-            let mut value = |name: &str, ty: &str, value: String| {
-                out.line(format!("override val {name}: {ty} get() = {value}"));
-            };
-            value("name", "String", literal(&model.protocol.id));
-            value("host", "String", literal(&model.transport.host));
-            value(
-                "commandPort",
-                "Int",
-                model.transport.ports.command.number.to_string(),
-            );
-            value(
-                "dataPort",
-                "Int",
-                model.transport.ports.data.number.to_string(),
-            );
-            for (name, kind) in [
-                ("streamKind", &kinds.stream),
-                ("commandKind", &kinds.command),
-                ("reportKind", &kinds.report),
-            ] {
-                value(name, "Int", kind.value.to_string());
+fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_, '_>]) {
+    let wire = &WireFacts::build(context);
+    let frame = &wire.frame;
+    out.docs(&about::protocol(context.model()));
+    let head = format!("public object {} : Protocol()", context.package.name);
+    out.block(head, |out| {
+        let mut value = |name: &str, ty: &str, value: String| {
+            out.line(format!("override val {name}: {ty} get() = {value}"));
+        };
+        value("name", "String", literal(wire.name));
+        value("host", "String", literal(wire.host));
+        for (name, number) in &wire.ports {
+            value(&Case::Camel.apply(name), "Int", number.to_string());
+        }
+        for (name, kind) in frame.kinds {
+            value(&format!("{name}Kind"), "Int", kind.to_string());
+        }
+        value("plainEncoding", "Int", frame.plain.to_string());
+        if let Some(gzip) = frame.gzip {
+            value("gzipEncoding", "Int?", gzip.to_string());
+        }
+        let zero = frame.takes_zero_plain_length;
+        value("takesZeroPlainLength", "Boolean", zero.to_string());
+        for envelope in ["requestEnvelope", "responseEnvelope"] {
+            let ty = Case::Pascal.apply(envelope).into_owned();
+            value(envelope, "MessageType<*>", ty);
+        }
+        let reserved = frame.reserved_kinds.iter().map(u8::to_string);
+        let reserved = reserved.collect::<Vec<_>>().join(", ");
+        out.line(format!(
+            "override val reservedKinds: Set<Int> = setOf({reserved})"
+        ));
+        for (name, head) in frame.heads {
+            let (name, head) = (Case::Camel.apply(name), bytes(head));
+            out.line(format!("override val {name}: Bytes = {head}"));
+        }
+        out.blank();
+        let fields: Vec<String> = frame.header.iter().map(|it| header(it)).collect();
+        let open = "override val header: HeaderLayout = HeaderLayout(";
+        out.enclose(open, ")", |out| {
+            out.line(format!("{},", frame.is_big_endian()));
+            out.lines("listOf(", &fields, "),");
+        });
+        out.blank();
+        out.enclose("override val results: Results = Results(", ")", |out| {
+            for result in &wire.results {
+                let (code, text) = result.code_and_text();
+                out.line(format!("ResultText({code}, {}),", literal(text)));
             }
-            let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
-            let plain = encoding(EncodingRole::Plain).unwrap_or_default();
-            value("plainEncoding", "Int", plain.to_string());
-            if let Some(gzip) = encoding(EncodingRole::Gzip) {
-                value("gzipEncoding", "Int?", gzip.to_string());
-            }
-            let zero = frame.has_quirk(HeaderQuirk::ZeroWhenPlain);
-            value("takesZeroPlainLength", "Boolean", zero.to_string());
-            value(
-                "requestEnvelope",
-                "MessageType<*>",
-                "RequestEnvelope".to_owned(),
-            );
-            value(
-                "responseEnvelope",
-                "MessageType<*>",
-                "ResponseEnvelope".to_owned(),
-            );
-            let reserved: Vec<String> = kinds
-                .reserved
-                .iter()
-                .map(|it| it.value.to_string())
-                .collect();
-            out.line(format!(
-                "override val reservedKinds: Set<Int> = setOf({})",
-                reserved.join(", ")
-            ));
-            out.line(format!(
-                "override val requestHead: Bytes = {}",
-                bytes(&frame.request_head)
-            ));
-            out.line(format!(
-                "override val responseHead: Bytes = {}",
-                bytes(&frame.response_head)
-            ));
-            out.blank();
-            let is_big = frame.byte_order == ByteOrder::Big;
-            let fields: Vec<String> = context
-                .package
-                .header
-                .iter()
-                .map(|it| header(it.of))
-                .collect();
-            out.enclose(
-                "override val header: HeaderLayout = HeaderLayout(",
-                ")",
-                |out| {
-                    out.line(format!("{is_big},"));
-                    out.lines("listOf(", &fields, "),");
-                },
-            );
-            out.blank();
-            out.enclose("override val results: Results = Results(", ")", |out| {
-                for role in ResultRole::ALL {
-                    let result = model.results.iter().find(|it| it.role == Some(*role));
-                    let (code, text) = result.map_or((0, ""), |it| (it.code, &*it.text.zh));
-                    out.line(format!("ResultText({code}, {}),", literal(text)));
-                }
-            });
-            out.blank();
-            defaults(out, context);
-            operations(out, groups);
-        },
-    );
+        });
+        out.blank();
+        defaults(out, wire);
+        operations(out, groups);
+    });
 }
 
 /// The commands and reports, which know the protocol as little as the runtime does.
-fn operations(out: &mut Source, groups: &[Group<'_>]) {
-    let lists = |name: &str, has: fn(&Group<'_>) -> bool| {
+fn operations(out: &mut Source, groups: &[Group<'_, '_>]) {
+    let lists = |name: &str, has: fn(&Group<'_, '_>) -> bool| {
         let parts = parts(groups, "Operations", has).into_iter();
         parts.map(|part| format!("{part}.{name}()")).collect()
     };
@@ -173,8 +130,8 @@ fn header(field: &HeaderField) -> String {
     let size = field.ty.size();
     match field.role {
         Some(HeaderRole::Digest) => {
-            let is_crc = field.digest() == Some(DigestAlgorithm::Crc32);
-            let algorithm = if is_crc { "CRC32" } else { "MD5" };
+            let algorithm = field.digest().map_or("md5", DigestAlgorithm::name);
+            let algorithm = Case::Screaming.apply(algorithm);
             format!("HeaderField.digest(DigestAlgorithm.{algorithm})")
         }
         None | Some(HeaderRole::Status) => format!("HeaderField.constant({size}, {})", field.value),
@@ -187,35 +144,27 @@ fn header(field: &HeaderField) -> String {
     }
 }
 
-fn defaults(out: &mut Source, context: &Context<'_>) {
-    let (calls, limits) = (&context.model().calls, &context.model().limits);
+fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
+    let value = |out: &mut Source, name: &str, value: u32| {
+        let name = Case::Camel.apply(name);
+        out.line(format!("{name} = {},", integer(value.into())));
+    };
     out.enclose("override val defaults: Defaults = Defaults(", ")", |out| {
-        out.line(format!(
-            "callTimeout = {},",
-            integer(calls.timeout_ms.into())
-        ));
-        out.line(format!(
-            "handlerTimeout = {},",
-            integer(calls.handler_timeout_ms.into())
-        ));
+        for (name, ms) in &wire.times {
+            value(out, name, *ms);
+        }
+        let ack = wire.ack;
         out.line(format!(
             "ack = AckPolicy({}, {}),",
-            calls.ack.timeout_ms, calls.ack.retries
+            ack.timeout_ms, ack.retries
         ));
         out.enclose("limits = Limits(", "),", |out| {
-            for (name, value) in [
-                ("frameBytes", limits.frame_bytes),
-                ("inflatedBytes", limits.inflated_bytes),
-                ("jsonDepth", limits.json_depth),
-                ("inFlight", limits.in_flight),
-                ("queuedReports", limits.queued_reports),
-                ("connections", limits.connections),
-            ] {
-                out.line(format!("{name} = {},", integer(value.into())));
+            for (name, limit) in wire.limits {
+                value(out, name, limit);
             }
         });
-        if let Some(age) = calls.max_age_ms {
-            out.line(format!("maxAge = {},", integer(age.into())));
+        if let Some(age) = wire.max_age_ms {
+            value(out, "max_age", age);
         }
     });
 }
@@ -233,8 +182,7 @@ fn envelope(
             let mark = if field.optional { "?" } else { "" };
             let (property, constant) = (&field.name, field.of.name.to_uppercase());
             let ty = type_of(context, &field.ty);
-            out.blank();
-            out.docs(&Docs::of(&field.text));
+            out.documented(&Docs::titled(&field.text));
             out.line(format!(
                 "public val {property}: {ty}{mark} get() = get({constant})"
             ));
@@ -243,8 +191,7 @@ fn envelope(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.blank();
-        out.docs(&both("此类型。", "The type."));
+        out.documented(&both("此类型。", "The type."));
         out.block(
             format!("public companion object : MessageType<{name}>(\"{name}\")"),
             |out| {
@@ -276,26 +223,20 @@ fn results(out: &mut Source, context: &Context<'_>) {
         "public class ResultCode private constructor(wire: Long) : IntValue(wire)",
         |out| {
             out.line("override val enumType: EnumType<ResultCode> get() = ResultCode");
-            out.blank();
-            out.docs(&both(
+            out.documented(&both(
                 "随结果码发送的文字。",
                 "The text sent with the code.",
             ));
             out.line("public val text: String get() = texts[wire] ?: \"\"");
-            out.blank();
-            out.docs(&both("以此结果码拒绝。", "The refusal with this code."));
+            out.documented(&both("以此结果码拒绝。", "The refusal with this code."));
             out.line("public fun refusal(): Refusal = Refusal(wire, text)");
-            out.blank();
-            out.docs(&both("规范中的全部结果码。", "The codes of the spec."));
+            out.documented(&both("规范中的全部结果码。", "The codes of the spec."));
             out.block(
                 "public companion object : IntEnumType<ResultCode>(\"ResultCode\", Types.I64)",
                 |out| {
                     let results = &context.package.results;
                     for result in results {
-                        let mut docs = Docs::of(&result.text);
-                        docs.text(&result.about);
-                        out.blank();
-                        out.docs(&docs);
+                        out.documented(&about::result(result.of));
                         out.line("@JvmField");
                         let name = &result.name;
                         out.line(format!(
@@ -309,8 +250,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
                         .collect();
                     out.blank();
                     out.lines("private val texts: Map<Long, String> = mapOf(", &texts, ")");
-                    out.blank();
-                    out.docs(&both("`wire` 对应的结果码。", "The code for `wire`."));
+                    out.documented(&both("`wire` 对应的结果码。", "The code for `wire`."));
                     out.line("@JvmStatic");
                     out.line("override fun of(wire: Long): ResultCode = super.of(wire)");
                     out.blank();

@@ -1,21 +1,22 @@
 //! The robot's side: complete, partial, by example; typed reports and streams.
 
-use super::group::{Group, heading, parts, wrapper};
+use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
 use super::streams::{self, SERVER, SERVER_DOCS};
 use super::text::STYLE;
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::emit::stub::source::Source;
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::package::Call;
-use fc_spec::model::{Effect, Exchange};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Call;
+use crate::package::language::{KOTLIN, Role};
+use crate::package::ranges::{UNKNOWN, pass_through};
+use crate::package::source::Source;
 use std::borrow::Cow;
 
 /// The file.
-pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
+pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let handlers = parts(groups, "Handlers", has_commands);
     let ranges = pass_through(context).into_iter();
@@ -31,21 +32,11 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     ]));
     out.block(heading("public interface Robot", &handlers), |out| {
         for (name, range) in &ranges {
-            let mut docs = Docs::of(&range.text);
-            let (first, last) = (&range.first_spelling, &range.last_spelling);
-            docs.paragraph(format!(
-                "Codes {first} to {last} without a separate method."
-            ));
-            raw(out, name, docs);
+            raw(out, name, &about::range(range));
         }
-        let said = [
-            "功能码不在规范中的指令。",
-            "Commands with a code that is not in the spec.",
-        ];
-        raw(out, &unknown, Docs::said(&said));
+        raw(out, &unknown, &about::unknown());
     });
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
     ));
@@ -56,8 +47,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     ));
     out.blank();
     example(&mut out, groups);
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "由此机器人处理规范中的指令，供 [Server.bind] 使用。",
         "A service that handles the commands with this robot, for [Server.bind].",
     ));
@@ -82,7 +72,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_>]) -> Source {
     out
 }
 
-fn has_commands(group: &Group<'_>) -> bool {
+fn has_commands(group: &Group<'_, '_>) -> bool {
     !group.commands.is_empty()
 }
 
@@ -93,12 +83,12 @@ fn robot_and(parts: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// The function that has a robot serve the commands of a group.
-fn registration(group: &Group<'_>) -> String {
-    ["on", &group.name].concat()
+fn registration(group: &Group<'_, '_>) -> String {
+    ["on", &*part_name(group, "")].concat()
 }
 
 /// The robot's side of a group.
-pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if has_commands(group) {
         handlers(out, context, group);
         served(out, group);
@@ -109,25 +99,18 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     }
 }
 
-fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    out.blank();
-    out.docs(&group.docs("Robot"));
-    let name = group.part("Handlers");
-    out.block(format!("public interface {name}"), |out| {
+fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
+    let name = part_name(group, "Handlers");
+    part_of(out, group, "Robot", &name, |out| {
         for command in &group.commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(&STYLE, &mut docs, command.operation);
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
+            let mut docs = facts::method_docs(context, command.operation, |_| ());
             docs.raw("@throws fc.runtime.Refusal to respond with a result other than success");
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             out.line(signature("public suspend fun", command));
         }
     });
-    out.blank();
-    out.docs(&group.docs("PartialRobot"));
-    let head = format!("public interface {} : {name}", group.part("Partial"));
-    out.block(head, |out| {
+    let head = format!("{} : {name}", part_name(group, "Partial"));
+    part_of(out, group, "PartialRobot", &head, |out| {
         for command in &group.commands {
             out.blank();
             let head = signature("override suspend fun", command);
@@ -138,9 +121,9 @@ fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
     });
 }
 
-fn served(out: &mut Source, group: &Group<'_>) {
+fn served(out: &mut Source, group: &Group<'_, '_>) {
     out.blank();
-    let (registration, handlers) = (registration(group), group.part("Handlers"));
+    let (registration, handlers) = (registration(group), part_name(group, "Handlers"));
     out.line("@JvmSynthetic");
     let head = format!("internal fun Service.{registration}(robot: {handlers}): Service = apply");
     out.block(head, |out| {
@@ -163,18 +146,15 @@ fn method(words: &str) -> Cow<'_, str> {
 }
 
 /// A method for requests without a type, which refuses them unless a robot has it.
-fn raw(out: &mut Source, name: &str, mut docs: Docs<'_>) {
-    docs.paragraph("不实现此方法时，按未知指令拒绝。");
-    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
-    out.blank();
-    out.docs(&docs);
+fn raw(out: &mut Source, name: &str, docs: &Docs<'_>) {
+    out.documented(docs);
     out.line(format!(
         "public suspend fun {name}(context: Context, request: RawRequest): Json ="
     ));
     out.line("    throw context.unknown()");
 }
 
-fn example(out: &mut Source, groups: &[Group<'_>]) {
+fn example(out: &mut Source, groups: &[Group<'_, '_>]) {
     out.docs(&Docs::said(&[
         "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
         "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
@@ -184,7 +164,7 @@ fn example(out: &mut Source, groups: &[Group<'_>]) {
     ]));
     let groups = groups.iter().filter(|it| has_commands(it));
     let answers = groups.map(|group| {
-        let [handlers, example] = ["Handlers", "Example"].map(|whole| group.part(whole));
+        let [handlers, example] = ["Handlers", "Example"].map(|whole| part_name(group, whole));
         format!("{handlers} by {example}(pretendMotion)")
     });
     out.line(heading(
@@ -204,26 +184,21 @@ internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
 }
 
 /// The examples of a group as a robot's answers.
-fn answers(out: &mut Source, group: &Group<'_>) {
-    let head = format!(
-        "internal class {}(pretendMotion: Boolean)",
-        group.part("Example")
-    );
+fn answers(out: &mut Source, group: &Group<'_, '_>) {
+    let name = part_name(group, "Example");
+    let head = format!("internal class {name}(pretendMotion: Boolean)");
     let supers = [
         "ExampleAnswers(pretendMotion)".to_owned(),
-        group.part("Handlers"),
+        part_name(group, "Handlers"),
     ];
     out.blank();
     out.block(heading(&head, &supers), |out| {
         for command in &group.commands {
-            let Exchange::Command { effect, .. } = &command.operation.exchange else {
-                continue;
-            };
             let response = &command.response.ty.name;
             out.blank();
             let head = signature("override suspend fun", command);
             out.enclose(&[&head, " ="].concat(), "", |out| {
-                out.line(if matches!(effect, Effect::Motion | Effect::Unknown) {
+                out.line(if command.may_move() {
                     format!("pretended(context, {response})")
                 } else {
                     format!("{response}.example()")
@@ -241,7 +216,7 @@ fn signature(head: &str, command: &Call<'_>) -> String {
     )
 }
 
-fn reporter(out: &mut Source, groups: &[Group<'_>]) {
+fn reporter(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Reporter", |it| !it.reports.is_empty());
     out.docs(&both(
         "发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。",
@@ -251,29 +226,33 @@ fn reporter(out: &mut Source, groups: &[Group<'_>]) {
     out.line(heading(")", &parts));
 }
 
-fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    out.blank();
-    out.docs(&group.docs("Reporter"));
-    out.block(format!("public interface {}", group.part("Reporter")), |out| {
-        out.line(SERVER_DOCS);
-        out.line(format!("public val {SERVER}"));
-        for report in &group.reports {
-            let mut docs = facts::operation_docs(report.operation);
-            facts::operation_end(&STYLE, &mut docs, report.operation);
-            docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
-            docs.raw("@throws fc.runtime.PushError if it could not be queued");
-            let (method, ty) = (report.method, &report.request.ty.name);
-            out.blank();
-            out.docs(&docs);
-            out.line("@JvmSynthetic");
-            out.line(format!("public suspend fun {method}(audience: Audience, report: {ty}): List<Acknowledgement> ="));
-            out.line(format!("    server.push(audience, Operations.{method}, report)"));
-            let mut docs = Docs::default();
-            docs.raw(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-            out.blank();
-            out.docs(&docs);
-            out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
-            out.line(format!("    server.pushAsync(audience, Operations.{method}, report)"));
-        }
-    });
+fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
+    part_of(
+        out,
+        group,
+        "Reporter",
+        &part_name(group, "Reporter"),
+        |out| {
+            out.line(SERVER_DOCS);
+            out.line(format!("public val {SERVER}"));
+            for report in &group.reports {
+                let mut docs = facts::method_docs(context, report.operation, |_| ());
+                docs.raw("@throws fc.runtime.PushError if it could not be queued");
+                let (method, ty) = (report.method, &report.request.ty.name);
+                out.documented(&docs);
+                out.line("@JvmSynthetic");
+                out.line(format!("public suspend fun {method}(audience: Audience, report: {ty}): List<Acknowledgement> ="));
+                out.line(format!(
+                    "    server.push(audience, Operations.{method}, report)"
+                ));
+                out.documented(&Docs::linked(format!(
+                    "[{method}]，供 Java 使用。[{method}] for Java."
+                )));
+                out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
+                out.line(format!(
+                    "    server.pushAsync(audience, Operations.{method}, report)"
+                ));
+            }
+        },
+    );
 }

@@ -4,33 +4,30 @@
 use super::client::is_bare;
 use super::expr::{Form, laid_out};
 use super::method_of;
-use super::streams::content;
 use super::text::{STYLE, literal};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Style;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::language::{KOTLIN, Role};
-use crate::surface::name::free;
-use crate::surface::package::{Call, Spelled};
-use fc_spec::model::{Direction, Kind, Operation, Side, Type};
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Record};
+use crate::package::language::{KOTLIN, Role};
+use crate::package::name::free;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::source::Source;
+use crate::package::style::Style;
+use fc_spec::model::Type;
 
 /// Kotlin as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..STYLE
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "kotlin",
     file: "generated/src/test/kotlin/Samples.kt",
     language: |_| &KOTLIN,
     style: &ON_PAGES,
-    snippets: |context, samples| Box::new(Snippets::new(context, samples)),
+    write,
 };
 
 /// What the samples have from elsewhere besides.
@@ -42,52 +39,21 @@ pub const IMPORTED: &[&str] = &[
     "kotlinx.coroutines.launch",
 ];
 
-/// What makes the samples of a package.
-pub struct Snippets<'p, 'm> {
-    context: &'p Context<'m>,
-    samples: &'p Samples<'m>,
-}
-
-impl stub::Snippets for Snippets<'_, '_> {
-    fn app(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(self.context.style);
-        self.write_app(&mut out, operation)?;
-        Some(out.finish())
-    }
-
-    fn robot(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(self.context.style);
-        self.write_robot(&mut out, operation)?;
-        Some(out.finish())
-    }
-}
-
-impl<'p, 'm> Snippets<'p, 'm> {
-    /// Of the Kotlin package, with values from `samples`.
-    #[must_use]
-    pub fn new(context: &'p Context<'m>, samples: &'p Samples<'m>) -> Self {
-        Self { context, samples }
-    }
-
-    fn write_app(&self, out: &mut Source, operation: &Operation) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_app_stream(out, operation);
-        }
-        let Call {
-            method, request, ..
-        } = self.context.package.call(operation)?;
-        if operation.kind() == Kind::Command {
-            let example = self.example(operation, Direction::Request)?;
-            let is_empty = example.members.iter().all(|(_, value)| value.is_none());
-            if is_empty && is_bare(request) {
+fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
+    match sample {
+        Sample::Call(call, request) => {
+            let method = call.method;
+            let is_empty = request.members.iter().all(|(_, value)| value.is_none());
+            if is_empty && is_bare(call.request) {
                 out.line(format!("val answer = client.{method}()"));
             } else {
-                assign(out, "val request = ", example);
+                assign(out, "val request = ", request);
                 out.line(format!("val answer = client.{method}(request)"));
             }
             out.line("println(answer)");
-        } else {
-            let ty = &request.ty.name;
+        }
+        Sample::Take(call) => {
+            let ty = &call.request.ty.name;
             out.enclose("client.reports().use { reports ->", "}", |out| {
                 out.enclose("reports.asFlow()", "", |out| {
                     out.line(format!(
@@ -96,109 +62,70 @@ impl<'p, 'm> Snippets<'p, 'm> {
                 });
             });
         }
-        Some(())
-    }
-
-    fn write_robot(&self, out: &mut Source, operation: &Operation) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_robot_stream(out, operation);
-        }
-        let Call {
-            method,
-            request,
-            response,
-            ..
-        } = self.context.package.call(operation)?;
-        if operation.kind() == Kind::Command {
-            let answer = self.example(operation, Direction::Response)?;
+        Sample::Answer(call, answer) => {
             let parameters = [
                 "context: Context".to_owned(),
-                format!("request: {}", request.ty.name),
+                format!("request: {}", call.request.ty.name),
             ];
-            let open = format!("override suspend fun {method}(");
-            out.list(&open, &parameters, &format!("): {} {{", response.ty.name));
+            let open = format!("override suspend fun {}(", call.method);
+            let close = format!("): {} {{", call.response.ty.name);
+            out.list(&open, &parameters, &close);
             out.enclose("", "}", |out| {
                 out.line("println(\"${context.peer} asks: $request\")");
                 assign(out, "return ", answer);
             });
-        } else {
-            let report = self.example(operation, Direction::Request)?;
-            assign(out, "val report = ", report);
-            let head = format!("for (acknowledgement in reporter.{method}(Audience.ALL, report))");
-            out.block(head, |out| out.line("println(acknowledgement)"));
         }
-        Some(())
-    }
-
-    fn write_app_stream(&self, out: &mut Source, stream: &Operation) -> Option<()> {
-        let name = self.stream(stream)?;
-        if stream.sender == Side::Robot {
-            let shown = match content(self.context, stream) {
+        Sample::Push(call, report) => {
+            assign(out, "val report = ", report);
+            let push = format!("reporter.{}(Audience.ALL, report)", call.method);
+            out.block(format!("for (acknowledgement in {push})"), |out| {
+                out.line("println(acknowledgement)");
+            });
+        }
+        Sample::Subscribe(stream) => {
+            let shown = match context.content(stream) {
                 Some(_) => "${item.content}",
                 None => "${item.content.size} bytes",
             };
+            let name = method_of(stream);
             let open = format!("streams.subscribe{name}().use {{ items ->");
             out.enclose(&open, "}", |out| {
                 out.line(format!(
                     "items.asFlow().collect {{ item -> println(\"${{item.id}}: {shown}\") }}"
                 ));
             });
-        } else {
-            self.content(out, stream);
-            out.line(format!("streams.send{name}(1, content)"));
         }
-        Some(())
-    }
-
-    fn write_robot_stream(&self, out: &mut Source, stream: &Operation) -> Option<()> {
-        let name = self
-            .stream(stream)
-            .filter(|_| stream.sender == Side::Robot)?;
-        self.content(out, stream);
-        out.line(format!(
-            "val taken = streamer.send{name}(Audience.ALL, 1, content)"
-        ));
-        out.line("println(\"$taken data connections took it\")");
-        Some(())
-    }
-
-    /// What the package calls a stream within the name of a method; `None` without a code.
-    fn stream(&self, stream: &Operation) -> Option<String> {
-        let mut streams = self.context.package.streams.iter();
-        let found: &Spelled<'_, Operation> = streams.find(|known| known.of.name == stream.name)?;
-        Some(method_of(found))
-    }
-
-    /// `val content = …`.
-    fn content(&self, out: &mut Source, stream: &Operation) {
-        match self.example(stream, Direction::Request) {
-            Some(content) => assign(out, "val content = ", content),
-            None => out.line(format!(
-                "val content = {}.toByteArray()",
-                literal(stub::BYTES)
-            )),
+        Sample::Send(stream, value) => {
+            assign_content(out, value.as_ref());
+            out.line(format!("streams.send{}(1, content)", method_of(stream)));
+        }
+        Sample::Stream(stream, value) => {
+            assign_content(out, value.as_ref());
+            let name = method_of(stream);
+            out.line(format!(
+                "val taken = streamer.send{name}(Audience.ALL, 1, content)"
+            ));
+            out.line("println(\"$taken data connections took it\")");
         }
     }
+}
 
-    fn example(&self, operation: &Operation, direction: Direction) -> Option<Record<'p>> {
-        stub::example(&self.context.package, self.samples, operation, direction)
+/// `val content = …`.
+fn assign_content(out: &mut Source, value: Option<&Record<'_>>) {
+    match value {
+        Some(value) => assign(out, "val content = ", value),
+        None => out.line(format!("val content = {}.toByteArray()", literal(BYTES))),
     }
 }
 
 /// `before`, and a message as it is written by hand.
-fn assign(out: &mut Source, before: &str, message: Record<'_>) {
-    laid_out(
-        out,
-        before,
-        &Expr::Record(message),
-        &Type::Json,
-        "",
-        Form::Block,
-    );
+fn assign(out: &mut Source, before: &str, message: &Record<'_>) {
+    let message = Expr::Record(message.clone());
+    laid_out(out, before, &message, &Type::Json, "", Form::Block);
 }
 
 /// A robot that answers by the samples.
-fn robot(out: &mut Source, context: &Context<'_>, snippets: &Snippets<'_, '_>) {
+fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
     let is_there = |name: &str| context.package.has_type(name);
     let name = free(&["SampleRobot", "RobotOfTheSamples"], is_there);
     out.docs(&Docs::said(&[
@@ -206,70 +133,32 @@ fn robot(out: &mut Source, context: &Context<'_>, snippets: &Snippets<'_, '_>) {
         "Responds to every command with the samples of the documentation.",
     ]));
     let head = format!("internal class {name} : Robot");
-    let commands = context.commands();
-    if commands.is_empty() {
+    if run.answers.is_empty() {
         out.line(head);
         return;
     }
     out.block(head, |out| {
-        for command in &commands {
+        for answer in &run.answers {
             out.blank();
-            let _ = snippets.write_robot(out, command.operation);
+            write(out, context, answer);
         }
     });
 }
 
 /// All samples, and a function that runs them.
 #[must_use]
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
-    let snippets = Snippets::new(context, samples);
-    let (commands, reports) = (context.commands(), context.reports());
+pub fn samples_file(context: &Context<'_>) -> Source {
+    let run = &SampleRun::build(context);
     let mut out = Source::new(&STYLE);
-    robot(&mut out, context, &snippets);
-    let [from_robot, from_app] =
-        [Side::Robot, Side::App].map(|side| stub::streams(&context.package, side));
-    let mut calls = Vec::new();
-    let mut function =
-        |word: &str, operation: &Operation, [name, ty]: [&str; 2], is_robot: bool| {
-            let called = function_name(word, operation);
-            out.blank();
-            out.block(
-                format!("private suspend fun {called}({name}: {ty})"),
-                |out| {
-                    let _ = if is_robot {
-                        snippets.write_robot(out, operation)
-                    } else {
-                        snippets.write_app(out, operation)
-                    };
-                },
-            );
-            format!("{called}({name})")
-        };
-    let client = ["client", "Client"];
-    for command in &commands {
-        calls.push(function("call", command.operation, client, false));
+    robot(&mut out, context, run);
+    for step in run.steps() {
+        let [name, ty] = step.parameter();
+        let function = function_name(step);
+        let head = format!("private suspend fun {function}({name}: {ty})");
+        out.blank();
+        out.block(head, |out| write(out, context, &step.sample));
     }
-    let launched = |call: &str| format!("launch(start = UNDISPATCHED) {{ {call} }}");
-    let (mut takes, mut pushes) = (Vec::new(), Vec::new());
-    for report in &reports {
-        takes.push(function("take", report.operation, client, false));
-        pushes.push(function(
-            "push",
-            report.operation,
-            ["reporter", "Reporter"],
-            true,
-        ));
-    }
-    let (mut subscribes, mut sends) = (Vec::new(), Vec::new());
-    for stream in &from_robot {
-        subscribes.push(function("subscribe", stream, ["streams", "Streams"], false));
-        sends.push(function("send", stream, ["streamer", "Streamer"], true));
-    }
-    for stream in &from_app {
-        sends.push(function("send", stream, ["streams", "Streams"], false));
-    }
-    out.blank();
-    out.docs(&Docs::said(&[
+    out.documented(&Docs::said(&[
         "运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。",
         "Runs all samples, and closes `client` at the end. `server` is the robot of the connection.",
     ]));
@@ -277,30 +166,30 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     out.block(
         format!("internal suspend fun runSamples({parameters}): Unit = coroutineScope"),
         |out| {
-            for call in &calls {
-                out.line(call);
+            for step in run.that(Verb::Call) {
+                out.line(call(step));
             }
-            if !reports.is_empty() {
-                for take in &takes {
-                    out.line(launched(take));
+            if run.has(Verb::Take) {
+                for step in run.that(Verb::Take) {
+                    out.line(launched(step));
                 }
                 out.line("val reporter = Reporter(server)");
-                for push in &pushes {
-                    out.line(push);
+                for step in run.that(Verb::Push) {
+                    out.line(call(step));
                 }
             }
-            if !sends.is_empty() {
+            if run.has_streams() {
                 out.line("val data = client.data()\ndata.connected()\nval streams = Streams(data)");
             }
-            if !from_robot.is_empty() {
-                let subscribes: Vec<String> = subscribes.iter().map(|it| launched(it)).collect();
-                out.lines("val subscribed = listOf(", &subscribes, ")");
+            if run.has(Verb::Subscribe) {
+                let subscribed: Vec<String> = run.that(Verb::Subscribe).map(launched).collect();
+                out.lines("val subscribed = listOf(", &subscribed, ")");
                 out.line("val streamer = Streamer(server)");
             }
-            for send in &sends {
-                out.line(send);
+            for step in run.that(Verb::Stream).chain(run.that(Verb::Send)) {
+                out.line(call(step));
             }
-            if !from_robot.is_empty() {
+            if run.has(Verb::Subscribe) {
                 out.line("subscribed.forEach { it.cancel() }");
             }
             out.line("client.close()");
@@ -309,9 +198,17 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
     out
 }
 
-/// What the function around a sample is called.
-fn function_name(word: &str, operation: &Operation) -> String {
-    let name = format!("{word}_{}", operation.name);
-    let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, &name);
+fn call(step: &SampleStep<'_, '_>) -> String {
+    let [parameter, _] = step.parameter();
+    format!("{}({parameter})", function_name(step))
+}
+
+fn launched(step: &SampleStep<'_, '_>) -> String {
+    format!("launch(start = UNDISPATCHED) {{ {} }}", call(step))
+}
+
+fn function_name(step: &SampleStep<'_, '_>) -> String {
+    let words = step.name();
+    let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, &words);
     name.into_owned()
 }

@@ -1,23 +1,21 @@
 //! The streams of the data port, as the app takes and sends them and as the robot sends them.
 
-use super::group::{Group, heading, parts, wrapper};
+use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
-use super::text::STYLE;
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Spelled;
-use fc_spec::model::{Direction, Operation, Side};
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::group::Group;
+use crate::package::items::Spelled;
+use crate::package::source::Source;
+use fc_spec::model::{Operation, Side};
 
 /// The app's side, if there are streams.
-pub fn for_app(out: &mut Source, groups: &[Group<'_>]) {
+pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Streams", |it| !it.streams.is_empty());
     if parts.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
         "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
     ));
@@ -26,23 +24,17 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_>]) {
 }
 
 /// The robot's side, if it sends any.
-pub fn for_robot(out: &mut Source, groups: &[Group<'_>]) {
-    let parts = parts(groups, "Streamer", has_robot_streams);
+pub fn for_robot(out: &mut Source, groups: &[Group<'_, '_>]) {
+    let parts = parts(groups, "Streamer", |it| it.subscribed().next().is_some());
     if parts.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&both(
+    out.documented(&both(
         "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
         "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it.",
     ));
     wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
-}
-
-/// Whether the robot sends one of a group's streams.
-fn has_robot_streams(group: &Group<'_>) -> bool {
-    group.streams.iter().any(|it| it.sender == Side::Robot)
 }
 
 const DATA: &str = "data: DataConnection";
@@ -57,58 +49,39 @@ pub const SERVER: &str = "server: Server";
 pub const SERVER_DOCS: &str = "/** 由它发送。The server that sends them. */";
 
 /// The streams of a group.
-pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.streams.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&group.docs("Streams"));
-    out.block(
-        format!("public interface {}", group.part("Streams")),
-        |out| {
-            out.line(DATA_DOCS);
-            out.line(format!("public val {DATA}"));
-            for stream in &group.streams {
-                app(out, context, stream);
-            }
-        },
-    );
-    if !has_robot_streams(group) {
+    part_of(out, group, "Streams", &part_name(group, "Streams"), |out| {
+        out.line(DATA_DOCS);
+        out.line(format!("public val {DATA}"));
+        for stream in &group.streams {
+            app(out, context, stream);
+        }
+    });
+    if group.subscribed().next().is_none() {
         return;
     }
-    out.blank();
-    out.docs(&group.docs("Streamer"));
-    out.block(
-        format!("public interface {}", group.part("Streamer")),
+    part_of(
+        out,
+        group,
+        "Streamer",
+        &part_name(group, "Streamer"),
         |out| {
             out.line(SERVER_DOCS);
             out.line(format!("public val {SERVER}"));
-            let sent = group.streams.iter();
-            for stream in sent.filter(|it| it.sender == Side::Robot) {
+            for stream in group.subscribed() {
                 robot(out, context, stream);
             }
         },
     );
 }
 
-/// What a stream carries, as a type; `None` for raw bytes.
-pub fn content<'c>(context: &'c Context<'_>, stream: &Operation) -> Option<&'c str> {
-    Some(context.name_of(&stream.body(Direction::Request)?.ty))
-}
-
-/// The comment on a stream.
-fn stream_docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(&STYLE, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    docs
-}
-
 fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (super::method_of(stream), &stream.code.spelling);
-    let carried = content(context, stream);
-    out.blank();
-    out.docs(&stream_docs(context, stream));
+    let carried = context.content(stream);
+    out.documented(&facts::method_docs(context, stream.of, |_| ()));
     if stream.sender == Side::Robot {
         let (ty, more) = carried.map_or(("ByteArray", String::new()), |ty| (ty, format!(", {ty}")));
         let head = format!("public fun subscribe{name}(): Subscription<{ty}> =");
@@ -124,9 +97,8 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
 
 fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (super::method_of(stream), &stream.code.spelling);
-    let ty = content(context, stream).unwrap_or("ByteArray");
-    out.blank();
-    out.docs(&stream_docs(context, stream));
+    let ty = context.content(stream).unwrap_or("ByteArray");
+    out.documented(&facts::method_docs(context, stream.of, |_| ()));
     out.line("@JvmSynthetic");
     out.line(format!(
         "public suspend fun send{name}(audience: Audience, id: Long, content: {ty}): Int ="

@@ -2,30 +2,21 @@
 
 use super::expr::{self, Form};
 use super::text::STYLE;
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::source::Source;
 use fc_spec::model::Type;
 
 /// The file.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> Source {
+pub fn tables_file(context: &Context<'_>) -> Source {
     let mut out = Source::new(&STYLE);
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     out.docs(&Docs::said(&about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {
-            let mut docs = Docs::of(&table.title);
-            docs.text(&table.of.about);
-            if let Some(store) = &table.kept {
-                docs.paragraph(facts::kept(store));
-            }
-            docs.paragraph(context.links(&table.location, "reference/tables.md"));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&about::table(context, table.of));
             out.line("@JvmStatic");
             let row = context.name_of(&table.row);
             out.enclose(

@@ -1,14 +1,12 @@
 //! What Kotlin makes of types, numbers and texts.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::escape_links;
-use crate::emit::stub::style::{Comment, Style};
-use crate::surface::package::Item;
-use fc_spec::model::{
-    Constraint, Field, FloatKind, IntKind, Number, Quirk, Scalar, Type, WireForm, has_unprintable,
-    is_hidden,
-};
+use crate::package::context::Context;
+use crate::package::digits::grouped;
+use crate::package::docs::escape_links;
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::style::{Comment, Style};
+use fc_spec::model::{Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -26,7 +24,6 @@ pub static STYLE: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("[{name}]"),
-    elsewhere: |item: &Item<'_>| item.ty.name.to_string(),
     integer: grouped,
     redacted: "Never shown by `toString`.",
 };
@@ -139,8 +136,7 @@ pub fn plain_codec(ty: &Type) -> String {
 }
 
 /// How a field is read and written, and what is demanded of it.
-pub fn codec(context: &Context<'_>, field: &Field) -> String {
-    let details = field.details();
+pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -> String {
     let mut lists = 0;
     let mut inner = &field.ty;
     while let Type::Array(item) = inner {
@@ -149,40 +145,37 @@ pub fn codec(context: &Context<'_>, field: &Field) -> String {
     }
     let mut out = match inner {
         Type::Named(named) => context.name_of(named).to_owned(),
-        Type::Bool if field.wire_form == WireForm::Number => "Types.BOOL_AS_NUMBER".to_owned(),
+        Type::Bool if marks.form == Some("number") => "Types.BOOL_AS_NUMBER".to_owned(),
         plain => plain_codec(plain),
     };
-    if field.wire_form == WireForm::String {
+    if marks.form == Some("string") {
         out.push_str(".quoted()");
     }
-    let is_lenient = |quirk: &Quirk| matches!(quirk, Quirk::LenientNumber | Quirk::LenientBool);
-    if details.quirks.iter().any(is_lenient) {
+    if marks.is_lenient {
         out.push_str(".lenient()");
     }
-    let mut length = String::new();
-    for constraint in details.constraints() {
-        let demand = match constraint {
-            Constraint::Min(min) => format!(".min({})", number(min)),
-            Constraint::Max(max) => format!(".max({})", number(max)),
-            Constraint::Pattern(pattern) => format!(".pattern({})", literal(pattern.portable())),
-            Constraint::Only(taken) => {
-                let taken: Vec<String> = taken.iter().map(scalar).collect();
-                format!(".only({})", taken.join(", "))
-            }
-            Constraint::Length(least, most) => {
-                length = match u32::try_from(most) {
-                    Ok(most) if most < i32::MAX as u32 => format!(".length({least}, {most})"),
-                    _ => format!(".length({least})"),
-                };
-                continue;
-            }
-        };
-        out.push_str(&demand);
-    }
+    let is_of_list = |bound: &Bound<'_>| matches!(bound, Bound::Range(..));
+    let (of_list, of_items): (Vec<_>, Vec<_>) =
+        marks.constraints.iter().partition(|it| is_of_list(&it.1));
+    out.extend(of_items.into_iter().map(demand));
     for _ in 0..lists {
         out = format!("Types.list({out})");
     }
-    out + &length
+    out.extend(of_list.into_iter().map(demand));
+    out
+}
+
+fn demand((name, bound): &(&str, Bound<'_>)) -> String {
+    let value = match bound {
+        Bound::Number(value) => number(value),
+        Bound::Pattern(pattern) => literal(pattern),
+        Bound::Values(taken) => taken.iter().map(scalar).collect::<Vec<_>>().join(", "),
+        Bound::Range(least, most) => match u32::try_from(*most) {
+            Ok(most) if most < i32::MAX as u32 => format!("{least}, {most}"),
+            _ => least.to_string(),
+        },
+    };
+    format!(".{}({value})", Case::Camel.apply(name))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The code samples of an operation's page, in each language for which the project has a package.
 
-use crate::emit::stub::context::Context;
-use crate::emit::stub::samples::Shown;
 use crate::emit::{cpp, kotlin, python, rust, typescript};
+use crate::package::context::Context;
+use crate::package::samples::{self, Sample, Shown};
+use crate::package::source::Source;
 use crate::product::Product;
-use crate::sample::Samples;
 use crate::target::{Targets, below, part};
 use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
@@ -63,15 +63,18 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         };
         let language = (shown.language)(targets);
         let context = Context::new(&model, language, shown.style, None);
-        let samples = Samples::new(&model);
-        let snippets = (shown.snippets)(&context, &samples);
-        let tab = |code| Tab {
-            info: format!("{} [{}]", shown.fence, language.title),
-            code,
+        let tab = |sample: Sample<'_, '_>| {
+            let mut out = Source::new(context.style);
+            (shown.write)(&mut out, &context, &sample);
+            Tab {
+                info: format!("{} [{}]", shown.fence, language.title),
+                code: out.finish(),
+            }
         };
         let both = model.operations.par_iter().map(|operation| {
-            let both = [snippets.app(operation), snippets.robot(operation)];
-            (operation.name.as_str(), both.map(|code| code.map(tab)))
+            let app = samples::app(&context, operation);
+            let robot = samples::robot(&context, operation);
+            (operation.name.as_str(), [app, robot].map(|it| it.map(tab)))
         });
         for (name, [app, robot]) in both.collect::<Vec<_>>() {
             if app.is_none() && robot.is_none() {

@@ -1,25 +1,25 @@
 //! What a group has of the app's stubs: the methods of its commands, with and without `async`, and of its streams.
 
 use super::group::part_of;
-use super::homes::{Group, Piece};
 use super::literal::literal;
+use super::modules::{GroupPart, NamedGroup};
 use super::operations::constant;
 use super::source::{Code, Python, method};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
-use crate::emit::stub::source::Source;
-use crate::surface::name::free;
-use crate::surface::package::Call;
-use fc_spec::model::{Direction, Operation, Side};
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::name::free;
+use crate::package::process;
+use crate::package::source::Source;
+use fc_spec::model::Operation;
 
 /// The options of a call.
 const OPTIONS: [&str; 2] = ["timeout", "repeat"];
 
 /// Any of a group's reports.
-pub fn any_report(out: &mut Source, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::AnyReport) else {
+pub fn any_report(out: &mut Source, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::AnyReport) else {
         return;
     };
     let reports = group.reports.iter();
@@ -29,26 +29,17 @@ pub fn any_report(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The methods of a group's commands.
-pub fn calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::Calls) else {
+pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::Calls) else {
         return;
     };
-    let about = about("Client", "指令", "commands", group);
-    part_of(out, name, "rt.Calls", about, |out| {
+    let about = ["Client", "指令", "commands"];
+    part_of(out, group, name, "rt.Calls", about, |out| {
         for command in &group.commands {
             out.blank();
             call(out, context, command);
         }
     });
-}
-
-/// What a class has of a group.
-pub fn about(class: &str, zh: &str, en: &str, group: &Group<'_>) -> [String; 2] {
-    let id = &group.of.id;
-    [
-        format!("`{class}` 的一部分：`{id}` 组的{zh}。"),
-        format!("Part of `{class}`: the {en} of the group `{id}`."),
-    ]
 }
 
 /// `self`, the request and the options of a call.
@@ -121,30 +112,17 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     });
 }
 
-/// A stream's docs.
-pub fn stream_docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(context.style, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    docs
-}
-
-/// What a frame of a stream holds.
-fn held<'c>(context: &'c Context<'_>, stream: &Operation) -> &'c str {
-    let body = stream.body(Direction::Request);
-    body.map_or("bytes", |body| context.name_of(&body.ty))
-}
-
 /// The parameter with what is sent.
 pub fn content(context: &Context<'_>, stream: &Operation) -> String {
-    format!("content: {}", held(context, stream))
+    format!("content: {}", context.content(stream).unwrap_or("bytes"))
 }
 
 fn subscribe(out: &mut Source, context: &Context<'_>, stream: &Operation) {
-    let returns = format!("rt.Subscription[{}]", held(context, stream));
+    let held = context.content(stream).unwrap_or("bytes");
+    let returns = format!("rt.Subscription[{held}]");
     let open = format!("def subscribe_{}(", stream.name);
     method(out, &open, vec!["self".into()], &returns, |out| {
-        out.docstring(&stream_docs(context, stream));
+        out.docstring(&facts::method_docs(context, stream, |_| ()));
         let arguments = vec![constant(context, stream).into()];
         Code::call("self.data.subscribe", arguments).write(out, "return ", "");
     });
@@ -157,7 +135,7 @@ fn follow_docs<'c>(
     report: &Operation,
     followed: &str,
 ) -> Docs<'c> {
-    let mut docs = Docs::of(&command.title);
+    let mut docs = Docs::titled(&command.title);
     docs.raw(format!(
         "先返回响应，再逐个返回它引起的 `{followed}`。\n\
          Returns the response, and then each `{followed}` that the command sets off.",
@@ -171,12 +149,12 @@ fn follow_docs<'c>(
 }
 
 /// The methods of a group's commands, each of which waits.
-pub fn sync_calls(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::SyncCalls) else {
+pub fn sync_calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::SyncCalls) else {
         return;
     };
-    let about = about("sync.Client", "指令", "commands", group);
-    part_of(out, name, "rt.SyncCalls", about, |out| {
+    let about = ["sync.Client", "指令", "commands"];
+    part_of(out, group, name, "rt.SyncCalls", about, |out| {
         for command in &group.commands {
             sync_call(out, context, command);
         }
@@ -195,9 +173,7 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     deprecated(out, command);
     let open = format!("def {}(", command.method);
     method(out, &open, parameters(command), response, |out| {
-        let mut docs = facts::answered_docs(context, operation, declared);
-        docs.paragraph(context.links(&operation.location, &page_of(operation)));
-        out.docstring(&docs);
+        out.docstring(&facts::command_docs(context, operation, declared));
         Code::call("self._call", told(&[operation])).write(out, "return ", "");
     });
     let reports: Vec<_> = process::set_off(context, operation).collect();
@@ -224,19 +200,17 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 }
 
 /// The methods of a group's streams: those of the robot first.
-pub fn streams(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::Streams) else {
+pub fn streams(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::Streams) else {
         return;
     };
-    let about = about("Streams", "数据流", "streams", group);
-    part_of(out, name, "rt.Streams", about, |out| {
-        let streams = group.streams.iter();
-        let (robots, own): (Vec<_>, Vec<_>) = streams.partition(|it| it.sender == Side::Robot);
-        for stream in robots {
+    let about = ["Streams", "数据流", "streams"];
+    part_of(out, group, name, "rt.Streams", about, |out| {
+        for stream in group.subscribed() {
             out.blank();
             subscribe(out, context, stream);
         }
-        for stream in own {
+        for stream in group.sent() {
             out.blank();
             send(out, context, stream);
         }
@@ -247,7 +221,7 @@ fn send(out: &mut Source, context: &Context<'_>, stream: &Operation) {
     let parameters = ["self", "message_id: int", &content(context, stream)].map(Code::from);
     let open = format!("async def send_{}(", stream.name);
     method(out, &open, parameters.to_vec(), "None", |out| {
-        out.docstring(&stream_docs(context, stream));
+        out.docstring(&facts::method_docs(context, stream, |_| ()));
         let arguments = [&*constant(context, stream), "message_id", "content"].map(Code::from);
         Code::call("self.data.send_stream", arguments.to_vec()).write(out, "await ", "");
     });

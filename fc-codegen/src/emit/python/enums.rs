@@ -2,24 +2,19 @@
 
 use super::literal::wire;
 use super::source::{Code, Python};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
-use crate::emit::stub::source::Source;
-use crate::surface::package::{Item, Spelled};
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::items::{Item, Spelled};
+use crate::package::process::{self, has_states, next_values};
+use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
 
 /// Whether the values of an enum are states of a process: the spec says so, or a report has it for its state.
 pub fn is_state(context: &Context<'_>, shape: &EnumType, ty: &TypeDef) -> bool {
-    has_process(shape)
+    has_states(shape)
         || context.model().operations.iter().any(|report| {
             process::state(context, report).is_some_and(|(_, state)| state.name() == ty.name)
         })
-}
-
-fn has_process(shape: &EnumType) -> bool {
-    let mut values = shape.values.iter();
-    shape.order.is_some() || values.any(|value| value.is_final || value.is_error)
 }
 
 /// An enum and its values.
@@ -49,7 +44,7 @@ pub fn enumeration(
             out.line(format!("{} = {}", value.name, wire(&value.wire)));
             out.docstring(&docs);
         }
-        if has_process(shape) {
+        if has_states(shape) {
             out.blank();
             states(out, shape, values);
         }
@@ -67,8 +62,7 @@ fn states(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>])
     if let Some(order) = shape.order {
         let followed = values.iter().filter(|value| !value.then.is_empty());
         let followed = followed.map(|value| {
-            let next = value.then.iter();
-            let next = next.filter_map(|next| values.iter().find(|it| it.of.name == *next));
+            let next = next_values(value, values);
             let next = next.map(|next| named(&next.name)).collect();
             Code::Named(format!("cls.{}: ", value.name), Box::new(Code::tuple(next)))
         });

@@ -1,32 +1,30 @@
 //! `groups/….py`: all that there is of a group. Its types, its operations as values, and its part of each stub.
 
 use super::client;
-use super::homes::{Group, Homes, Part, Piece, Used};
 use super::messages;
+use super::modules::{GroupPart, ModulePlan, NamedGroup, Used};
 use super::operations::{self, constant};
 use super::robot;
 use super::source::{PYTHON, Python, exported};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::group::Group;
+use crate::package::source::Source;
 
-/// The file that is the home of this part, and of those that cannot be parted from it.
-pub fn file(
+/// The file of a group, and of those that cannot be parted from it.
+pub fn group_file(
     context: &Context<'_>,
-    samples: &Samples<'_>,
-    homes: &Homes<'_>,
-    home: &Part<'_>,
+    plan: &ModulePlan<'_, '_>,
+    home: &Group<'_, '_>,
 ) -> String {
-    let parts = homes.members(home);
-    let items: Vec<_> = parts.iter().flat_map(|part| part.items).collect();
-    let groups: Vec<_> = parts.iter().filter_map(|it| it.group.as_ref()).collect();
+    let groups = plan.members(home);
+    let items: Vec<_> = groups.iter().flat_map(|group| group.types).collect();
     let mut used = Used::default();
     let mut body = Source::new(&PYTHON);
-    messages::types(&mut body, &mut used, context, samples, &items);
+    messages::types(&mut body, &mut used, context, &items);
     if groups.iter().any(|group| !group.operations.is_empty()) {
-        operations::values(&mut body, context, samples, &groups);
+        operations::values(&mut body, context, &groups);
     }
     for group in &groups {
         client::any_report(&mut body, group);
@@ -41,12 +39,12 @@ pub fn file(
     let mut names = messages::names(context, &items);
     names.extend(operations.iter().map(String::as_str));
     let mut docs = Docs::default();
-    for part in &parts {
-        about::group(&mut docs, part.group.as_ref().map(|group| group.of));
+    for group in &groups {
+        about::group(&mut docs, group.of);
     }
     let mut out = Source::new(&PYTHON);
     out.docstring(&docs);
-    used.imports(&mut out, context, homes, home);
+    used.imports(&mut out, context, plan, home);
     out.blank();
     exported(&mut out, &names);
     out.blank();
@@ -55,7 +53,7 @@ pub fn file(
 }
 
 /// What a group has of the classes that a user names.
-fn stubs(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
+fn stubs(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     client::calls(out, context, group);
     client::sync_calls(out, context, group);
     client::streams(out, context, group);
@@ -66,32 +64,33 @@ fn stubs(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// What these and the operations of the group have to import.
-fn uses<'m>(used: &mut Used<'m>, context: &'m Context<'_>, group: &Group<'m>) {
+fn uses<'p>(used: &mut Used<'p>, context: &'p Context<'_>, group: &NamedGroup<'_, 'p>) {
     for operation in &group.operations {
         used.library("typing", "Final");
         used.operation(context, operation);
     }
-    if group.name(Piece::AnyReport).is_some() {
+    if group.part(GroupPart::AnyReport).is_some() {
         used.library("typing", "TypeAlias");
     }
-    if group.name(Piece::Handlers).is_some() {
+    if group.part(GroupPart::Handlers).is_some() {
         used.library("abc", "ABC");
         used.library("abc", "abstractmethod");
     }
 }
 
-/// A class with what a group has of another.
+/// A class with what a group has of another, whose name and methods are `about`: `["Client", "指令", "commands"]`.
 pub fn part_of(
     out: &mut Source,
+    group: &NamedGroup<'_, '_>,
     name: &str,
     base: &str,
-    about: [String; 2],
+    about: [&str; 3],
     body: impl FnOnce(&mut Source),
 ) {
-    let [zh, en] = about;
-    let mut docs = Docs::default();
-    docs.paragraph(zh);
-    docs.paragraph(en);
+    let (id, [class, zh, en]) = (group.id, about);
+    let zh = format!("`{class}` 的一部分：`{id}` 组的{zh}。");
+    let en = format!("Part of `{class}`: the {en} of the group `{id}`.");
+    let docs = Docs::named(zh, en);
     out.gap();
     out.suite(&format!("class {name}({base})"), |out| {
         out.docstring(&docs);

@@ -1,9 +1,9 @@
 //! Literals of Python, and constants made of them.
 
 use super::source::Code;
-use crate::emit::stub::digits::grouped;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::package::Item;
+use crate::package::digits::grouped;
+use crate::package::expr::{Expr, Record};
+use crate::package::items::Item;
 use fc_spec::model::{Number, Scalar, has_unprintable, is_hidden};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -1,31 +1,26 @@
 //! Message types: dataclasses, enums and choices.
 
 use super::enums::{enumeration, is_state};
-use super::homes::Used;
 use super::literal::{constant, literal, number, regex};
+use super::modules::Used;
 use super::source::{Code, Python, assign_text};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::{Profile, Samples};
-use crate::surface::expr::Expressions;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::{Item, Shape, Spelled};
-use fc_spec::model::{
-    Condition, Constraint, Direction, EnumRepr, Field, Operation, Type, TypeShape, Value, Variant,
-    WireForm,
-};
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::context::Context;
+use crate::package::expr::Expressions;
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
+use crate::package::name::free;
+use crate::package::source::Source;
+use fc_spec::model::{EnumRepr, Field, Scalar, Type, TypeShape, Value, Variant};
 
 /// Message types.
 pub fn types<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     items: &[&'m Item<'_>],
 ) {
     // Annotations of fields are read late, but not the constants of classes, which may be values of enums.
@@ -41,10 +36,8 @@ pub fn types<'m>(
     for item in items {
         if let Shape::Record(_, fields) = &item.shape {
             out.gap();
-            structure(out, used, context, samples, item, fields);
-            if let Some(command) = asks(item) {
-                errors(out, context, command);
-            }
+            structure(out, used, context, item, fields);
+            errors(out, context, item);
         }
     }
     // These are made of structs, where they stand.
@@ -58,39 +51,28 @@ pub fn types<'m>(
 
 /// What message types are called, and the errors beside them.
 pub fn names<'n>(context: &'n Context<'_>, items: &[&'n Item<'_>]) -> Vec<&'n str> {
-    let errors = |item: &Item<'n>| context.package.error_type(asks(item)?);
+    let errors = |item: &Item<'n>| Some(context.package.declared_by(item)?.1);
     let names = items.iter();
     let names = names.flat_map(|item| std::iter::once(&*item.ty.name).chain(errors(item)));
     names.collect()
-}
-
-/// The operation whose request an item is.
-fn asks<'m>(item: &Item<'m>) -> Option<&'m Operation> {
-    let (operation, side) = item.body_of()?;
-    (side == Direction::Request).then_some(operation)
 }
 
 fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
     fields: &'m [Spelled<'_, Field>],
 ) {
     used.library("dataclasses", "dataclass");
     used.library("dataclasses", "field");
-    let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
+    let expressions = Expressions::new(&context.package);
     out.line("@dataclass(slots=True, kw_only=True)");
     let head = format!("class {}(rt.Message)", item.ty.name);
     out.suite(&head, |out| {
         out.docstring(&facts::item_docs(context, item));
         out.blank();
-        let example = samples.named(item.ty.of, Profile::Example).to_string();
+        let example = context.example(item);
         if example != "{}" {
             used.library("typing", "ClassVar");
             assign_text(out, "__example__: ClassVar[str]", &example);
@@ -120,7 +102,7 @@ fn structure<'m>(
                 used.id(&id.name);
             }
             let mut marks = vec![Code::from(field_annotation(context, field, field.optional))];
-            marks.push(key(field, &conditions, &expressions));
+            marks.push(key(field, fields, &expressions));
             let absent = match (field.optional, field.sensitive) {
                 (true, true) => " = field(default=None, repr=False)",
                 (true, false) => " = None",
@@ -129,7 +111,7 @@ fn structure<'m>(
             };
             let ty = Code::Call("Annotated[".to_owned(), marks, "]");
             ty.write(out, &format!("{}: ", field.name), absent);
-            let condition = conditions.sentence(field, |it| constant(it).flat());
+            let condition = sentence(&expressions, field, fields, |it| constant(it).flat());
             out.docstring(&facts::field_docs(context.style, field, condition));
             out.blank();
         }
@@ -212,52 +194,43 @@ pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
 /// How a field travels, and what is demanded of it.
 fn key(
     field: &Spelled<'_, Field>,
-    conditions: &Conditions<'_, '_, '_, '_>,
-    expressions: &Expressions<'_, '_, '_>,
+    fields: &[Spelled<'_, Field>],
+    expressions: &Expressions<'_, '_>,
 ) -> Code {
-    let details = field.details();
+    let marks = FieldMarks::build(field.of, fields);
+    let values = |ty: &Type, values: &[Scalar]| {
+        let values = values.iter();
+        let values = values.map(|wire| constant(&expressions.value(ty, &Value::from(wire))));
+        Code::tuple(values.collect())
+    };
     let mut items = vec![Code::from(literal(&field.wire))];
     let mut set = |name: &str, value: Code| items.push(Code::named(name, value));
-    if !details.also.is_empty() {
-        let keys = details.also.iter().map(|key| literal(key).into());
+    if !marks.also.is_empty() {
+        let keys = marks.also.iter().map(|key| literal(key).into());
         set("also", Code::tuple(keys.collect()));
     }
-    for constraint in details.constraints() {
-        match constraint {
-            Constraint::Min(min) => set("min", number(min).into()),
-            Constraint::Max(max) => set("max", number(max).into()),
-            Constraint::Length(least, most) => set("length", format!("({least}, {most})").into()),
-            Constraint::Pattern(pattern) => set("pattern", regex(pattern.portable()).into()),
-            Constraint::Only(taken) => {
-                let taken = taken.iter().map(|wire| {
-                    let taken = expressions.value(field.ty.item(), &Value::from(wire));
-                    constant(&taken)
-                });
-                set("only", Code::tuple(taken.collect()));
-            }
-        }
+    for (name, bound) in &marks.constraints {
+        let value = match bound {
+            Bound::Number(value) => number(value).into(),
+            Bound::Range(least, most) => format!("({least}, {most})").into(),
+            Bound::Pattern(pattern) => regex(pattern).into(),
+            Bound::Values(taken) => values(field.ty.item(), taken),
+        };
+        set(name, value);
     }
-    if field.wire_form != WireForm::Plain {
-        let form = Case::Screaming.apply(field.wire_form.name());
+    if let Some(form) = marks.form {
+        let form = Case::Screaming.apply(form);
         set("form", format!("rt.Form.{form}").into());
     }
-    for quirk in &details.quirks {
-        set(quirk.name(), "True".into());
+    for quirk in marks.quirks {
+        set(quirk, "True".into());
     }
-    if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
-        let word = match condition {
-            Condition::When(_) => "when",
-            Condition::Unless(_) => "unless",
-        };
-        let asked = condition.asked().iter().filter_map(|asked| {
-            let beside = conditions.fields.iter().find(|it| it.wire == asked.wire)?;
-            let values = asked.values.iter();
-            let values = values.map(|wire| constant(&conditions.value(beside, wire)));
-            let values = Code::tuple(values.collect());
-            let name = format!("{}: ", literal(&asked.wire));
-            Some(Code::Named(name, Box::new(values)))
+    if let Some(condition) = marks.condition {
+        let asked = condition.fields.iter().map(|(other, wires)| {
+            let name = format!("{}: ", literal(&other.wire));
+            Code::Named(name, Box::new(values(&other.ty, wires)))
         });
-        set(word, Code::List("{", asked.collect(), "}"));
+        set(condition.word, Code::List("{", asked.collect(), "}"));
     }
     Code::call("rt.Key", items)
 }
@@ -274,7 +247,7 @@ struct Default {
 /// The defaults of a message's fields.
 fn defaults(
     context: &Context<'_>,
-    expressions: &Expressions<'_, '_, '_>,
+    expressions: &Expressions<'_, '_>,
     fields: &[Spelled<'_, Field>],
 ) -> Vec<Default> {
     let defaults = fields.iter().filter_map(|field| {
@@ -299,9 +272,9 @@ fn defaults(
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     out.gap();
@@ -312,7 +285,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
             let text = literal(&result.text.zh);
             out.blank();
             out.line(format!("{} = {}, {text}", result.name, result.code));
-            out.docstring(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            out.docstring(&about::error(error, result.of));
         }
     });
 }

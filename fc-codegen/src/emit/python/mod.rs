@@ -6,9 +6,9 @@
 mod client;
 mod enums;
 mod group;
-mod homes;
 mod literal;
 mod messages;
+mod modules;
 mod operations;
 mod protocol;
 mod robot;
@@ -17,55 +17,53 @@ pub mod samples;
 mod source;
 mod stubs;
 
-use crate::emit::stub::context::Context;
+use crate::package::context::Context;
+use crate::package::language::{PYTHON, Role};
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
-use crate::surface::language::{PYTHON, Role};
 use crate::target::Targets;
 use fc_spec::model::Model;
-use homes::Homes;
+use modules::ModulePlan;
 
 /// All of its files.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.python(), &source::PYTHON, Some(targets));
-    let samples = &Samples::new(model);
-    let homes = &Homes::of(context);
+    let plan = &ModulePlan::build(context);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();
     let all = "the spec";
     let source = |path: &str| format!("src/{package}/{path}");
     let mut files = vec![
-        (source("__init__.py"), all, root::file(context)),
+        (source("__init__.py"), all, root::root_file(context)),
         (source("call.py"), all, root::call(context, &package)),
-        (source("client.py"), all, stubs::client(context, homes)),
-        (source("groups/__init__.py"), all, root::groups(homes, ids)),
+        (source("client.py"), all, stubs::client(context, plan)),
+        (source("groups/__init__.py"), all, root::groups(plan, ids)),
         (source("messages.py"), all, root::messages()),
         (source("operations.py"), all, root::operations()),
-        (source("protocol.py"), all, protocol::file(context, homes)),
-        (source("robot.py"), all, stubs::robot(context, homes)),
-        (source("sync.py"), all, stubs::sync(context, homes)),
+        (
+            source("protocol.py"),
+            all,
+            protocol::protocol_file(context, plan),
+        ),
+        (source("robot.py"), all, stubs::robot(context, plan)),
+        (source("sync.py"), all, stubs::sync(context, plan)),
         (
             samples::SHOWN.file.to_owned(),
             all,
-            samples::file(context, samples, &package),
+            samples::samples_file(context, &package),
         ),
     ];
     if !context.package.tables.is_empty() {
-        files.push((source("tables.py"), all, root::tables(context, samples)));
+        files.push((source("tables.py"), all, root::tables(context)));
     }
     if ids {
-        let path = format!("groups/{}.py", homes.ids());
+        let path = format!("groups/{}.py", plan.ids());
         files.push((source(&path), all, root::ids(context)));
     }
-    files.extend(homes.files().map(|home| {
-        let first = home.items.first();
-        let from = match &home.group {
-            Some(group) => group.of.location.file.as_str(),
-            None => first.map_or("spec", |item| &item.ty.location.file),
-        };
-        let text = group::file(context, samples, homes, home);
-        (source(&format!("groups/{}.py", home.module())), from, text)
+    files.extend(plan.files().map(|home| {
+        let text = group::group_file(context, plan, home);
+        let path = format!("groups/{}.py", home.name);
+        (source(&path), home.file(), text)
     }));
     let files = files.into_iter().map(|(path, from, text)| {
         let head =

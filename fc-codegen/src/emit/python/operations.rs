@@ -1,42 +1,36 @@
 //! Commands, reports and streams as values, with all that the spec says of them.
 
-use super::homes::{Group, Piece};
 use super::literal::{boolean, constant as constant_of, literal};
+use super::modules::{GroupPart, NamedGroup};
 use super::protocol;
 use super::source::{Code, Python, tuple};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::process::{set_off, state};
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
-use crate::surface::expr::Expressions;
-use crate::surface::language::Case;
-use crate::surface::name::free;
+use crate::package::context::{Context, page_of};
+use crate::package::docs::Docs;
+use crate::package::expr::Expressions;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::process::{set_off, state};
+use crate::package::source::Source;
 use fc_spec::model::{
     Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Kind, Operation, Side, StateSet,
-    StructRef, Type, TypeRef, Value,
+    StructRef, Type, Value,
 };
 
 /// The operations of these groups, as values. Reports come first, for commands name them.
-pub fn values(
-    out: &mut Source,
-    context: &Context<'_>,
-    samples: &Samples<'_>,
-    groups: &[&Group<'_>],
-) {
+pub fn values(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_, '_>]) {
     out.gap();
     for kind in KINDS {
         let operations = groups.iter().flat_map(|group| &group.operations);
         for operation in operations.filter(|it| it.kind() == kind) {
             let before = format!("{}: Final = ", constant(context, operation));
             out.blank();
-            value(context, samples, operation).write(out, &before, "");
-            out.docstring(&Docs::of(&operation.title));
+            value(context, operation).write(out, &before, "");
+            out.docstring(&Docs::titled(&operation.title));
         }
     }
     for group in groups {
         for kind in KINDS {
-            let Some(name) = group.name(Piece::All(kind)) else {
+            let Some(name) = group.part(GroupPart::All(kind)) else {
                 continue;
             };
             let operations = group.operations.iter().filter(|it| it.kind() == kind);
@@ -77,7 +71,7 @@ pub fn ack(ack: Ack) -> Code {
     Code::call("rt.AckPolicy", vec![timeout.into(), retries.into()])
 }
 
-fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) -> Code {
+fn value(context: &Context<'_>, operation: &Operation) -> Code {
     let code = match operation.code.value {
         Some(_) => operation.code.spelling.clone(),
         None => "None".to_owned(),
@@ -99,7 +93,7 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
             let effect = Case::Screaming.apply(effect.name());
             set("effect", format!("rt.Effect.{effect}").into());
             if let Some(accepted) = accepted {
-                set("preconditions", preconditions(context, samples, accepted));
+                set("preconditions", preconditions(context, accepted));
             }
             if let Some(error) = context.package.error_type(operation) {
                 set("errors", error.into());
@@ -134,8 +128,7 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
             "rt.Report"
         }
         Exchange::Stream(stream) => {
-            let body = operation.body(Direction::Request);
-            let body = body.map_or("bytes", |body| context.name_of(&body.ty));
+            let body = context.content(operation).unwrap_or("bytes");
             set("body", body.into());
             set(
                 "from_robot",
@@ -169,13 +162,13 @@ fn value(context: &Context<'_>, samples: &Samples<'_>, operation: &Operation) ->
     Code::call(word, items)
 }
 
-fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accepted) -> Code {
+fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Code {
     let mut items = Vec::new();
     match &accepted.states {
         None => {}
         Some(AcceptedIn::Any) => items.push(Code::named("any_state", "True")),
         Some(AcceptedIn::States(sets)) => {
-            let sets = sets.iter().map(|set| states(context, samples, set));
+            let sets = sets.iter().map(|set| states(context, set));
             items.push(Code::named("states", Code::tuple(sets.collect())));
         }
     }
@@ -186,8 +179,8 @@ fn preconditions(context: &Context<'_>, samples: &Samples<'_>, accepted: &Accept
     Code::call("rt.Preconditions", items)
 }
 
-fn states(context: &Context<'_>, samples: &Samples<'_>, set: &StateSet) -> Code {
-    let expressions = Expressions::new(&context.package, samples);
+fn states(context: &Context<'_>, set: &StateSet) -> Code {
+    let expressions = Expressions::new(&context.package);
     let ty = Type::Named(set.ty.clone());
     let values = set.values.iter().map(|wire| {
         let value = expressions.value(&ty, &Value::from(wire));
@@ -226,16 +219,9 @@ fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
 
 /// The way to a field, by the names of the fields on it.
 fn way(context: &Context<'_>, body: &StructRef, keys: &[String]) -> Code {
-    let mut holder: Option<&TypeRef> = Some(body);
-    let mut steps = Vec::new();
-    for field in context.model().way(body, keys) {
-        steps.push(holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field)));
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
-    }
-    literal(&steps.join(".")).into()
+    let steps = context.steps(body, keys);
+    let names: Vec<&str> = steps.iter().map(|step| step.name).collect();
+    literal(&names.join(".")).into()
 }
 
 fn cadence(cadence: &Cadence) -> Code {

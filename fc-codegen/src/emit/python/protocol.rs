@@ -1,23 +1,23 @@
 //! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
 
-use super::homes::{Homes, Piece};
 use super::literal::{bytes, literal};
 use super::messages::annotation;
+use super::modules::{GroupPart, ModulePlan};
 use super::operations::{ack, seconds};
 use super::source::{Code, PYTHON, Python, tuple};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::ranges::pass_through;
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Comment;
-use crate::surface::language::Case;
-use crate::surface::name::free;
-use crate::surface::package::Spelled;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::digits::grouped;
+use crate::package::docs::Docs;
+use crate::package::items::Spelled;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::ranges::pass_through;
+use crate::package::source::Source;
+use crate::package::style::Comment;
+use crate::package::wire::WireFacts;
 use fc_spec::model::{
-    EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, RangeUse,
-    ResultRole,
+    EnvelopeField, HeaderField, HeaderQuirk, HeaderRole, HeaderType, Kind, RangeUse,
 };
 
 /// A comment that no tool reads.
@@ -43,7 +43,7 @@ pub fn name(context: &Context<'_>) -> String {
 }
 
 /// The file.
-pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&about::WIRE));
@@ -61,7 +61,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
     out.blank();
     out.line("import fc_runtime as rt");
     out.blank();
-    homes.import(&mut out, &KINDS.map(|(_, kind)| Piece::All(kind)));
+    plan.import(&mut out, &KINDS.map(|(_, kind)| GroupPart::All(kind)));
     out.gap();
     results(&mut out, context);
     out.gap();
@@ -81,7 +81,7 @@ pub fn file(context: &Context<'_>, homes: &Homes<'_>) -> String {
         &package.response_envelope,
     );
     out.gap();
-    protocol(&mut out, context, homes);
+    protocol(&mut out, context, plan);
     out.finish()
 }
 
@@ -90,8 +90,6 @@ fn results(out: &mut Source, context: &Context<'_>) {
         let docs = about::results(context);
         out.docstring(&docs);
         for result in &context.package.results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
             out.blank();
             out.line(format!(
                 "{} = {}, {}",
@@ -99,7 +97,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
                 result.code,
                 literal(&result.text.zh)
             ));
-            out.docstring(&docs);
+            out.docstring(&about::result(result.of));
         }
     });
 }
@@ -123,7 +121,7 @@ fn envelope(
                 field.name,
                 literal(&field.wire)
             ));
-            out.docstring(&Docs::of(&field.text));
+            out.docstring(&Docs::titled(&field.text));
         }
         out.blank();
         super::messages::extra(out);
@@ -138,79 +136,64 @@ fn roles(fields: &[Spelled<'_, EnvelopeField>]) -> Code {
     Code::List("{", roles.collect(), "}")
 }
 
-fn protocol(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
-    let model = context.model();
-    let frame = &model.frame;
-    let kinds = &frame.kinds;
-    let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
-    let reserved = kinds.reserved.iter();
-    let reserved = reserved.map(|kind| Code::Text(kind.value.to_string()));
-    let reserved: Vec<Code> = reserved.collect();
+fn protocol(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) {
+    let wire = &WireFacts::build(context);
+    let frame = &wire.frame;
+    let reserved = frame.reserved_kinds.iter();
+    let reserved: Vec<Code> = reserved.map(|kind| Code::Text(kind.to_string())).collect();
     let reserved = match reserved.as_slice() {
         [] => Vec::new(),
         _ => vec![Code::List("{", reserved, "}")],
     };
-    let gzip = encoding(EncodingRole::Gzip);
-    let plain = encoding(EncodingRole::Plain).unwrap_or_default();
-    let ports = &model.transport.ports;
     let package = &context.package;
     let text = |text: &str| Code::Text(literal(text));
-    out.enclose(
-        &format!("{}: Final = rt.Protocol(", name(context)),
-        ")",
-        |out| {
-            let set = |out: &mut Source, name: &str, value: Code| {
-                Code::named(name, value).write(out, "", ",");
-            };
-            set(out, "name", text(&model.protocol.id));
-            set(out, "host", text(&model.transport.host));
-            set(out, "command_port", ports.command.number.to_string().into());
-            set(out, "data_port", ports.data.number.to_string().into());
-            set(out, "byte_order", text(frame.byte_order.name()));
-            out.enclose("header=(", "),", |out| {
-                for field in &package.header {
-                    out.comment(&COMMENT, &Docs::of(&field.text));
-                    header_field(field).write(out, "", ",");
-                }
-            });
-            for (name, value) in [
-                ("request_head", bytes(&frame.request_head)),
-                ("response_head", bytes(&frame.response_head)),
-                ("stream", kinds.stream.value.to_string()),
-                ("command", kinds.command.value.to_string()),
-                ("report", kinds.report.value.to_string()),
-            ] {
-                set(out, name, value.into());
+    let open = format!("{}: Final = rt.Protocol(", name(context));
+    out.enclose(&open, ")", |out| {
+        let set = |out: &mut Source, name: &str, value: Code| {
+            Code::named(name, value).write(out, "", ",");
+        };
+        set(out, "name", text(wire.name));
+        set(out, "host", text(wire.host));
+        for (name, number) in &wire.ports {
+            set(out, name, number.to_string().into());
+        }
+        set(out, "byte_order", text(frame.byte_order.name()));
+        out.enclose("header=(", "),", |out| {
+            for field in frame.header {
+                out.comment(&COMMENT, &Docs::titled(&field.text));
+                header_field(field).write(out, "", ",");
             }
-            set(out, "reserved_kinds", Code::call("frozenset", reserved));
-            set(out, "plain", plain.to_string().into());
-            if let Some(gzip) = gzip {
-                set(out, "gzip", gzip.to_string().into());
-            }
-            set(out, "request_envelope", "RequestEnvelope".into());
-            set(out, "response_envelope", "ResponseEnvelope".into());
-            set(out, "request_roles", roles(&package.request_envelope));
-            set(out, "response_roles", roles(&package.response_envelope));
-            let results = ResultRole::ALL.iter().map(|role| {
-                let mut results = model.results.iter();
-                let result = results.find(|result| result.role == Some(*role));
-                let (code, said) = result.map_or((0, ""), |it| (it.code, &it.text.zh));
-                let result = vec![grouped(code.into()).into(), text(said)];
-                Code::named(role.name(), Code::call("rt.ResultText", result))
-            });
-            set(out, "results", Code::call("rt.Results", results.collect()));
-            set(out, "defaults", defaults(context));
-            for (name, kind) in KINDS {
-                let groups = homes.pieces(Piece::All(kind)).into_iter();
-                let groups: Vec<String> = groups.map(|it| format!("*{it}")).collect();
-                tuple(out, &format!("{name}="), &groups, ",");
-            }
-            set(out, RangeUse::PassThrough.name(), ranges(context));
-        },
-    );
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+        });
+        for (name, head) in frame.heads {
+            set(out, name, bytes(head).into());
+        }
+        for (name, kind) in frame.kinds {
+            set(out, name, kind.to_string().into());
+        }
+        set(out, "reserved_kinds", Code::call("frozenset", reserved));
+        set(out, "plain", frame.plain.to_string().into());
+        if let Some(gzip) = frame.gzip {
+            set(out, "gzip", gzip.to_string().into());
+        }
+        set(out, "request_envelope", "RequestEnvelope".into());
+        set(out, "response_envelope", "ResponseEnvelope".into());
+        set(out, "request_roles", roles(&package.request_envelope));
+        set(out, "response_roles", roles(&package.response_envelope));
+        let results = wire.results.iter().map(|result| {
+            let (code, said) = result.code_and_text();
+            let value = vec![grouped(code.into()).into(), text(said)];
+            Code::named(result.role, Code::call("rt.ResultText", value))
+        });
+        set(out, "results", Code::call("rt.Results", results.collect()));
+        set(out, "defaults", defaults(wire));
+        for (name, kind) in KINDS {
+            let groups = plan.parts(GroupPart::All(kind)).into_iter();
+            let groups: Vec<String> = groups.map(|it| format!("*{it}")).collect();
+            tuple(out, &format!("{name}="), &groups, ",");
+        }
+        set(out, RangeUse::PassThrough.name(), ranges(context));
+    });
+    let mut docs = about::protocol(context.model());
     if let Some(page) = context.page("reference/wire.md") {
         docs.paragraph(page);
     }
@@ -256,25 +239,18 @@ fn header_field(field: &Spelled<'_, HeaderField>) -> Code {
     Code::call("rt.HeaderField", items)
 }
 
-fn defaults(context: &Context<'_>) -> Code {
-    let calls = &context.model().calls;
-    let limits = &context.model().limits;
-    let max_age = calls.max_age_ms.map_or_else(|| "None".to_owned(), seconds);
-    let limits = [
-        ("frame_bytes", limits.frame_bytes),
-        ("inflated_bytes", limits.inflated_bytes),
-        ("json_depth", limits.json_depth),
-        ("in_flight", limits.in_flight),
-        ("queued_reports", limits.queued_reports),
-        ("connections", limits.connections),
-    ];
+fn defaults(wire: &WireFacts<'_, '_>) -> Code {
+    let max_age = wire.max_age_ms.map_or_else(|| "None".to_owned(), seconds);
+    let limits = wire.limits;
     let limits = limits.map(|(name, value)| Code::named(name, grouped(value.into())));
-    let items = vec![
-        Code::named("call_timeout", seconds(calls.timeout_ms)),
-        Code::named("handler_timeout", seconds(calls.handler_timeout_ms)),
+    let times = wire.times.iter();
+    let mut items: Vec<Code> = times
+        .map(|(name, ms)| Code::named(name, seconds(*ms)))
+        .collect();
+    items.extend([
         Code::named("max_age", max_age),
-        Code::named("ack", ack(calls.ack)),
+        Code::named("ack", ack(wire.ack)),
         Code::named("limits", Code::call("rt.Limits", limits.to_vec())),
-    ];
+    ]);
     Code::call("rt.Defaults", items)
 }

@@ -1,15 +1,14 @@
 //! What a group has of the robot's stubs: the methods of its commands, its reports and its streams.
 
-use super::client::{about, content, stream_docs};
+use super::client::content;
 use super::group::part_of;
-use super::homes::{Group, Piece};
+use super::modules::{GroupPart, NamedGroup};
 use super::operations::constant;
 use super::source::{Code, Python, method};
-use crate::emit::stub::context::{Context, page_of};
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
-use fc_spec::model::Side;
+use crate::package::context::Context;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::source::Source;
 
 /// A method that handles a command.
 fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source)) {
@@ -21,22 +20,17 @@ fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source))
 }
 
 /// The methods that a complete robot has to have.
-pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::Handlers) else {
+pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::Handlers) else {
         return;
     };
-    let about = about("Robot", "指令", "commands", group);
-    part_of(out, name, "ABC", about, |out| {
+    let about = ["Robot", "指令", "commands"];
+    part_of(out, group, name, "ABC", about, |out| {
         for command in &group.commands {
             let operation = command.operation;
-            let mut docs = facts::operation_docs(operation);
-            facts::operation_end(context.style, &mut docs, operation);
-            if let Some(error) = context.package.error_type(operation) {
-                docs.raw(format!(
-                    "To refuse the command, raise the `refusal()` of a `{error}`."
-                ));
-            }
-            docs.paragraph(context.links(&operation.location, &page_of(operation)));
+            let docs = facts::command_docs(context, operation, |error| {
+                format!("To refuse the command, raise the `refusal()` of a `{error}`.")
+            });
             out.blank();
             out.line("@abstractmethod");
             handler(out, command, |out| out.docstring(&docs));
@@ -45,15 +39,15 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// The same, none of which has to be there.
-pub fn partial_handlers(out: &mut Source, group: &Group<'_>) {
+pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let (Some(name), Some(base)) = (
-        group.name(Piece::PartialHandlers),
-        group.name(Piece::Handlers),
+        group.part(GroupPart::PartialHandlers),
+        group.part(GroupPart::Handlers),
     ) else {
         return;
     };
-    let about = about("PartialRobot", "指令", "commands", group);
-    part_of(out, name, base, about, |out| {
+    let about = ["PartialRobot", "指令", "commands"];
+    part_of(out, group, name, base, about, |out| {
         for command in &group.commands {
             out.blank();
             out.line("@rt.left_out");
@@ -66,18 +60,17 @@ pub fn partial_handlers(out: &mut Source, group: &Group<'_>) {
 }
 
 /// The methods that push reports.
-pub fn reporter(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::Reporter) else {
+pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::Reporter) else {
         return;
     };
-    let about = about("Reporter", "上报", "reports", group);
-    part_of(out, name, "rt.Reporter", about, |out| {
+    let about = ["Reporter", "上报", "reports"];
+    part_of(out, group, name, "rt.Reporter", about, |out| {
         for report in &group.reports {
             let operation = report.operation;
-            let mut docs = facts::operation_docs(operation);
-            facts::operation_end(context.style, &mut docs, operation);
-            docs.paragraph("Returns the outcome at each connection.");
-            docs.paragraph(context.links(&operation.location, &page_of(operation)));
+            let docs = facts::method_docs(context, operation, |docs| {
+                docs.paragraph("Returns the outcome at each connection.");
+            });
             let message = format!("report: {}", report.request.ty.name);
             let parameters = ["self", &message, "to: int | None = None"].map(Code::from);
             let open = format!("async def {}(", report.method);
@@ -94,19 +87,19 @@ pub fn reporter(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
 }
 
 /// The methods that send the robot's streams.
-pub fn streamer(out: &mut Source, context: &Context<'_>, group: &Group<'_>) {
-    let Some(name) = group.name(Piece::Streamer) else {
+pub fn streamer(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
+    let Some(name) = group.part(GroupPart::Streamer) else {
         return;
     };
-    let about = about("Streamer", "数据流", "streams", group);
-    part_of(out, name, "rt.Streamer", about, |out| {
-        for stream in group.streams.iter().filter(|it| it.sender == Side::Robot) {
-            let mut docs = stream_docs(context, stream);
+    let about = ["Streamer", "数据流", "streams"];
+    part_of(out, group, name, "rt.Streamer", about, |out| {
+        for stream in group.subscribed() {
+            let mut docs = facts::method_docs(context, stream.of, |_| ());
             docs.paragraph("Returns the number of data connections that took it.");
             let held = content(context, stream);
             let parameters = ["self", "message_id: int", &held, "to: int | None = None"];
             let parameters = parameters.map(Code::from).to_vec();
-            let open = format!("async def send_{}(", stream.name);
+            let open = format!("async def send_{}(", stream.of.name);
             out.blank();
             method(out, &open, parameters, "int", |out| {
                 out.docstring(&docs);

@@ -1,17 +1,15 @@
 //! What the package shows at its root and of all groups, its tool, its constants, the types of ids.
 
-use super::homes::{Homes, Part};
 use super::literal::Constants;
 use super::messages::annotation;
+use super::modules::ModulePlan;
 use super::protocol;
 use super::source::{Code, PYTHON, Python, exported, method, sorted};
-use crate::emit::stub::about;
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::source::Source;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::source::Source;
 use fc_spec::model::Type;
 
 /// `__all__` where it is made of others, for those who run the package.
@@ -32,10 +30,10 @@ fn head(docs: &Docs<'_>) -> Source {
 }
 
 /// `__init__.py`.
-pub fn file(context: &Context<'_>) -> String {
+pub fn root_file(context: &Context<'_>) -> String {
     let package = &context.package;
     let model = context.model();
-    let mut docs = Docs::of(&model.protocol.title);
+    let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
     let mut out = head(&docs);
     let name = protocol::name(context);
@@ -79,14 +77,14 @@ pub fn file(context: &Context<'_>) -> String {
 }
 
 /// `groups/__init__.py`.
-pub fn groups(homes: &Homes<'_>, ids: bool) -> String {
+pub fn groups(plan: &ModulePlan<'_, '_>, ids: bool) -> String {
     let mut out = head(&Docs::said(&[
         "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
         "The groups, one module each: message types, operations, and the methods of both sides.",
     ]));
-    let mut modules: Vec<&str> = homes.files().map(Part::module).collect();
+    let mut modules: Vec<&str> = plan.files().map(|group| group.name).collect();
     if ids {
-        modules.push(homes.ids());
+        modules.push(plan.ids());
     }
     modules.sort_unstable();
     out.import_from(".", &modules);
@@ -156,15 +154,10 @@ pub fn ids(context: &Context<'_>) -> String {
     let names = context.package.ids.iter().map(|id| &*id.name);
     exported(&mut out, &names.collect::<Vec<_>>());
     for (id, held) in ids {
-        let title = &id.title;
-        let mut docs = Docs::default();
-        docs.paragraph(format!("{}：ID", title.zh));
-        docs.paragraph(format!("{}: its ID", title.en));
-        docs.paragraph(context.links(&id.location, "reference/entities.md"));
         let held = annotation(context, held, false);
         out.blank();
         out.line(format!("{0} = NewType(\"{0}\", {held})", id.name));
-        out.docstring(&docs);
+        out.docstring(&about::id(context, id.of));
     }
     out.finish()
 }
@@ -189,17 +182,11 @@ if __name__ == \"__main__\":
 }
 
 /// `tables.py`.
-pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
+pub fn tables(context: &Context<'_>) -> String {
     let mut constants = Constants::default();
     let mut body = Source::new(&PYTHON);
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for table in &context.package.tables {
-        let mut docs = Docs::of(&table.title);
-        docs.text(&table.about);
-        if let Some(store) = &table.kept {
-            docs.paragraph(facts::kept(store));
-        }
-        docs.paragraph(context.links(&table.location, "reference/tables.md"));
         let row = context.name_of(&table.row);
         constants.types.insert(row.to_owned());
         let rows = table.rows.iter();
@@ -213,7 +200,7 @@ pub fn tables(context: &Context<'_>, samples: &Samples<'_>) -> String {
             Vec::<Code>::new(),
             &format!("list[{row}]"),
             |out| {
-                out.docstring(&docs);
+                out.docstring(&about::table(context, table.of));
                 rows.write(out, "return ", "");
             },
         );

@@ -3,173 +3,92 @@
 
 use super::literal::Constants;
 use super::source::{Code, PYTHON, Python, method};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::source::Source;
-use crate::emit::stub::style::Style;
-use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::package::{Call, Package};
+use crate::package::context::Context;
+use crate::package::expr::Record;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::source::Source;
+use crate::package::style::Style;
 use crate::target::Targets;
-use fc_spec::model::{Direction, Kind, Operation, Side};
 
 /// Python as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..PYTHON
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "python",
     file: "tests/test_samples.py",
     language: Targets::python,
     style: &ON_PAGES,
-    snippets: |context, samples| Box::new(Snippets::new(&context.package, samples)),
+    write: |out, _, sample| write(out, &mut Constants::default(), sample),
 };
 
-/// What makes the samples of a package.
-pub struct Snippets<'p, 'm> {
-    package: &'p Package<'m>,
-    samples: &'p Samples<'m>,
-}
-
-impl stub::Snippets for Snippets<'_, '_> {
-    fn app(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(&ON_PAGES);
-        self.write_app(&mut out, &mut Constants::default(), operation)?;
-        Some(out.finish())
-    }
-
-    fn robot(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(&ON_PAGES);
-        self.write_robot(&mut out, &mut Constants::default(), operation)?;
-        Some(out.finish())
-    }
-}
-
-impl<'p, 'm> Snippets<'p, 'm> {
-    /// Of the Python package, with values from `samples`.
-    #[must_use]
-    pub fn new(package: &'p Package<'m>, samples: &'p Samples<'m>) -> Self {
-        Self { package, samples }
-    }
-
-    fn write_app(
-        &self,
-        out: &mut Source,
-        names: &mut Constants,
-        operation: &Operation,
-    ) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_app_stream(out, names, operation);
-        }
-        let Call {
-            method, request, ..
-        } = self.package.call(operation)?;
-        if operation.kind() == Kind::Command {
-            let request = self.example(operation, Direction::Request)?;
-            names.record(&request).write(out, "request = ", "");
-            out.line(format!("answer = await client.{method}(request)"));
+fn write(out: &mut Source, names: &mut Constants, sample: &Sample<'_, '_>) {
+    match sample {
+        Sample::Call(call, request) => {
+            names.record(request).write(out, "request = ", "");
+            out.line(format!("answer = await client.{}(request)", call.method));
             out.line("print(answer)");
-        } else {
-            names.types.insert(request.ty.name.to_string());
+        }
+        Sample::Take(call) => {
+            let ty = &call.request.ty.name;
+            names.types.insert(ty.to_string());
             out.suite("async for report in client.reports()", |out| {
-                out.suite(
-                    &format!("if isinstance(report, {})", request.ty.name),
-                    |out| {
-                        out.line("print(report)");
-                    },
-                );
+                out.suite(&format!("if isinstance(report, {ty})"), |out| {
+                    out.line("print(report)");
+                });
             });
         }
-        Some(())
-    }
-
-    fn write_robot(
-        &self,
-        out: &mut Source,
-        names: &mut Constants,
-        operation: &Operation,
-    ) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_robot_stream(out, names, operation);
-        }
-        let call = self.package.call(operation)?;
-        let name = call.method;
-        if operation.kind() == Kind::Command {
-            let answer = self.example(operation, Direction::Response)?;
+        Sample::Answer(call, answer) => {
             let [request, response] =
                 [call.request, call.response].map(|it| it.ty.name.to_string());
             let request_parameter = format!("request: {request}");
             let parameters = ["self", "context: rt.Context", &request_parameter].map(Code::from);
-            let open = format!("async def {name}(");
+            let open = format!("async def {}(", call.method);
             method(out, &open, parameters.to_vec(), &response, |out| {
                 out.line("print(context.address, \"asks:\", request)");
-                names.record(&answer).write(out, "return ", "");
+                names.record(answer).write(out, "return ", "");
             });
             names.types.extend([request, response]);
-        } else {
-            let report = self.example(operation, Direction::Request)?;
-            names.record(&report).write(out, "report = ", "");
-            let head = format!("for acknowledgement in await reporter.{name}(report)");
-            out.suite(&head, |out| out.line("print(acknowledgement)"));
         }
-        Some(())
-    }
-
-    fn write_app_stream(
-        &self,
-        out: &mut Source,
-        names: &mut Constants,
-        stream: &Operation,
-    ) -> Option<()> {
-        let name = &stream.name;
-        stub::is_there(self.package, stream).then(|| {
-            if stream.sender == Side::Robot {
-                let head = format!("async for item in streams.subscribe_{name}()");
-                out.suite(&head, |out| out.line("print(item.id, item.content)"));
-            } else {
-                self.content(out, names, stream);
-                out.line(format!("await streams.send_{name}(1, content)"));
-            }
-        })
-    }
-
-    fn write_robot_stream(
-        &self,
-        out: &mut Source,
-        names: &mut Constants,
-        stream: &Operation,
-    ) -> Option<()> {
-        let is_own = stub::is_there(self.package, stream) && stream.sender == Side::Robot;
-        is_own.then(|| {
-            self.content(out, names, stream);
-            out.line(format!(
-                "taken = await streamer.send_{}(1, content)",
-                stream.name
-            ));
+        Sample::Push(call, report) => {
+            names.record(report).write(out, "report = ", "");
+            let push = format!("await reporter.{}(report)", call.method);
+            out.suite(&format!("for acknowledgement in {push}"), |out| {
+                out.line("print(acknowledgement)");
+            });
+        }
+        Sample::Subscribe(stream) => {
+            let head = format!("async for item in streams.subscribe_{}()", stream.of.name);
+            out.suite(&head, |out| out.line("print(item.id, item.content)"));
+        }
+        Sample::Send(stream, value) => {
+            assign_content(out, names, value.as_ref());
+            let name = &stream.of.name;
+            out.line(format!("await streams.send_{name}(1, content)"));
+        }
+        Sample::Stream(stream, value) => {
+            assign_content(out, names, value.as_ref());
+            let name = &stream.of.name;
+            out.line(format!("taken = await streamer.send_{name}(1, content)"));
             out.line("print(taken, \"data connections took it\")");
-        })
-    }
-
-    /// `content = …`.
-    fn content(&self, out: &mut Source, names: &mut Constants, stream: &Operation) {
-        match self.example(stream, Direction::Request) {
-            Some(content) => names.record(&content).write(out, "content = ", ""),
-            None => out.line(format!("content = b{:?}", stub::BYTES)),
         }
     }
+}
 
-    fn example(&self, operation: &Operation, direction: Direction) -> Option<Record<'p>> {
-        stub::example(self.package, self.samples, operation, direction)
+/// `content = …`.
+fn assign_content(out: &mut Source, names: &mut Constants, value: Option<&Record<'_>>) {
+    match value {
+        Some(value) => names.record(value).write(out, "content = ", ""),
+        None => out.line(format!("content = b{BYTES:?}")),
     }
 }
 
 /// The test that type-checks and runs every sample.
-pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> String {
-    let snippets = Snippets::new(&context.package, values);
-    let (commands, reports) = (context.commands(), context.reports());
+pub fn samples_file(context: &Context<'_>, package: &str) -> String {
+    let run = &SampleRun::build(context);
     let mut names = Constants::default();
     names
         .types
@@ -177,49 +96,20 @@ pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> Strin
     let mut body = Source::new(&PYTHON);
     body.suite("class RobotOfTheSamples(Robot)", |out| {
         out.line("\"\"\"Responds with the samples.\"\"\"");
-        for command in &commands {
+        for answer in &run.answers {
             out.blank();
-            let _ = snippets.write_robot(out, &mut names, command.operation);
+            write(out, &mut names, answer);
         }
     });
-    let streams = [Side::Robot, Side::App].map(|side| stub::streams(&context.package, side));
-    let [from_robot, from_app] = &streams;
-    let has_streams = !from_robot.is_empty() || !from_app.is_empty();
-    let of_streams = [
-        ("Streams", has_streams),
-        ("Streamer", !from_robot.is_empty()),
-    ];
-    let of_streams = of_streams.into_iter().filter(|(_, is_there)| *is_there);
-    names
-        .types
-        .extend(of_streams.map(|(name, _)| name.to_owned()));
-    let mut function = |word: &str, operation: &Operation, parameter: &str, is_robot: bool| {
+    for step in run.steps() {
+        let [name, ty] = step.parameter();
+        names.types.insert(ty.to_owned());
         body.gap();
-        let head = format!("async def {word}_{}({parameter}) -> None", operation.name);
-        body.suite(&head, |out| {
-            let _ = if is_robot {
-                snippets.write_robot(out, &mut names, operation)
-            } else {
-                snippets.write_app(out, &mut names, operation)
-            };
-        });
-    };
-    for command in &commands {
-        function("call", command.operation, "client: Client", false);
-    }
-    for report in &reports {
-        function("take", report.operation, "client: Client", false);
-        function("push", report.operation, "reporter: Reporter", true);
-    }
-    for stream in from_robot {
-        function("subscribe", stream, "streams: Streams", false);
-        function("send", stream, "streamer: Streamer", true);
-    }
-    for stream in from_app {
-        function("send", stream, "streams: Streams", false);
+        let head = format!("async def {}({name}: {ty}) -> None", step.name());
+        body.suite(&head, |out| write(out, &mut names, &step.sample));
     }
     body.gap();
-    test(&mut body, &commands, &reports, &streams);
+    test(&mut body, run);
 
     let mut out = Source::new(&PYTHON);
     out.line("\"\"\"The samples of the documentation. They call every command, and push and receive every report.\"\"\"");
@@ -234,13 +124,7 @@ pub fn file(context: &Context<'_>, values: &Samples<'_>, package: &str) -> Strin
     out.finish()
 }
 
-fn test(
-    out: &mut Source,
-    commands: &[Call<'_>],
-    reports: &[Call<'_>],
-    streams: &[Vec<&Operation>; 2],
-) {
-    let has_streams = streams.iter().any(|streams| !streams.is_empty());
+fn test(out: &mut Source, run: &SampleRun<'_, '_>) {
     out.line(
         "\
 class Samples(unittest.IsolatedAsyncioTestCase):
@@ -252,7 +136,7 @@ class Samples(unittest.IsolatedAsyncioTestCase):
         await server.bind()
         host, port = server.command_address",
     );
-    let config = if has_streams {
+    let config = if run.has_streams() {
         out.line(
             "        data = server.data_address[1]
         settings = rt.ClientConfig(host=host, command_port=port, data_port=data, call_timeout=60.0)",
@@ -265,59 +149,33 @@ class Samples(unittest.IsolatedAsyncioTestCase):
         "        with contextlib.redirect_stdout(io.StringIO()):
             async with Client.connect({config}) as client:"
     ));
-    let line = |out: &mut Source, text: String| out.line(["                ", &text].concat());
-    for command in commands {
-        line(
-            out,
-            format!("await call_{}(client)", command.operation.name),
-        );
+    let line = |out: &mut Source, text: &str| out.line(["                ", text].concat());
+    let call = |step: &SampleStep<'_, '_>| format!("{}({})", step.name(), step.parameter()[0]);
+    let wait = |out: &mut Source, verb: Verb| {
+        for step in run.that(verb) {
+            line(out, &format!("await {}", call(step)));
+        }
+    };
+    wait(out, Verb::Call);
+    if run.has_streams() {
+        line(out, "data_connection = client.data()");
+        line(out, "await data_connection.connected()");
+        line(out, "streams = Streams(data_connection)");
     }
-    if has_streams {
-        line(out, "data_connection = client.data()".to_owned());
-        line(out, "await data_connection.connected()".to_owned());
-        line(out, "streams = Streams(data_connection)".to_owned());
+    line(out, "takers = [");
+    for step in run.that(Verb::Take).chain(run.that(Verb::Subscribe)) {
+        line(out, &format!("    asyncio.ensure_future({}),", call(step)));
     }
-    line(out, "takers = [".to_owned());
-    for report in reports {
-        line(
-            out,
-            format!(
-                "    asyncio.ensure_future(take_{}(client)),",
-                report.operation.name
-            ),
-        );
+    line(out, "]");
+    line(out, "await asyncio.sleep(0)");
+    line(out, "reporter = Reporter(server)");
+    wait(out, Verb::Push);
+    if run.has(Verb::Stream) {
+        line(out, "streamer = Streamer(server)");
     }
-    let [from_robot, from_app] = streams;
-    for stream in from_robot {
-        line(
-            out,
-            format!(
-                "    asyncio.ensure_future(subscribe_{}(streams)),",
-                stream.name
-            ),
-        );
-    }
-    line(out, "]".to_owned());
-    line(out, "await asyncio.sleep(0)".to_owned());
-    line(out, "reporter = Reporter(server)".to_owned());
-    for report in reports {
-        line(
-            out,
-            format!("await push_{}(reporter)", report.operation.name),
-        );
-    }
-    if !from_robot.is_empty() {
-        line(out, "streamer = Streamer(server)".to_owned());
-    }
-    for stream in from_robot {
-        line(out, format!("await send_{}(streamer)", stream.name));
-    }
-    for stream in from_app {
-        line(out, format!("await send_{}(streams)", stream.name));
-    }
-    line(
-        out,
-        "for taker in takers:\n                    taker.cancel()".to_owned(),
-    );
+    wait(out, Verb::Stream);
+    wait(out, Verb::Send);
+    line(out, "for taker in takers:");
+    line(out, "    taker.cancel()");
     out.line("        await server.shutdown(0)");
 }

@@ -1,9 +1,9 @@
 //! What `ruff format` does: docstrings, imports, and brackets that open when what they hold is too long for a line.
 
 use super::literal::literal;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::{Source, join};
-use crate::emit::stub::style::{Comment, Style};
+use crate::package::docs::Docs;
+use crate::package::source::{Source, join};
+use crate::package::style::{Comment, Style};
 use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -22,8 +22,7 @@ pub static PYTHON: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("`{name}`"),
-    elsewhere: |item| item.ty.name.to_string(),
-    integer: crate::emit::stub::digits::grouped,
+    integer: crate::package::digits::grouped,
     redacted: "Never shown by `repr()`.",
 };
 

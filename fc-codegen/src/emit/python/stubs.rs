@@ -1,12 +1,13 @@
 //! `client.py`, `sync.py` and `robot.py`: the classes that a user names, each put together from the parts of all groups.
 
-use super::homes::{Homes, Piece};
+use super::modules::{GroupPart, ModulePlan};
 use super::protocol;
 use super::source::{Code, PYTHON, Python, method};
-use crate::emit::stub::context::Context;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::ranges::pass_through;
-use crate::emit::stub::source::Source;
+use crate::package::about;
+use crate::package::context::Context;
+use crate::package::docs::Docs;
+use crate::package::ranges::pass_through;
+use crate::package::source::Source;
 
 /// The head of a file: what it is, and what it imports of the standard library and the runtime.
 fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
@@ -24,16 +25,19 @@ fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
     out
 }
 
-/// A class with the parts of all groups.
+/// The bases of a class: a part of each group, then its `own`.
+fn bases_of(plan: &ModulePlan<'_, '_>, part: GroupPart, own: &[&str]) -> Vec<Code> {
+    let parts = plan.parts(part).into_iter();
+    parts.chain(own.iter().copied()).map(Code::from).collect()
+}
+
 fn class(
     out: &mut Source,
     name: &str,
-    parts: &[&str],
-    own: &[&str],
+    bases: Vec<Code>,
     about: &[&'static str],
     body: impl FnOnce(&mut Source),
 ) {
-    let bases = parts.iter().chain(own).map(|it| Code::from(*it)).collect();
     out.gap();
     Code::Call(format!("class {name}("), bases, ")").write(out, "", ":");
     out.enclose("", "", |out| {
@@ -52,7 +56,7 @@ fn speaks(out: &mut Source, context: &Context<'_>) {
 }
 
 /// `client.py`.
-pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn client(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let has_streams = !context.package.streams.is_empty();
     let mut out = head(
         [
@@ -61,10 +65,13 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
         ],
         &[("typing", &["ClassVar", "TypeAlias"])],
     );
-    homes.import(&mut out, &[Piece::AnyReport, Piece::Calls, Piece::Streams]);
+    plan.import(
+        &mut out,
+        &[GroupPart::AnyReport, GroupPart::Calls, GroupPart::Streams],
+    );
     out.import_from(".protocol", &[&protocol::name(context)]);
     out.blank();
-    let mut reports = homes.pieces(Piece::AnyReport);
+    let mut reports = plan.parts(GroupPart::AnyReport);
     reports.push("rt.RawReport");
     let union = Code::Union(reports.into_iter().map(str::to_owned).collect());
     union.write_in_parentheses(&mut out, "AnyReport: TypeAlias = ");
@@ -76,37 +83,23 @@ pub fn client(context: &Context<'_>, homes: &Homes<'_>) -> String {
         "一个机器人，从 app 一侧看：每条指令一个方法。",
         "A robot as seen from the app: one method per command.",
     ];
-    let calls = homes.pieces(Piece::Calls);
-    class(
-        &mut out,
-        "Client",
-        &calls,
-        &["rt.Client[AnyReport]"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = bases_of(plan, GroupPart::Calls, &["rt.Client[AnyReport]"]);
+    class(&mut out, "Client", bases, &about, |out| {
+        speaks(out, context);
+    });
     if has_streams {
         let about = [
             "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
             "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
         ];
-        let streams = homes.pieces(Piece::Streams);
-        class(
-            &mut out,
-            "Streams",
-            &streams,
-            &["rt.Streams"],
-            &about,
-            |_| (),
-        );
+        let bases = bases_of(plan, GroupPart::Streams, &["rt.Streams"]);
+        class(&mut out, "Streams", bases, &about, |_| ());
     }
     out.finish()
 }
 
 /// `sync.py`.
-pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn sync(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [
             "不用 `async` 的 app 端。",
@@ -115,28 +108,21 @@ pub fn sync(context: &Context<'_>, homes: &Homes<'_>) -> String {
         &[("typing", &["ClassVar"])],
     );
     out.import_from(".client", &["AnyReport"]);
-    homes.import(&mut out, &[Piece::SyncCalls]);
+    plan.import(&mut out, &[GroupPart::SyncCalls]);
     out.import_from(".protocol", &[&protocol::name(context)]);
     let about = [
         "一个机器人，从 app 一侧看：每条指令一个方法，等到有响应才返回。",
         "A robot as seen from the app: one method per command, which waits for the response.",
     ];
-    let calls = homes.pieces(Piece::SyncCalls);
-    class(
-        &mut out,
-        "Client",
-        &calls,
-        &["rt.SyncClient[AnyReport]"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = bases_of(plan, GroupPart::SyncCalls, &["rt.SyncClient[AnyReport]"]);
+    class(&mut out, "Client", bases, &about, |out| {
+        speaks(out, context);
+    });
     out.finish()
 }
 
 /// `robot.py`.
-pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
+pub fn robot(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [
             "机器人端：每条指令一个方法，按示例响应的示例机器人，以及上报的发送端。",
@@ -144,113 +130,72 @@ pub fn robot(context: &Context<'_>, homes: &Homes<'_>) -> String {
         ],
         &[("abc", &["ABC"]), ("typing", &["ClassVar"])],
     );
-    homes.import(
+    plan.import(
         &mut out,
         &[
-            Piece::Handlers,
-            Piece::PartialHandlers,
-            Piece::Reporter,
-            Piece::Streamer,
+            GroupPart::Handlers,
+            GroupPart::PartialHandlers,
+            GroupPart::Reporter,
+            GroupPart::Streamer,
         ],
     );
     out.import_from(".protocol", &[&protocol::name(context)]);
-    complete(&mut out, context, homes);
+    complete(&mut out, context, plan);
     let about = [
         "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
     ];
-    let handlers = homes.pieces(Piece::PartialHandlers);
-    class(
-        &mut out,
-        "PartialRobot",
-        &handlers,
-        &["Robot"],
-        &about,
-        |_| (),
-    );
+    let bases = bases_of(plan, GroupPart::PartialHandlers, &["Robot"]);
+    class(&mut out, "PartialRobot", bases, &about, |_| ());
     let about = [
         "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
         "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
         "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion=True` 时假装成功。",
         "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion=True`, it pretends success.",
     ];
-    class(
-        &mut out,
-        "ExampleRobot",
-        &[],
-        &["rt.ExampleRobot"],
-        &about,
-        |out| {
-            speaks(out, context);
-        },
-    );
+    let bases = vec!["rt.ExampleRobot".into()];
+    class(&mut out, "ExampleRobot", bases, &about, |out| {
+        speaks(out, context);
+    });
     let about = [
         "发送上报：每种上报一个方法。",
         "Pushes reports: one method per report.",
         "`to` 是某个连接的编号；不给出时，向全部连接上报。",
         "`to` is the number of a connection. Without it, a report goes to all of them.",
     ];
-    let reporters = homes.pieces(Piece::Reporter);
-    class(
-        &mut out,
-        "Reporter",
-        &reporters,
-        &["rt.Reporter"],
-        &about,
-        |_| (),
-    );
+    let bases = bases_of(plan, GroupPart::Reporter, &["rt.Reporter"]);
+    class(&mut out, "Reporter", bases, &about, |_| ());
     if !context.package.streams.is_empty() {
         let about = [
             "机器人发送的数据流：每个数据流一个方法。",
             "Sends the streams of the robot: one method per stream.",
         ];
-        let streamers = homes.pieces(Piece::Streamer);
-        class(
-            &mut out,
-            "Streamer",
-            &streamers,
-            &["rt.Streamer"],
-            &about,
-            |_| (),
-        );
+        let bases = bases_of(plan, GroupPart::Streamer, &["rt.Streamer"]);
+        class(&mut out, "Streamer", bases, &about, |_| ());
     }
     out.finish()
 }
 
-fn complete(out: &mut Source, context: &Context<'_>, homes: &Homes<'_>) {
+fn complete(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) {
     let about = [
         "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出，Python 也会拒绝创建对象。",
         "A complete robot, which handles all commands of the spec. When the spec gains a command, the type checker reports a missing method, and Python refuses to create the robot.",
         "只实现了一部分指令的机器人，从 `PartialRobot` 继承：方法相同，都可以不写。指令齐全之后，改为继承 `Robot`。",
         "A robot with some of the commands inherits from `PartialRobot`. The methods are the same, and each is optional. Once the robot has all commands, inherit from `Robot`.",
     ];
-    let handlers = homes.pieces(Piece::Handlers);
-    class(
-        out,
-        "Robot",
-        &handlers,
-        &["rt.Robot", "ABC"],
-        &about,
-        |out| {
-            speaks(out, context);
-            for (name, range) in pass_through(context) {
-                let mut docs = Docs::of(&range.text);
-                docs.paragraph(format!(
-                    "Codes {} to {} without a separate method.",
-                    range.first_spelling, range.last_spelling
-                ));
-                docs.paragraph("不实现此方法时，按未知指令拒绝。");
-                docs.paragraph("Without this method, the robot refuses them as unknown commands.");
-                let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
-                let parameters = parameters.map(Code::from).to_vec();
-                let open = format!("async def {name}(");
-                out.blank();
-                out.line("@rt.left_out");
-                method(out, &open, parameters, "rt.Json", |out| {
-                    out.docstring(&docs);
-                    out.line("raise NotImplementedError");
-                });
-            }
-        },
-    );
+    let bases = bases_of(plan, GroupPart::Handlers, &["rt.Robot", "ABC"]);
+    class(out, "Robot", bases, &about, |out| {
+        speaks(out, context);
+        for (name, range) in pass_through(context) {
+            let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
+            let parameters = parameters.map(Code::from).to_vec();
+            let open = format!("async def {name}(");
+            out.blank();
+            out.line("@rt.left_out");
+            method(out, &open, parameters, "rt.Json", |out| {
+                out.docstring(&about::range(range));
+                out.line("raise NotImplementedError");
+            });
+        }
+    });
 }

@@ -2,27 +2,21 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn blocking_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
 
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(
-        "不用 `async` 的 app 端，供工具和测试使用：每条指令一个方法，在调用它的线程上等待响应。",
-    );
-    docs.paragraph(
-        "The app's side without `async`, for tools and tests: one method per command, which blocks the \
+    out.inner_docs(&Docs::said(&[
+"不用 `async` 的 app 端，供工具和测试使用：每条指令一个方法，在调用它的线程上等待响应。",
+"The app's side without `async`, for tools and tests: one method per command, which blocks the \
          calling thread until the response.",
-    );
-    docs.paragraph("连接有自己的线程：没有调用时，上报同样得到应答，断线同样重连。");
-    docs.paragraph(
-        "A connection has its own thread. It acknowledges reports and reconnects after a loss, also \
+"连接有自己的线程：没有调用时，上报同样得到应答，断线同样重连。",
+"A connection has its own thread. It acknowledges reports and reconnects after a loss, also \
          between calls.",
-    );
-    out.inner_docs(&docs);
+]));
     out.blank();
     out.import("super", &["AnyReport"]);
     out.import("super::protocol", &[protocol]);

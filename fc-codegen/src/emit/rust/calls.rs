@@ -1,14 +1,14 @@
 //! The methods of the stubs that carry the messages of one group, in the group's file: a new command changes no file
 //! of another group, and whoever reads about its messages finds how they are sent.
 
-use super::context::{Context, page_of};
+use super::context::Context;
 use super::literal::literal;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process;
-use crate::surface::package::{Call, Module};
-use fc_spec::model::{Direction, Kind};
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::{Call, Module};
+use crate::package::process;
+use fc_spec::model::Kind;
 
 /// The methods of the messages of a module. Whatever they take from elsewhere stands with its path, since each stub has
 /// a feature of its own.
@@ -32,12 +32,9 @@ pub fn methods(out: &mut Source, context: &Context<'_>, module: &Module<'_>) {
 
 /// Those of a kind whose requests the module holds.
 fn calls<'p>(context: &'p Context<'_>, module: &'p Module<'_>, kind: Kind) -> Vec<Call<'p>> {
-    let requests = module.items.iter().filter_map(|item| {
-        let (operation, direction) = item.body_of()?;
-        (operation.kind() == kind && direction == Direction::Request).then_some(operation)
-    });
-    let calls = requests.filter_map(|operation| context.package.call(operation));
-    calls.collect()
+    let items = module.items.iter();
+    let calls = items.filter_map(|item| context.package.opened_by(item));
+    calls.filter(|call| call.operation.kind() == kind).collect()
 }
 
 /// An `impl` of a stub, if it has any method here.
@@ -89,7 +86,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 
 fn blocking_call(out: &mut Source, command: &Call<'_>) {
     let method = command.method;
-    let mut docs = Docs::of(&command.operation.title);
+    let mut docs = Docs::titled(&command.operation.title);
     docs.raw(format!(
         "See [`Client::{method}`](crate::Client::{method})."
     ));
@@ -118,10 +115,9 @@ fn deprecation(out: &mut Source, command: &Call<'_>) {
 }
 
 fn push(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
-    let mut docs = facts::operation_docs(report.operation);
-    facts::operation_end(context.style, &mut docs, report.operation);
-    docs.paragraph("Returns the outcome at each connection.");
-    docs.paragraph(context.links(&report.operation.location, &page_of(report.operation)));
+    let docs = facts::method_docs(context, report.operation, |docs| {
+        docs.paragraph("Returns the outcome at each connection.");
+    });
     out.docs(&docs);
     let params = [
         "&self".to_owned(),

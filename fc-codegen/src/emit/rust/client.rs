@@ -3,26 +3,22 @@
 use super::context::{Context, message};
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::docs::Docs;
-use crate::surface::name::free;
-use crate::surface::package::Call;
+use crate::package::docs::Docs;
+use crate::package::items::Call;
+use crate::package::name::free;
 use fc_spec::model::Side;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn client_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let reports = context.reports();
 
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(
-        "app 端：连接，以及汇成一个枚举的全部上报。每条指令的方法与它的消息类型在同一个文件里。",
-    );
-    docs.paragraph(
-        "The app's side: the connection, and one enum over all reports. The method of each command is in \
+    out.inner_docs(&Docs::said(&[
+"app 端：连接，以及汇成一个枚举的全部上报。每条指令的方法与它的消息类型在同一个文件里。",
+"The app's side: the connection, and one enum over all reports. The method of each command is in \
          the file of its messages.",
-    );
-    out.inner_docs(&docs);
+]));
     out.blank();
     imports(&mut out, context, protocol, &reports);
     out.blank();
@@ -212,7 +208,7 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
         for report in reports {
             out.blank();
             let ty = report.request;
-            out.docs(&Docs::of(&report.operation.title));
+            out.docs(&Docs::titled(&report.operation.title));
             out.line(format!("{}({}),", ty.ty.name, message(ty)));
         }
         let taken = |name: &str| reports.iter().any(|report| report.request.ty.name == name);

@@ -2,27 +2,19 @@
 
 use super::enums::enum_wire;
 use super::messages::constant;
-use crate::surface::expr::Expr;
-use fc_spec::model::{Condition, Field, Type};
+use crate::package::conditions::Asked;
+use crate::package::expr::{Expr, Expressions};
+use fc_spec::model::{Type, Value};
 
-pub use crate::emit::stub::conditions::Conditions;
-
-impl Conditions<'_, '_, '_, '_> {
-    /// What the derive has to be told of a field, if that may be absent: `when(mode = 2 | 3)`.
-    pub fn attribute(&self, field: &Field) -> Option<String> {
-        let condition = field.details().condition.as_ref();
-        let condition = condition.filter(|_| field.optional)?;
-        let word = match condition {
-            Condition::When(_) => "when",
-            Condition::Unless(_) => "unless",
-        };
-        let asked = self.each(condition, " | ", |beside, wire| match &beside.ty {
-            Type::Named(_) => enum_wire(wire),
-            _ => constant(&self.value(beside, wire)),
-        });
-        let asked: Vec<String> = asked.map(|(name, any)| format!("{name} = {any}")).collect();
-        Some(format!("{word}({})", asked.join(", ")))
-    }
+/// The attribute of a field that may be absent: `when(mode = 2 | 3)`.
+pub fn attribute(expressions: &Expressions<'_, '_>, condition: &Asked<'_, '_>) -> String {
+    let asked = condition.each(" | ", |other, wire| match &other.ty {
+        Type::Named(_) => enum_wire(wire),
+        ty => constant(&expressions.value(ty, &Value::from(wire))),
+    });
+    let asked = asked.iter().map(|(name, any)| format!("{name} = {any}"));
+    let asked: Vec<String> = asked.collect();
+    format!("{}({})", condition.word, asked.join(", "))
 }
 
 /// A value as a comment names it.

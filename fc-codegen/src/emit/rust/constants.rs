@@ -1,10 +1,10 @@
 //! Constants in Rust: what the tables hold and what the samples send.
 
 use super::literal::literal;
-use crate::emit::stub::digits::grouped;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::name::free;
-use crate::surface::package::Spelled;
+use crate::package::digits::grouped;
+use crate::package::expr::{Expr, Record};
+use crate::package::items::Spelled;
+use crate::package::name::free;
 use fc_spec::model::Field;
 
 /// Columns that a value may take on one line.

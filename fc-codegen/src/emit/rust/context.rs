@@ -1,29 +1,11 @@
 //! What the files of the crate ask beyond those of any package: Rust's types, and what they import.
 
-use crate::surface::package::Item;
-use fc_spec::model::{Field, Type, TypeRef};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::package::items::Item;
+use fc_spec::model::{Field, Type};
 
-pub use crate::emit::stub::context::{Context, page_of};
+pub use crate::package::context::{Context, page_of};
 
 impl Context<'_> {
-    /// Types that the module `home` does not hold, by the module that does.
-    pub fn imports<'a>(
-        &'a self,
-        home: &str,
-        types: impl IntoIterator<Item = &'a TypeRef>,
-    ) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
-        let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-        for named in types {
-            let module = self.package.module_of(named);
-            if module.id != home {
-                let names = imports.entry(&module.name).or_default();
-                names.insert(self.name_of(named));
-            }
-        }
-        imports
-    }
-
     /// The Rust type of a field without its optional mark: of ids their own, where they have one.
     pub fn field_type(&self, field: &Field) -> String {
         match self.package.id_of(field) {

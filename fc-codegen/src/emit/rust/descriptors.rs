@@ -2,12 +2,13 @@
 //! each.
 
 use super::context::{Context, message, page_of};
-use super::each;
 use super::literal::literal;
+use super::operation_macros;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
+use crate::package::language::Case;
 use fc_spec::model::{
-    AcceptedIn, Body, Cadence, Direction, Effect, Kind, Model, Operation, StateSet, Value,
+    AcceptedIn, Body, Cadence, Direction, Kind, Model, Operation, StateSet, Value,
 };
 
 /// The four tables: name, kind, comment in Chinese and English.
@@ -34,23 +35,17 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
 ];
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn descriptors_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("每个接口的描述数据，供不依赖具体类型的工具使用。");
-    docs.paragraph("Every operation as data, for tools that do not use its types.");
-    docs.paragraph(
-        "文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
-    );
-    docs.paragraph(
-        "The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
+    out.inner_docs(&Docs::said(&[
+"每个接口的描述数据，供不依赖具体类型的工具使用。",
+"Every operation as data, for tools that do not use its types.",
+"文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
+"The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
          command without a change.",
-    );
-    docs.paragraph(
-        "Tables are in the order of the spec: by group, then by position in the file of the group.",
-    );
-    out.inner_docs(&docs);
+"Tables are in the order of the spec: by group, then by position in the file of the group.",
+]));
     out.blank();
 
     out.import("fc_runtime", &["OperationInfo"]);
@@ -58,11 +53,7 @@ pub fn file(context: &Context<'_>) -> String {
     for (name, kind, zh, en) in TABLES {
         let rows = model.operations.iter();
         let rows = rows.filter(|operation| kind.is_none_or(|kind| kind == operation.kind()));
-        let mut docs = Docs::default();
-        docs.paragraph(zh);
-        docs.paragraph(en);
-        out.blank();
-        out.docs(&docs);
+        out.documented(&Docs::said(&[zh, en]));
         let constants: Vec<String> = rows
             .map(|operation| format!("operation::{}", constant(operation)))
             .collect();
@@ -86,7 +77,7 @@ pub fn file(context: &Context<'_>) -> String {
             }
         });
     }
-    each::macros(&mut out, context);
+    operation_macros::macros(&mut out, context);
     out.finish()
 }
 
@@ -135,22 +126,15 @@ fn constant(operation: &Operation) -> String {
 }
 
 fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
-    let kind = match operation.kind() {
-        Kind::Command => "Command",
-        Kind::Report => "Report",
-        Kind::Stream => "Stream",
-    };
+    let kind = Case::Pascal.apply(operation.kind().name());
     let code = match operation.code.value {
         Some(_) => format!("Some({})", operation.code.spelling),
         None => "None".to_owned(),
     };
-    let effect = match operation.effect() {
-        Some(Effect::Read) => "Some(Effect::Read)",
-        Some(Effect::Config) => "Some(Effect::Config)",
-        Some(Effect::Motion) => "Some(Effect::Motion)",
-        Some(Effect::Unknown) => "Some(Effect::Unknown)",
-        None => "None",
-    };
+    let effect = operation.effect().map_or_else(
+        || "None".to_owned(),
+        |effect| format!("Some(Effect::{})", Case::Pascal.apply(effect.name())),
+    );
     let since = match &operation.since {
         Some(since) => format!("Some({})", literal(since)),
         None => "None".to_owned(),
@@ -166,7 +150,7 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
                 ("name", literal(&operation.name)),
                 ("code", code),
                 ("kind", format!("OperationKind::{kind}")),
-                ("effect", effect.to_owned()),
+                ("effect", effect),
             ] {
                 out.line([field, ": ", &value, ","].concat());
             }

@@ -3,10 +3,11 @@
 use super::context::Context;
 use super::literal::{literal, number};
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::surface::name::free;
-use crate::surface::package::{Item, Spelled};
+use crate::package::about;
+use crate::package::facts;
+use crate::package::items::{Item, Spelled};
+use crate::package::name::free;
+use crate::package::process::next_values;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
 
 /// An enum and its values.
@@ -17,15 +18,7 @@ pub fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let ty = item.ty.of;
-    let mut docs = Docs::of(&ty.title);
-    docs.texts(ty.about.as_ref());
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
-    docs.paragraph(context.links(&ty.location, "reference/types.md"));
-    out.docs(&docs);
-
+    out.docs(&about::enumeration(context, item.ty.of, ""));
     let (repr, rust) = match shape.repr {
         EnumRepr::Int(kind) => (kind.name(), kind.name()),
         EnumRepr::String => ("str", "String"),
@@ -45,8 +38,7 @@ pub fn enumeration(
     out.block(format!("pub enum {}", item.ty.name), |out| {
         for value in values {
             let docs = facts::value_docs(value);
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             out.attribute("#[fc(", &value_attributes(value, values), ")]");
             out.line(format!("{},", value.name));
         }
@@ -67,12 +59,8 @@ fn value_attributes(
     values: &[Spelled<'_, EnumValue>],
 ) -> Vec<String> {
     let mut items = vec![format!("value = {}", enum_wire(&value.wire))];
-    let then: Vec<&str> = value
-        .then
-        .iter()
-        .filter_map(|next| values.iter().find(|known| known.of.name == *next))
-        .map(|next| &*next.name)
-        .collect();
+    let then = next_values(value, values);
+    let then: Vec<&str> = then.map(|next| &*next.name).collect();
     if !then.is_empty() {
         items.push(format!("then({})", then.join(", ")));
     }

@@ -2,32 +2,25 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
+use crate::package::about;
+use crate::package::docs::Docs;
 use fc_spec::model::Type;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn ids_file(context: &Context<'_>) -> String {
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("各种实体的 ID，每种一个类型，不会互相混用。发送的形式与其中的值相同。");
-    docs.paragraph(
+    out.inner_docs(&Docs::said(&[
+        "各种实体的 ID，每种一个类型，不会互相混用。发送的形式与其中的值相同。",
         "The IDs of entities, with one type per entity, so that the compiler keeps them apart. An ID is sent as \
          the value in it.",
-    );
-    out.inner_docs(&docs);
+    ]));
     out.blank();
     out.import("fc_derive", &["Id"]);
     for id in &context.package.ids {
         let Some(held) = context.model().id_type(id) else {
             continue;
         };
-        out.blank();
-        let title = &id.title;
-        let mut docs = Docs::default();
-        docs.paragraph(format!("{}：ID", title.zh));
-        docs.paragraph(format!("{}: its ID", title.en));
-        docs.paragraph(context.links(&id.location, "reference/entities.md"));
-        out.docs(&docs);
+        out.documented(&about::id(context, id.of));
         let mut derives = vec!["Clone"];
         derives.extend((*held != Type::String).then_some("Copy"));
         derives.extend([

@@ -1,6 +1,6 @@
 //! Literals of Rust: texts and integers.
 
-use crate::emit::stub::digits::grouped;
+use crate::package::digits::grouped;
 use fc_spec::model::{Number, is_hidden};
 
 /// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.

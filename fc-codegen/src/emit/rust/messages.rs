@@ -1,32 +1,30 @@
 //! The message types of one group: structs, enums and choices, with what the derives need.
 
 use super::calls;
-use super::conditions::{self, Conditions};
+use super::conditions;
 use super::constants::{Place, extra_name, spelled};
 use super::context::Context;
 use super::enums::{enum_wire, enumeration};
 use super::literal::{literal, number};
 use super::process;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Module, Shape, Spelled};
-use fc_spec::model::{
-    Accepted, Constraint, Direction, Exchange, Field, Kind, Operation, Quirk, Type, TypeRef, Value,
-    Variant, WireForm,
-};
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Call, Item, Module, Shape, Spelled};
+use crate::package::marks::{Bound, FieldMarks};
+use fc_spec::model::{Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
 /// A module of message types.
-pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>) -> String {
+pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
     let mut body = Source::rust();
     let mut used = Used::default();
     for item in &module.items {
         body.blank();
-        declaration(&mut body, &mut used, context, samples, item);
+        declaration(&mut body, &mut used, context, item);
     }
     calls::methods(&mut body, context, module);
 
@@ -50,9 +48,9 @@ pub fn module(context: &Context<'_>, samples: &Samples<'_>, module: &Module<'_>)
 }
 
 /// One type as its module declares it.
-pub fn item(context: &Context<'_>, samples: &Samples<'_>, item: &Item<'_>) -> String {
+pub fn item(context: &Context<'_>, item: &Item<'_>) -> String {
     let mut out = Source::rust();
-    declaration(&mut out, &mut Used::default(), context, samples, item);
+    declaration(&mut out, &mut Used::default(), context, item);
     out.finish()
 }
 
@@ -60,15 +58,12 @@ fn declaration<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
 ) {
     match &item.shape {
         Shape::Record(_, fields) => {
-            structure(out, used, context, samples, item, fields);
-            if let Some((command, Direction::Request)) = item.body_of() {
-                errors(out, used, context, command);
-            }
+            structure(out, used, context, item, fields);
+            errors(out, used, context, item);
         }
         Shape::Enum(shape, values) => {
             used.derives.insert("OpenEnum");
@@ -107,12 +102,11 @@ fn structure<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
-    samples: &Samples<'_>,
     item: &'m Item<'_>,
     fields: &'m [Spelled<'_, Field>],
 ) {
-    let role = Role::of(item);
-    out.docs(&struct_docs(context, item, &role));
+    let call = context.package.opened_by(item);
+    out.docs(&facts::item_docs(context, item));
     let sensitive = fields.iter().any(|field| field.sensitive);
     let defaults = fields
         .iter()
@@ -127,25 +121,20 @@ fn structure<'m>(
     if fields.iter().any(|field| field.details().default.is_some()) {
         derives.push("Defaults");
     }
-    derives.extend(role.derive());
+    derives.extend(call.map(|call| match call.operation.kind() {
+        Kind::Report => "Report",
+        Kind::Command | Kind::Stream => "Command",
+    }));
     used.derives
         .extend(derives.iter().filter(|name| OWN_DERIVES.contains(name)));
     used.runtime.insert("Extra");
-    if let (Some(_), Role::Body { operation, .. }) = (role.derive(), &role) {
-        used.types.extend(process::types(context, operation));
-    }
     out.list("#[derive(", &derives, ")]");
-    role.attribute(out, context);
-    if let Role::Body {
-        operation,
-        direction: Direction::Request,
-    } = role
-        && role.derive().is_some()
-        && let Some(accepted) = operation.accepted()
-    {
-        accepted_in(out, used, context, accepted);
+    if let Some(Call { operation, .. }) = call {
+        used.types.extend(process::types(context, operation));
+        operation_attribute(out, context, operation);
+        accepted_in(out, used, context, operation);
     }
-    let example = samples.named(item.ty.of, Profile::Example).to_string();
+    let example = context.example(item);
     if example != "{}" {
         out.attribute(
             "#[fc(",
@@ -154,11 +143,7 @@ fn structure<'m>(
         );
     }
 
-    let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
+    let expressions = Expressions::new(&context.package);
     // It may gain a key that nobody has to send.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -166,11 +151,13 @@ fn structure<'m>(
             used.ty(&field.ty);
             used.ids
                 .extend(context.package.id_of(field).map(|id| id.name.to_string()));
-            let condition = conditions.sentence(field, conditions::spelled);
+            let condition = sentence(&expressions, field, fields, conditions::spelled);
             out.docs(&facts::field_docs(context.style, field, condition));
             let name = &field.name;
-            let mut attributes = field_attributes(field);
-            attributes.extend(conditions.attribute(field));
+            let marks = FieldMarks::build(field.of, fields);
+            let mut attributes = field_attributes(field, &marks);
+            let condition = marks.condition.as_ref();
+            attributes.extend(condition.map(|it| conditions::attribute(&expressions, it)));
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
@@ -210,98 +197,49 @@ const OWN_DERIVES: &[&str] = &[
     "Report",
 ];
 
-/// What a struct is to an operation.
-enum Role<'m> {
-    /// A type of its own, or an object inside a body.
-    Part,
-    /// The whole body of one side.
-    Body {
-        operation: &'m Operation,
-        direction: Direction,
-    },
-}
-
-impl<'m> Role<'m> {
-    fn of(item: &Item<'m>) -> Self {
-        match item.body_of() {
-            Some((operation, direction)) => Self::Body {
-                operation,
-                direction,
-            },
-            None => Self::Part,
+/// The attribute that ties a request to its code.
+fn operation_attribute(out: &mut Source, context: &Context<'_>, operation: &Operation) {
+    let mut items = vec![
+        format!("code = {}", operation.code.spelling),
+        format!("name = {}", literal(&operation.name)),
+    ];
+    match &operation.exchange {
+        Exchange::Command {
+            effect, messages, ..
+        } => {
+            items.push(format!("effect = \"{}\"", effect.name()));
+            let response = context.name_of(&messages.response.ty);
+            items.push(format!("response = {response}"));
+            let error = context.package.error_type(operation);
+            items.extend(error.map(|error| format!("error = {error}")));
+            items.extend(process::sets_off(context, operation));
         }
-    }
-
-    /// The derive that ties a request to its code.
-    fn derive(&self) -> Option<&'static str> {
-        match self {
-            Self::Body {
-                operation,
-                direction: Direction::Request,
-            } if operation.code.value.is_some() => match operation.kind() {
-                Kind::Command => Some("Command"),
-                Kind::Report => Some("Report"),
-                Kind::Stream => None,
-            },
-            _ => None,
+        Exchange::Report { ack, .. } => {
+            items.push(format!(
+                "ack(timeout_ms = {}, retries = {})",
+                ack.timeout_ms, ack.retries
+            ));
+            items.extend(process::stage(context, operation));
         }
+        Exchange::Stream(_) => {}
     }
-
-    /// The attribute that goes with the derive.
-    fn attribute(&self, out: &mut Source, context: &Context<'_>) {
-        let (Some(_), Self::Body { operation, .. }) = (self.derive(), self) else {
-            return;
-        };
-        let mut items = vec![
-            format!("code = {}", operation.code.spelling),
-            format!("name = {}", literal(&operation.name)),
-        ];
-        match &operation.exchange {
-            Exchange::Command {
-                effect, messages, ..
-            } => {
-                items.push(format!("effect = \"{}\"", effect.name()));
-                let response = context.name_of(&messages.response.ty);
-                items.push(format!("response = {response}"));
-                let error = context.package.error_type(operation);
-                items.extend(error.map(|error| format!("error = {error}")));
-                items.extend(process::sets_off(context, operation));
-            }
-            Exchange::Report { ack, .. } => {
-                items.push(format!(
-                    "ack(timeout_ms = {}, retries = {})",
-                    ack.timeout_ms, ack.retries
-                ));
-                items.extend(process::stage(context, operation));
-            }
-            Exchange::Stream(_) => {}
-        }
-        out.attribute("#[fc(", &items, ")]");
-    }
+    out.attribute("#[fc(", &items, ")]");
 }
 
 /// In which states a command is accepted, as its derive is told.
 fn accepted_in<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
-    context: &Context<'_>,
-    accepted: &'m Accepted,
+    context: &'m Context<'_>,
+    command: &'m Operation,
 ) {
-    let sets = accepted.state_sets();
-    let sets: Vec<(&str, Vec<&str>)> = sets
-        .iter()
-        .filter_map(|set| {
-            let item = context.package.item(&set.ty);
-            let Shape::Enum(_, known) = &item.shape else {
-                return None;
-            };
-            let known = known
-                .iter()
-                .filter(|value| set.values.contains(&value.wire));
-            used.types.insert(&set.ty);
-            Some((&*item.ty.name, known.map(|value| &*value.name).collect()))
-        })
-        .collect();
+    let states = context.accepted_states(command);
+    used.types.extend(states.iter().map(|states| states.ty));
+    let sets = states.iter().map(|states| {
+        let names = states.values.iter().map(|value| &*value.name);
+        (&*states.item.ty.name, names.collect())
+    });
+    let sets: Vec<(&str, Vec<&str>)> = sets.collect();
     match sets.as_slice() {
         [] => {}
         [(ty, names)] => {
@@ -317,50 +255,30 @@ fn accepted_in<'m>(
     }
 }
 
-fn struct_docs<'m>(context: &Context<'_>, item: &Item<'m>, role: &Role<'m>) -> Docs<'m> {
-    match role {
-        Role::Body {
-            operation,
-            direction,
-        } => facts::body_docs(context, operation, *direction),
-        Role::Part => facts::type_docs(context, item),
-    }
-}
-
 /// What the derive has to be told of a field.
-fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
-    let details = field.details();
+fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> Vec<String> {
     let mut items = Vec::new();
     if field.wire != field.name {
         items.push(["key = ", &literal(&field.wire)].concat());
     }
-    match field.wire_form {
-        WireForm::Plain => {}
-        form => items.push(format!("wire = {}", literal(form.name()))),
-    }
-    items.extend(details.constraints().map(|constraint| match constraint {
-        Constraint::Min(min) => format!("min = {}", number(min)),
-        Constraint::Max(max) => format!("max = {}", number(max)),
-        Constraint::Length(least, most) if least == most => format!("length = {least}"),
-        Constraint::Length(least, most) => format!("length = {least}..={most}"),
-        Constraint::Pattern(pattern) => format!("pattern = {}", literal(pattern.portable())),
-        Constraint::Only(taken) => {
+    items.extend(marks.form.map(|form| format!("wire = {}", literal(form))));
+    let constraints = marks.constraints.iter();
+    items.extend(constraints.map(|(name, bound)| match bound {
+        Bound::Number(value) => format!("{name} = {}", number(value)),
+        Bound::Range(least, most) if least == most => format!("{name} = {least}"),
+        Bound::Range(least, most) => format!("{name} = {least}..={most}"),
+        Bound::Pattern(pattern) => format!("{name} = {}", literal(pattern)),
+        Bound::Values(taken) => {
             let taken: Vec<String> = taken.iter().map(enum_wire).collect();
-            format!("only({})", taken.join(", "))
+            format!("{name}({})", taken.join(", "))
         }
     }));
-    for quirk in &details.quirks {
-        items.push(
-            match quirk {
-                Quirk::EmptyIsAbsent => "empty_is_absent",
-                Quirk::LenientNumber => "lenient(number)",
-                Quirk::LenientBool => "lenient(bool)",
-            }
-            .to_owned(),
-        );
-    }
-    if !details.also.is_empty() {
-        let keys: Vec<String> = details.also.iter().map(|key| literal(key)).collect();
+    items.extend(marks.quirks.iter().map(|quirk| {
+        let lenient = quirk.strip_prefix("lenient_");
+        lenient.map_or_else(|| (*quirk).to_owned(), |of| format!("lenient({of})"))
+    }));
+    if !marks.also.is_empty() {
+        let keys: Vec<String> = marks.also.iter().map(|key| literal(key)).collect();
         items.push(format!("also({})", keys.join(", ")));
     }
     if field.sensitive {
@@ -370,21 +288,19 @@ fn field_attributes(field: &Spelled<'_, Field>) -> Vec<String> {
 }
 
 /// The errors that a command declares, as an enum beside its request.
-fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, command: &Operation) {
+fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
-    let Some(name) = package.error_type(command) else {
+    let Some((command, name)) = package.declared_by(item) else {
         return;
     };
     used.derives.insert("DeclaredError");
     let docs = about::errors(context, command);
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, DeclaredError)]");
     out.block(format!("pub enum {name}"), |out| {
         for (error, result) in package.errors(command) {
             let text = literal(&result.text.zh);
-            out.blank();
-            out.docs(&Docs::of(error.cause.as_ref().unwrap_or(&result.text)));
+            out.documented(&about::error(error, result.of));
             let items = [format!("code = {}", result.code), format!("text = {text}")];
             out.attribute("#[fc(", &items, ")]");
             out.line(format!("{},", result.name));
@@ -406,7 +322,7 @@ fn choice<'m>(
         for variant in variants {
             used.types.insert(&*variant.of.ty);
             out.blank();
-            let mut docs = Docs::of(&variant.text);
+            let mut docs = Docs::titled(&variant.text);
             facts::variant_end(&mut docs, variant);
             out.docs(&docs);
             let ty = context.name_of(&variant.of.ty);

@@ -10,11 +10,11 @@ mod conditions;
 mod constants;
 mod context;
 mod descriptors;
-mod each;
 mod enums;
 mod ids;
 mod literal;
 mod messages;
+mod operation_macros;
 mod process;
 mod protocol;
 mod robot;
@@ -25,7 +25,6 @@ mod streams;
 mod tables;
 
 use crate::product::{Artifact, Product};
-use crate::sample::Samples;
 use crate::target::Targets;
 use context::Context;
 use fc_spec::model::Model;
@@ -35,23 +34,24 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.rust(), &source::RUST, Some(targets));
-    let samples = &Samples::new(model);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
-            samples::file(&context.package, samples, targets.krate())
+            samples::samples_file(context, targets.krate())
         }),
-        file("src/blocking.rs", || blocking::file(context)),
-        file("src/client.rs", || client::file(context)),
-        file("src/descriptors.rs", || descriptors::file(context)),
-        file("src/lib.rs", || root::file(context)),
+        file("src/blocking.rs", || blocking::blocking_file(context)),
+        file("src/client.rs", || client::client_file(context)),
+        file("src/descriptors.rs", || {
+            descriptors::descriptors_file(context)
+        }),
+        file("src/lib.rs", || root::root_file(context)),
         file("src/messages/mod.rs", || root::messages(context)),
         file("src/prelude.rs", || root::prelude(context, targets.krate())),
-        file("src/protocol.rs", || protocol::file(context)),
-        file("src/robot.rs", || robot::file(context)),
-        file("src/tables.rs", || tables::file(context)),
+        file("src/protocol.rs", || protocol::protocol_file(context)),
+        file("src/robot.rs", || robot::robot_file(context)),
+        file("src/tables.rs", || tables::tables_file(context)),
     ];
     if !context.package.ids.is_empty() {
-        files.push(file("src/ids.rs", || ids::file(context)));
+        files.push(file("src/ids.rs", || ids::ids_file(context)));
     }
     files.extend(context.package.modules.iter().map(|module| {
         let first = module.items.first();
@@ -62,7 +62,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         File {
             path: format!("src/messages/{}.rs", module.id),
             from,
-            text: Box::new(move || messages::module(context, samples, module)),
+            text: Box::new(move || messages::module(context, module)),
         }
     }));
     files
@@ -75,12 +75,9 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 #[must_use]
 pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
     let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
-    let samples = Samples::new(model);
     let items = context.package.items();
     let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
-    let items: Vec<_> = items
-        .map(|item| messages::item(&context, &samples, item))
-        .collect();
+    let items: Vec<_> = items.map(|item| messages::item(&context, item)).collect();
     items.join("\n")
 }
 

@@ -1,8 +1,8 @@
 //! What a command sets off and how far it has come, as the derives are told.
 
 use super::context::Context;
-use crate::emit::stub::process::{set_off, state};
-use fc_spec::model::{Exchange, Field, Operation, StructRef, Type, TypeRef};
+use crate::package::process::{set_off, state};
+use fc_spec::model::{Exchange, Operation, StructRef, TypeRef};
 
 /// Types beside its own that the attribute of an operation names.
 pub fn types<'m>(context: &'m Context<'_>, operation: &'m Operation) -> Vec<&'m TypeRef> {
@@ -55,16 +55,9 @@ pub fn stage(context: &Context<'_>, report: &Operation) -> Vec<String> {
 
 /// The way to a field as the derives read it: names of fields, with `?` for those that are an `Option`.
 fn steps(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
-    let mut holder: Option<&TypeRef> = Some(body);
-    let way = context.model().way(body, keys);
-    let steps = way.into_iter().map(|field: &Field| {
-        let name = holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field));
-        let optional = if field.optional { "?" } else { "" };
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
-        format!("{name}{optional}")
+    let steps = context.steps(body, keys).into_iter().map(|step| {
+        let optional = if step.optional { "?" } else { "" };
+        [step.name, optional].concat()
     });
     let steps: Vec<String> = steps.collect();
     steps.join(".")

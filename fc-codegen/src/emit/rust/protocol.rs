@@ -3,18 +3,20 @@
 use super::context::{Context, page_of};
 use super::literal::literal;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::digits::grouped;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::surface::name::free;
-use crate::surface::package::Spelled;
+use crate::package::about;
+use crate::package::digits::grouped;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Spelled;
+use crate::package::language::Case;
+use crate::package::name::free;
+use crate::package::wire::WireFacts;
 use fc_spec::model::{
-    DigestAlgorithm, EncodingRole, EnvelopeField, HeaderField, HeaderQuirk, HeaderType, ResultRole,
+    DigestAlgorithm, Direction, EnvelopeField, HeaderField, HeaderQuirk, HeaderType,
 };
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn protocol_file(context: &Context<'_>) -> String {
     let package = &context.package;
     let mut out = Source::rust();
     out.inner_docs(&Docs::said(&about::WIRE));
@@ -40,9 +42,19 @@ pub fn file(context: &Context<'_>) -> String {
     out.blank();
     header(&mut out, context);
     out.blank();
-    envelope(&mut out, context, &REQUEST, &package.request_envelope);
+    envelope(
+        &mut out,
+        context,
+        Direction::Request,
+        &package.request_envelope,
+    );
     out.blank();
-    envelope(&mut out, context, &RESPONSE, &package.response_envelope);
+    envelope(
+        &mut out,
+        context,
+        Direction::Response,
+        &package.response_envelope,
+    );
     out.blank();
     results(&mut out, context);
     streams(&mut out, context);
@@ -50,39 +62,30 @@ pub fn file(context: &Context<'_>) -> String {
 }
 
 fn protocol(out: &mut Source, context: &Context<'_>) {
-    let model = context.model();
-    let mut docs = Docs::of(&model.protocol.title);
-    docs.text(&model.protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
-    out.docs(&docs);
+    out.docs(&about::protocol(context.model()));
     out.line("#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]");
     let name = &context.package.name;
     out.line(format!("pub struct {name};"));
     out.blank();
+    let wire = &WireFacts::build(context);
     out.block(format!("impl Protocol for {name}"), |out| {
         out.line("type Header = FrameHeader;");
         out.line("type Request = RequestEnvelope;");
         out.line("type Response = ResponseEnvelope;");
         out.blank();
-        addresses(out, context);
-        frames(out, context);
+        constants(out, wire);
         out.blank();
         out.enclose("const RESULTS: Results = Results {", "};", |out| {
-            for role in ResultRole::ALL {
-                let field = role.name();
-                let result = model
-                    .results
-                    .iter()
-                    .find(|result| result.role == Some(*role));
-                let (code, text) = result.map_or((0, ""), |result| (result.code, &result.text.zh));
-                out.enclose(&format!("{field}: ResultText {{"), "},", |out| {
+            for result in &wire.results {
+                let (code, text) = result.code_and_text();
+                out.enclose(&format!("{}: ResultText {{", result.role), "},", |out| {
                     out.line(format!("code: {},", grouped(code.into())));
                     out.line(format!("text: {},", literal(text)));
                 });
             }
         });
         out.blank();
-        defaults(out, context);
+        defaults(out, wire);
         out.blank();
         out.block("fn operations() -> &'static [OperationInfo]", |out| {
             out.line("OPERATIONS");
@@ -90,66 +93,35 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-fn addresses(out: &mut Source, context: &Context<'_>) {
-    let model = context.model();
-    let ports = &model.transport.ports;
-    out.line(format!(
-        "const NAME: &'static str = {};",
-        literal(&model.protocol.id)
-    ));
-    out.line(format!(
-        "const HOST: &'static str = {};",
-        literal(&model.transport.host)
-    ));
-    out.line(format!(
-        "const COMMAND_PORT: u16 = {};",
-        grouped(ports.command.number.into())
-    ));
-    out.line(format!(
-        "const DATA_PORT: u16 = {};",
-        grouped(ports.data.number.into())
-    ));
-}
-
-fn frames(out: &mut Source, context: &Context<'_>) {
-    let frame = &context.model().frame;
-    let kinds = &frame.kinds;
-    let encoding = |role| frame.encoding(role).map(|encoding| encoding.value);
-    let reserved: Vec<String> = kinds
-        .reserved
-        .iter()
-        .map(|kind| format!("0x{:02X}", kind.value))
-        .collect();
-    out.line(format!(
-        "const REQUEST_HEAD: &'static [u8] = &{};",
-        bytes(&frame.request_head)
-    ));
-    out.line(format!(
-        "const RESPONSE_HEAD: &'static [u8] = &{};",
-        bytes(&frame.response_head)
-    ));
-    for (name, kind) in [
-        ("STREAM", &kinds.stream),
-        ("COMMAND", &kinds.command),
-        ("REPORT", &kinds.report),
-    ] {
-        out.line(format!("const {name}: u8 = 0x{:02X};", kind.value));
+fn constants(out: &mut Source, wire: &WireFacts<'_, '_>) {
+    let frame = &wire.frame;
+    let mut constant = |name: &str, ty: &str, value: &str| {
+        let name = Case::Screaming.apply(name);
+        out.line(format!("const {name}: {ty} = {value};"));
+    };
+    constant("name", "&'static str", &literal(wire.name));
+    constant("host", "&'static str", &literal(wire.host));
+    for (name, number) in &wire.ports {
+        constant(name, "u16", &grouped((*number).into()));
     }
-    out.line(format!(
-        "const RESERVED_KINDS: &'static [u8] = &[{}];",
-        reserved.join(", ")
-    ));
-    let plain = encoding(EncodingRole::Plain).unwrap_or_default();
-    out.line(format!("const PLAIN: u8 = {plain};"));
-    let gzip = encoding(EncodingRole::Gzip);
-    out.line(format!("const GZIP: Option<u8> = {gzip:?};"));
-    let zero = frame.has_quirk(HeaderQuirk::ZeroWhenPlain);
-    out.line(format!("const ZERO_PLAIN_LENGTH: bool = {zero};"));
+    for (name, head) in frame.heads {
+        constant(name, "&'static [u8]", &bytes(head));
+    }
+    for (name, kind) in frame.kinds {
+        constant(name, "u8", &format!("0x{kind:02X}"));
+    }
+    constant(
+        "reserved_kinds",
+        "&'static [u8]",
+        &bytes(&frame.reserved_kinds),
+    );
+    constant("PLAIN", "u8", &frame.plain.to_string());
+    constant("GZIP", "Option<u8>", &format!("{:?}", frame.gzip));
+    let zero = frame.takes_zero_plain_length;
+    constant("zero_plain_length", "bool", &zero.to_string());
 }
 
-fn defaults(out: &mut Source, context: &Context<'_>) {
-    let calls = &context.model().calls;
-    let limits = &context.model().limits;
+fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
     let duration = |ms: u32| {
         if ms > 0 && ms.is_multiple_of(1000) {
             format!("Duration::from_secs({})", grouped((ms / 1000).into()))
@@ -157,29 +129,20 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
             format!("Duration::from_millis({})", grouped(ms.into()))
         }
     };
-    let max_age = calls
+    let max_age = wire
         .max_age_ms
         .map_or_else(|| "None".to_owned(), |ms| format!("Some({})", duration(ms)));
     out.enclose("const DEFAULTS: Defaults = Defaults {", "};", |out| {
-        out.line(format!("call_timeout: {},", duration(calls.timeout_ms)));
-        out.line(format!(
-            "handler_timeout: {},",
-            duration(calls.handler_timeout_ms)
-        ));
+        for (name, ms) in &wire.times {
+            out.line(format!("{name}: {},", duration(*ms)));
+        }
         out.line(format!("max_age: {max_age},"));
         out.enclose("ack: AckPolicy {", "},", |out| {
-            out.line(format!("timeout: {},", duration(calls.ack.timeout_ms)));
-            out.line(format!("retries: {},", calls.ack.retries));
+            out.line(format!("timeout: {},", duration(wire.ack.timeout_ms)));
+            out.line(format!("retries: {},", wire.ack.retries));
         });
         out.enclose("limits: Limits {", "},", |out| {
-            for (name, value) in [
-                ("frame_bytes", limits.frame_bytes),
-                ("inflated_bytes", limits.inflated_bytes),
-                ("json_depth", limits.json_depth),
-                ("in_flight", limits.in_flight),
-                ("queued_reports", limits.queued_reports),
-                ("connections", limits.connections),
-            ] {
+            for (name, value) in wire.limits {
                 out.line(format!("{name}: {},", grouped(value.into())));
             }
             // Of the runtime, not of the protocol.
@@ -192,15 +155,10 @@ fn defaults(out: &mut Source, context: &Context<'_>) {
 
 fn header(out: &mut Source, context: &Context<'_>) {
     let frame = &context.model().frame;
-    let mut docs = Docs::default();
-    docs.paragraph(format!(
-        "包头，共 {} 字节，其后是数据区。",
-        frame.header_len()
-    ));
-    docs.paragraph(format!(
-        "The header: {} bytes before the data area.",
-        frame.header_len()
-    ));
+    let length = frame.header_len();
+    let zh = format!("包头，共 {length} 字节，其后是数据区。");
+    let en = format!("The header: {length} bytes before the data area.");
+    let mut docs = Docs::named(zh, en);
     docs.text(&frame.data);
     if let Some(page) = context.page("reference/wire.md") {
         docs.paragraph(page);
@@ -217,14 +175,13 @@ fn header(out: &mut Source, context: &Context<'_>) {
 }
 
 fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
-    let mut docs = Docs::of(&field.text);
+    let mut docs = Docs::titled(&field.text);
     let mut fact = format!("`{}`, offset {}.", field.wire, field.offset);
     if field.has_quirk(HeaderQuirk::ZeroWhenPlain) {
         fact.push_str(" 0 is accepted on a frame that is not compressed.");
     }
     docs.paragraph(fact);
-    out.blank();
-    out.docs(&docs);
+    out.documented(&docs);
     let mut items = Vec::new();
     if let Some(role) = field.role {
         items.push(format!("role = \"{}\"", role.name()));
@@ -248,43 +205,28 @@ fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
     out.line(format!("pub {}: {ty},", field.name));
 }
 
-/// What tells the two envelopes apart.
-struct Direction {
-    name: &'static str,
-    word: &'static str,
-    about: &'static [&'static str],
-}
-
-const REQUEST: Direction = Direction {
-    name: "RequestEnvelope",
-    word: "request",
-    about: &about::REQUEST_ENVELOPE,
-};
-
-const RESPONSE: Direction = Direction {
-    name: "ResponseEnvelope",
-    word: "response",
-    about: &about::RESPONSE_ENVELOPE,
-};
-
 fn envelope(
     out: &mut Source,
     context: &Context<'_>,
-    direction: &Direction,
+    side: Direction,
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
-    out.docs(&Docs::said(direction.about));
+    let about = match side {
+        Direction::Request => &about::REQUEST_ENVELOPE,
+        Direction::Response => &about::RESPONSE_ENVELOPE,
+    };
+    let (word, name) = (side.name(), Case::Pascal.apply(side.name()));
+    out.docs(&Docs::said(about));
     let defaults = fields.iter().all(|field| field.optional);
     out.line(if defaults {
         "#[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]"
     } else {
         "#[derive(Clone, Debug, PartialEq, Message, Envelope)]"
     });
-    out.line(format!("#[fc(envelope = \"{}\")]", direction.word));
-    out.block(format!("pub struct {}", direction.name), |out| {
+    out.line(format!("#[fc(envelope = \"{word}\")]"));
+    out.block(format!("pub struct {name}Envelope"), |out| {
         for field in fields {
-            out.blank();
-            out.docs(&Docs::of(&field.text));
+            out.documented(&Docs::titled(&field.text));
             let name = &field.name;
             let mut items = Vec::new();
             if *name != field.wire {
@@ -313,10 +255,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.line("#[fc(repr = i64)]");
     out.block("pub enum ResultCode", |out| {
         for result in results {
-            let mut docs = Docs::of(&result.text);
-            docs.text(&result.about);
-            out.blank();
-            out.docs(&docs);
+            out.documented(&about::result(result.of));
             out.line(format!("#[fc(value = {})]", result.code));
             out.line(format!("{},", result.name));
         }
@@ -356,11 +295,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     if streams.is_empty() {
         return;
     }
-    out.blank();
-    let mut docs = Docs::default();
-    docs.paragraph("数据流的功能码。");
-    docs.paragraph("Codes of streams.");
-    out.docs(&docs);
+    out.documented(&Docs::said(&["数据流的功能码。", "Codes of streams."]));
     let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
@@ -370,8 +305,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
             let mut docs = facts::operation_docs(stream);
             docs.paragraph(facts::operation_facts(context.style, stream));
             docs.paragraph(context.links(&stream.location, &page_of(stream)));
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             out.line(format!("#[fc(value = {})]", stream.code.spelling));
             out.line(format!("{},", stream.name));
         }
@@ -382,8 +316,8 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-/// Bytes as an array: `[0xFC, 0xAA]`.
+/// Bytes as a slice: `&[0xFC, 0xAA]`.
 fn bytes(bytes: &[u8]) -> String {
     let items: Vec<String> = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
-    format!("[{}]", items.join(", "))
+    format!("&[{}]", items.join(", "))
 }

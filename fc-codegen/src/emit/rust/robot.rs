@@ -1,31 +1,28 @@
 //! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
 //! spec's examples, and typed pushing of reports.
 
-use super::context::{Context, message, page_of};
+use super::context::{Context, message};
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::{UNKNOWN, pass_through};
-use crate::surface::package::Call;
-use fc_spec::model::{CodeRange, Effect, Side};
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::ranges::{UNKNOWN, pass_through};
+use fc_spec::model::{CodeRange, Side};
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn robot_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let commands = context.commands();
     let ranges = pass_through(context);
 
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(
-        "机器人端：每条指令一个方法的 trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。",
-    );
-    docs.paragraph(
-        "The robot's side: a trait with one method per command, a robot that responds with the examples of \
+    out.inner_docs(&Docs::said(&[
+"机器人端：每条指令一个方法的 trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。",
+"The robot's side: a trait with one method per command, a robot that responds with the examples of \
          the spec, and the sender of reports. The method of each report is in the file of its messages.",
-    );
-    out.inner_docs(&docs);
+]));
     out.blank();
     imports(&mut out, context, protocol, &commands);
     out.blank();
@@ -116,16 +113,10 @@ fn robot(
     out.block("pub trait Robot: Send + Sync + 'static", |out| {
         let cx = format!("context: Context<{protocol}>");
         for command in commands {
-            let mut docs = facts::operation_docs(command.operation);
-            facts::operation_end(context.style, &mut docs, command.operation);
-            if let Some(error) = context.package.error_type(command.operation) {
-                docs.raw(format!(
-                    "Convert a [`messages::{error}`] to refuse the command with it."
-                ));
-            }
-            docs.paragraph(context.links(&command.operation.location, &page_of(command.operation)));
-            out.blank();
-            out.docs(&docs);
+            let docs = facts::command_docs(context, command.operation, |error| {
+                format!("Convert a [`messages::{error}`] to refuse the command with it.")
+            });
+            out.documented(&docs);
             let request = format!("request: {}", message(command.request));
             let (open, params, close) = signature(
                 command.method,
@@ -137,40 +128,18 @@ fn robot(
             out.list(&open, &params, &format!("{close};"));
         }
         for (name, range) in ranges {
-            let mut docs = Docs::of(&range.text);
-            docs.paragraph(format!(
-                "Codes {} to {} without a separate method.",
-                range.first_spelling, range.last_spelling
-            ));
-            for text in REFUSED {
-                docs.paragraph(text);
-            }
-            out.blank();
-            out.docs(&docs);
+            out.documented(&about::range(range));
             out.line(format!(
                 "#[fc(range = {}..={})]",
                 range.first_spelling, range.last_spelling
             ));
             raw(out, protocol, name);
         }
-        let mut docs = Docs::default();
-        docs.paragraph("功能码不在规范中的指令。");
-        docs.paragraph("Commands with a code that is not in the spec.");
-        for text in REFUSED {
-            docs.paragraph(text);
-        }
-        out.blank();
-        out.docs(&docs);
+        out.documented(&about::unknown());
         out.line("#[fc(unknown)]");
         raw(out, protocol, UNKNOWN);
     });
 }
-
-/// What becomes of raw requests by default: a range that the spec gains breaks no robot.
-const REFUSED: [&str; 2] = [
-    "不实现此方法时，按未知指令拒绝。",
-    "Without this method, the robot refuses them as unknown commands.",
-];
 
 /// A method for requests without a type, which refuses them.
 fn raw(out: &mut Source, protocol: &str, name: &str) {
@@ -180,14 +149,6 @@ fn raw(out: &mut Source, protocol: &str, name: &str) {
     out.line("    let _ = (context, request);");
     out.line(format!("    Err(Refusal::unknown::<{protocol}>())"));
     out.line("}");
-}
-
-/// Whether a command sets something in motion, as far as anybody knows.
-fn may_move(command: &Call<'_>) -> bool {
-    match command.operation.effect() {
-        Some(Effect::Read | Effect::Config) => false,
-        Some(Effect::Motion | Effect::Unknown) | None => true,
-    }
 }
 
 fn example(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
@@ -213,7 +174,7 @@ pub struct ExampleRobot {
         for command in commands {
             let request = format!("_: {}", message(command.request));
             let response = message(command.response);
-            let name = if may_move(command) { "context" } else { "_" };
+            let name = if command.may_move() { "context" } else { "_" };
             let (open, params, close) = signature(
                 command.method,
                 &format!("{name}: Context<{protocol}>"),
@@ -223,7 +184,7 @@ pub struct ExampleRobot {
             );
             out.blank();
             out.list(&open, &params, &format!("{close} {{"));
-            if may_move(command) {
+            if command.may_move() {
                 out.line("    if !self.pretend_motion {");
                 out.line("        return Err(context.not_implemented());");
                 out.line("    }");

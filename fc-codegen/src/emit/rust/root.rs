@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::source::Source;
 use super::streams;
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
 
 /// Lints that the spec's own words decide, each with its reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -38,10 +38,10 @@ const ALLOWED: &[(&str, &str)] = &[
 ];
 
 /// `lib.rs`.
-pub fn file(context: &Context<'_>) -> String {
+pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
-    let mut docs = Docs::of(&model.protocol.title);
+    let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
     docs.paragraph(format!(
         "规范版本 {}。Version {} of the spec.",
@@ -193,13 +193,9 @@ const FOR_BOTH: &[&str] = &[
 /// `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph(format!(
-        "app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`"
-    ));
-    docs.paragraph(format!(
-        "The names for an app and a robot, in one line: `use {krate}::prelude::*;`"
-    ));
+    let zh = format!("app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`");
+    let en = format!("The names for an app and a robot, in one line: `use {krate}::prelude::*;`");
+    let mut docs = Docs::named(zh, en);
     docs.paragraph(
         "It contains all message types, the stubs, and the related types of the runtime. A name that you \
          declare or import explicitly takes precedence over these.",
@@ -240,12 +236,10 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
     let mut out = Source::rust();
-    let mut docs = Docs::default();
-    docs.paragraph("消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。");
-    docs.paragraph(
+    out.inner_docs(&Docs::said(&[
+        "消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。",
         "Message types, with one module per group. All types are re-exported at the crate root.",
-    );
-    out.inner_docs(&docs);
+    ]));
     out.blank();
     for module in modules {
         out.line(format!("pub mod {};", module.name));

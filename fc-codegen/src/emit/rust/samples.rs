@@ -1,168 +1,118 @@
 //! How each operation is called and answered, as the pages of the documentation show it. The same
-//! text stands in a test of the generated crate, so no sample can rot.
+//! text is in a test of the generated crate, so no sample can rot.
 
 use super::constants::{Place, indented, spelled_record};
+use super::context::Context;
 use super::robot::signature;
 use super::source::{RUST, Source};
-use crate::emit::stub::samples as stub;
-use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::name::free;
-use crate::surface::package::{Call, Package};
+use crate::package::expr::Record;
+use crate::package::name::free;
+use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::target::Targets;
-use fc_spec::model::{Direction, Kind, Operation, Side};
-use stub::Snippets as _;
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "rust",
     file: "tests/samples.rs",
     language: Targets::rust,
     style: &RUST,
-    snippets: |context, samples| Box::new(Snippets::new(&context.package, samples)),
+    write,
 };
 
-/// What makes the samples of a package.
-pub struct Snippets<'p, 'm> {
-    package: &'p Package<'m>,
-    samples: &'p Samples<'m>,
-}
-
-impl stub::Snippets for Snippets<'_, '_> {
-    fn app(&self, operation: &Operation) -> Option<String> {
-        if operation.kind() == Kind::Stream {
-            return self.app_stream(operation);
-        }
-        let Call {
-            method, request, ..
-        } = self.package.call(operation)?;
-        if operation.kind() == Kind::Command {
-            let request = self.example(operation, Direction::Request)?;
-            return Some(format!(
-                "{}let answer = client.{method}(&request).await?;\nprintln!(\"{{answer:?}}\");\n",
-                assign("request", &request)
+fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
+    let audience = runtime(context, "Audience");
+    match sample {
+        Sample::Call(call, request) => {
+            assign(out, "request", request);
+            out.line(format!(
+                "let answer = client.{}(&request).await?;",
+                call.method
             ));
+            out.line("println!(\"{answer:?}\");");
         }
-        Some(format!(
-            "while let Some(report) = reports.recv().await {{\n    \
-                 if let AnyReport::{ty}(report) = report? {{\n        \
-                     println!(\"{{report:?}}\");\n    \
-                 }}\n\
-             }}\n",
-            ty = request.ty.name
-        ))
-    }
-
-    fn robot(&self, operation: &Operation) -> Option<String> {
-        if operation.kind() == Kind::Stream {
-            return self.robot_stream(operation);
+        Sample::Take(call) => {
+            let ty = &call.request.ty.name;
+            out.block("while let Some(report) = reports.recv().await", |out| {
+                out.block(format!("if let AnyReport::{ty}(report) = report?"), |out| {
+                    out.line("println!(\"{report:?}\");");
+                });
+            });
         }
-        let call = self.package.call(operation)?;
-        let method = call.method;
-        match operation.kind() {
-            Kind::Command => {
-                let answer = self.example(operation, Direction::Response)?;
-                let context = self.runtime("Context");
-                let context = format!("context: {context}<{}>", self.package.name);
-                let request = format!("request: {}", call.request.ty.name);
-                let refusal = self.runtime("Refusal");
-                let response = &call.response.ty.name;
-                let (open, params, close) =
-                    signature(method, &context, &request, response, &refusal);
-                let mut out = Source::rust();
-                out.list(&open, &params, &format!("{close} {{"));
-                let lines = format!(
-                    "println!(\"{{}} asks: {{request:?}}\", context.peer);\nOk({})\n",
-                    spelled_record(&answer, Place::Outside, 0)
-                );
-                out.line(indented(&lines));
-                out.line("}");
-                Some(out.finish())
-            }
-            Kind::Report => {
-                let report = self.example(operation, Direction::Request)?;
-                let audience = self.runtime("Audience");
-                Some(format!(
-                    "{}for acknowledgement in reporter.{method}({audience}::All, &report).await? {{\n    \
-                         println!(\"{{acknowledgement:?}}\");\n\
-                     }}\n",
-                    assign("report", &report)
-                ))
-            }
-            Kind::Stream => None,
+        Sample::Answer(call, answer) => {
+            let robot = format!("{}<{}>", runtime(context, "Context"), context.package.name);
+            let (open, params, close) = signature(
+                call.method,
+                &format!("context: {robot}"),
+                &format!("request: {}", call.request.ty.name),
+                &call.response.ty.name,
+                &runtime(context, "Refusal"),
+            );
+            out.list(&open, &params, &format!("{close} {{"));
+            let answer = spelled_record(answer, Place::Outside, 0);
+            out.line(indented(&format!(
+                "println!(\"{{}} asks: {{request:?}}\", context.peer);\nOk({answer})\n"
+            )));
+            out.line("}");
+        }
+        Sample::Push(call, report) => {
+            assign(out, "report", report);
+            let push = format!("reporter.{}({audience}::All, &report).await?", call.method);
+            out.block(format!("for acknowledgement in {push}"), |out| {
+                out.line("println!(\"{acknowledgement:?}\");");
+            });
+        }
+        Sample::Subscribe(stream) => {
+            let name = &stream.of.name;
+            out.line(format!(
+                "let mut subscription = streams.subscribe_{name}();"
+            ));
+            out.block("while let Ok(item) = subscription.recv().await", |out| {
+                out.line("println!(\"{}: {:?}\", item.id, item.content);");
+            });
+        }
+        Sample::Send(stream, value) => {
+            let (name, carried) = (&stream.of.name, assign_content(out, value.as_ref()));
+            out.line(format!("streams.send_{name}(1, {carried}).await?;"));
+        }
+        Sample::Stream(stream, value) => {
+            let (name, carried) = (&stream.of.name, assign_content(out, value.as_ref()));
+            out.line(format!(
+                "let taken = streamer.send_{name}({audience}::All, 1, {carried}).await?;"
+            ));
+            out.line("println!(\"{taken} data connections took it\");");
         }
     }
 }
 
-impl<'p, 'm> Snippets<'p, 'm> {
-    /// Of the Rust package, with values from `samples`.
-    #[must_use]
-    pub fn new(package: &'p Package<'m>, samples: &'p Samples<'m>) -> Self {
-        Self { package, samples }
-    }
-
-    /// A name of the runtime beside types of the spec; by its full path where one of them has it.
-    fn runtime(&self, name: &str) -> String {
-        if self.package.has_type(name) {
-            format!("fc_runtime::{name}")
-        } else {
-            name.to_owned()
-        }
-    }
-
-    fn app_stream(&self, stream: &Operation) -> Option<String> {
-        stub::is_there(self.package, stream).then(|| {
-            let name = &stream.name;
-            if stream.sender == Side::Robot {
-                return format!(
-                    "let mut subscription = streams.subscribe_{name}();\n\
-                     while let Ok(item) = subscription.recv().await {{\n    \
-                         println!(\"{{}}: {{:?}}\", item.id, item.content);\n\
-                     }}\n"
-                );
-            }
-            let (before, content) = self.content(stream);
-            format!("{before}streams.send_{name}(1, {content}).await?;\n")
-        })
-    }
-
-    fn robot_stream(&self, stream: &Operation) -> Option<String> {
-        let is_own = stub::is_there(self.package, stream) && stream.sender == Side::Robot;
-        is_own.then(|| {
-            let (before, content) = self.content(stream);
-            let (name, audience) = (&stream.name, self.runtime("Audience"));
-            format!(
-                "{before}let taken = streamer.send_{name}({audience}::All, 1, {content}).await?;\n\
-                 println!(\"{{taken}} data connections took it\");\n"
-            )
-        })
-    }
-
-    /// What is said before a stream is sent, and what is sent.
-    fn content(&self, stream: &Operation) -> (String, String) {
-        match self.example(stream, Direction::Request) {
-            Some(content) => (assign("content", &content), "&content".to_owned()),
-            None => (String::new(), format!("b{:?}", stub::BYTES)),
-        }
-    }
-
-    fn example(&self, operation: &Operation, direction: Direction) -> Option<Record<'p>> {
-        stub::example(self.package, self.samples, operation, direction)
-    }
+/// A name of the runtime; by its full path if a type of the spec has it.
+fn runtime(context: &Context<'_>, name: &str) -> String {
+    let path = if context.package.has_type(name) {
+        "fc_runtime::"
+    } else {
+        ""
+    };
+    [path, name].concat()
 }
 
-fn assign(name: &str, value: &Record<'_>) -> String {
+fn assign(out: &mut Source, name: &str, value: &Record<'_>) {
     let value = spelled_record(value, Place::Outside, name.len() + 8);
-    format!("let {name} = {value};\n")
+    out.line(format!("let {name} = {value};"));
+}
+
+/// Writes what a stream carries, if more than a word, and returns the word for it.
+fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
+    let Some(value) = value else {
+        return format!("b{BYTES:?}");
+    };
+    assign(out, "content", value);
+    "&content".to_owned()
 }
 
 /// The test that compiles and runs every sample.
 #[must_use]
-pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String {
-    let snippets = Snippets::new(package, samples);
-    let commands = package.calls(Kind::Command);
-    let reports = package.calls(Kind::Report);
-    let taken = |name: &str| package.has_type(name);
+pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
+    let run = &SampleRun::build(context);
+    let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = Source::rust();
     out.line(
@@ -190,123 +140,45 @@ pub fn file(package: &Package<'_>, samples: &Samples<'_>, krate: &str) -> String
     out.import("fc_runtime", &names);
     out.blank();
     out.line(format!("struct {robot};"));
-    robot_of_samples(&mut out, &snippets, &robot, &commands);
-    functions(&mut out, &snippets, &commands, &reports);
-    stream_functions(&mut out, &snippets);
-    test_of_samples(&mut out, package, &robot, &commands, &reports);
+    out.blank();
+    out.block(format!("impl Robot for {robot}"), |out| {
+        for answer in &run.answers {
+            out.blank();
+            write(out, context, answer);
+        }
+    });
+    for step in run.steps() {
+        let parameter = match step.parameter() {
+            _ if step.verb == Verb::Take => "mut reports: Reports".to_owned(),
+            [name, ty] => format!("{name}: &{ty}"),
+        };
+        let head = format!("async fn {}({parameter}) -> {RESULT}", step.name());
+        out.blank();
+        out.block(head, |out| {
+            write(out, context, &step.sample);
+            out.line("Ok(())");
+        });
+    }
+    test_of_samples(&mut out, &robot, run);
     out.finish()
 }
 
-fn robot_of_samples(
-    out: &mut Source,
-    snippets: &Snippets<'_, '_>,
-    robot: &str,
-    commands: &[Call<'_>],
-) {
-    out.blank();
-    out.block(format!("impl Robot for {robot}"), |out| {
-        for command in commands {
-            if let Some(sample) = snippets.robot(command.operation) {
-                out.blank();
-                out.line(sample);
-            }
-        }
-    });
-}
+/// The result of every function.
+const RESULT: &str = "Result<(), Box<dyn std::error::Error>>";
 
-/// The functions around the samples of streams: an app subscribes and sends, a robot sends.
-fn stream_functions(out: &mut Source, snippets: &Snippets<'_, '_>) {
-    let mut function = |head: String, sample: Option<String>| {
-        let Some(sample) = sample else { return };
-        out.blank();
-        let head = format!("async fn {head} -> Result<(), Box<dyn std::error::Error>>");
-        out.block(head, |out| {
-            out.line(sample);
-            out.line("Ok(())");
-        });
-    };
-    for stream in stub::streams(snippets.package, Side::Robot) {
-        let name = &stream.name;
-        function(
-            format!("subscribe_{name}(streams: &Streams)"),
-            snippets.app(stream),
-        );
-        function(
-            format!("send_{name}(streamer: &Streamer)"),
-            snippets.robot(stream),
-        );
-    }
-    for stream in stub::streams(snippets.package, Side::App) {
-        function(
-            format!("send_{}(streams: &Streams)", stream.name),
-            snippets.app(stream),
-        );
+fn call(step: &SampleStep<'_, '_>) -> String {
+    match step.parameter() {
+        _ if step.verb == Verb::Take => format!("{}(client.reports())", step.name()),
+        [name, _] => format!("{}(&{name})", step.name()),
     }
 }
 
-fn functions(
-    out: &mut Source,
-    snippets: &Snippets<'_, '_>,
-    commands: &[Call<'_>],
-    reports: &[Call<'_>],
-) {
-    for command in commands {
-        let Some(sample) = snippets.app(command.operation) else {
-            continue;
-        };
-        out.blank();
-        let name = &command.operation.name;
-        out.block(
-            format!(
-                "async fn call_{name}(client: &Client) -> Result<(), Box<dyn std::error::Error>>"
-            ),
-            |out| {
-                out.line(sample);
-                out.line("Ok(())");
-            },
-        );
-    }
-    for report in reports {
-        let (Some(app), Some(robot)) = (
-            snippets.app(report.operation),
-            snippets.robot(report.operation),
-        ) else {
-            continue;
-        };
-        let name = &report.operation.name;
-        out.blank();
-        out.block(
-            format!("async fn take_{name}(mut reports: Reports) -> Result<(), Box<dyn std::error::Error>>"),
-            |out| {
-                out.line(app);
-                out.line("Ok(())");
-            },
-        );
-        out.blank();
-        out.block(
-            format!("async fn push_{name}(reporter: &Reporter) -> Result<(), Box<dyn std::error::Error>>"),
-            |out| {
-                out.line(robot);
-                out.line("Ok(())");
-            },
-        );
-    }
-}
-
-fn test_of_samples(
-    out: &mut Source,
-    package: &Package<'_>,
-    robot: &str,
-    commands: &[Call<'_>],
-    reports: &[Call<'_>],
-) {
-    let sides = [Side::Robot, Side::App];
-    let [from_robot, from_app] = sides.map(|side| stub::streams(package, side));
-    let has_streams = !from_robot.is_empty() || !from_app.is_empty();
+fn test_of_samples(out: &mut Source, robot: &str, run: &SampleRun<'_, '_>) {
+    let has_streams = run.has_streams();
     let data = if has_streams { ".data_port(data)" } else { "" };
     out.blank();
     out.line("#[tokio::test]");
-    out.block("async fn every_sample_runs() -> Result<(), Box<dyn std::error::Error>>", |out| {
+    out.block(format!("async fn every_sample_runs() -> {RESULT}"), |out| {
         out.line(format!(
             "\
 let host = std::net::Ipv4Addr::LOCALHOST;
@@ -324,28 +196,21 @@ let serving = tokio::spawn(server.run());
 let config = fc_runtime::ClientConfig::new().host(host.to_string()).command_port(port){data};
 let client = Client::connect(config).await?;"
         ));
-        for command in commands {
-            out.line(format!("call_{}(&client).await?;", command.operation.name));
-        }
-        if !reports.is_empty() {
+        wait(out, run, Verb::Call);
+        if run.has(Verb::Take) {
             out.line("let reporter = Reporter::new(handle.clone());");
-            let takers: Vec<String> =
-                reports.iter().map(|report| format!("take_{}(client.reports())", report.operation.name)).collect();
-            let pushes: Vec<String> =
-                reports.iter().map(|report| format!("push_{}(&reporter).await?;\n", report.operation.name)).collect();
-            out.list("let takers = async { tokio::try_join!(", &takers, ") };");
-            out.enclose("let pushes = async {", "};", |out| {
-                out.line(pushes.concat());
-                out.line("Ok::<(), Box<dyn std::error::Error>>(())");
-            });
-            out.line("// An app takes reports without end; a push ends when every app has acknowledged it.");
-            out.enclose("tokio::select! {", "}", |out| {
-                out.line("taken = takers => drop(taken?),");
-                out.line("pushed = pushes => pushed?,");
-            });
+            let about =
+                "// An app takes reports without end; a push ends when every app has acknowledged it.";
+            select(out, run, [Verb::Take, Verb::Push], ["pushes", "pushed"], about);
         }
         if has_streams {
-            run_streams(out, &from_robot, &from_app);
+            out.line("let streams = Streams::new(client.data());\nstreams.data().connected().await?;");
+            if run.has(Verb::Subscribe) {
+                out.line("let streamer = Streamer::new(handle.clone());");
+                select(out, run, [Verb::Subscribe, Verb::Stream], ["sending", "sent"], "");
+            }
+            wait(out, run, Verb::Send);
+            out.line("drop(streams);");
         }
         out.line("drop(client);");
         out.line("handle.shutdown(std::time::Duration::from_secs(1)).await;");
@@ -354,29 +219,29 @@ let client = Client::connect(config).await?;"
     });
 }
 
-/// Runs the samples of streams.
-fn run_streams(out: &mut Source, from_robot: &[&Operation], from_app: &[&Operation]) {
-    out.line("let streams = Streams::new(client.data());\nstreams.data().connected().await?;");
-    if !from_robot.is_empty() {
-        out.line("let streamer = Streamer::new(handle.clone());");
-        let takers = from_robot
-            .iter()
-            .map(|stream| format!("subscribe_{}(&streams)", stream.name));
-        let takers: Vec<String> = takers.collect();
-        out.list("let takers = async { tokio::try_join!(", &takers, ") };");
-        out.enclose("let sending = async {", "};", |out| {
-            for stream in from_robot {
-                out.line(format!("send_{}(&streamer).await?;", stream.name));
-            }
-            out.line("Ok::<(), Box<dyn std::error::Error>>(())");
-        });
-        out.enclose("tokio::select! {", "}", |out| {
-            out.line("taken = takers => drop(taken?),");
-            out.line("sent = sending => sent?,");
-        });
+fn wait(out: &mut Source, run: &SampleRun<'_, '_>, verb: Verb) {
+    for step in run.that(verb) {
+        out.line(format!("{}.await?;", call(step)));
     }
-    for stream in from_app {
-        out.line(format!("send_{}(&streams).await?;", stream.name));
-    }
-    out.line("drop(streams);");
+}
+
+/// Runs the steps that take without end next to those that give, until the latter have ended.
+fn select(
+    out: &mut Source,
+    run: &SampleRun<'_, '_>,
+    [take, give]: [Verb; 2],
+    [giving, given]: [&str; 2],
+    about: &str,
+) {
+    let takers: Vec<String> = run.that(take).map(call).collect();
+    out.list("let takers = async { tokio::try_join!(", &takers, ") };");
+    out.enclose(&format!("let {giving} = async {{"), "};", |out| {
+        wait(out, run, give);
+        out.line("Ok::<(), Box<dyn std::error::Error>>(())");
+    });
+    out.line(about);
+    out.enclose("tokio::select! {", "}", |out| {
+        out.line("taken = takers => drop(taken?),");
+        out.line(format!("{given} = {giving} => {given}?,"));
+    });
 }

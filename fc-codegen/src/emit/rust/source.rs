@@ -1,11 +1,11 @@
 //! What rustfmt does beyond any language: attributes, arrays, imports.
 
-use crate::emit::stub::docs::{Docs, columns_of, escape_links};
-use crate::emit::stub::source::join;
-use crate::emit::stub::style::{Comment, Style};
+use crate::package::docs::{Docs, columns_of, escape_links};
+use crate::package::source::join;
+use crate::package::style::{Comment, Style};
 use std::borrow::Cow;
 
-pub use crate::emit::stub::source::Source;
+pub use crate::package::source::Source;
 
 /// Rust as rustfmt lays it out.
 pub static RUST: Style = Style {
@@ -13,8 +13,7 @@ pub static RUST: Style = Style {
     indent: "    ",
     comment: OUTER,
     link: |name| format!("[`{name}`]"),
-    elsewhere: |item| item.ty.name.to_string(),
-    integer: crate::emit::stub::digits::grouped,
+    integer: crate::package::digits::grouped,
     redacted: "Never shown by `Debug`.",
 };
 

@@ -1,10 +1,9 @@
 //! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
 
-use super::context::{Context, message, page_of};
+use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use fc_spec::model::{Direction, Operation, Side};
+use crate::package::facts;
+use fc_spec::model::{Operation, Side};
 
 /// Columns of a chain of calls on one line, as in rustfmt.
 const CHAIN_WIDTH: usize = 60;
@@ -17,7 +16,7 @@ pub fn are_any(context: &Context<'_>) -> bool {
 /// Whether any that one of these sends carries a message type.
 pub fn has_type(context: &Context<'_>, senders: &[Side]) -> bool {
     let mut sent = streams(context).filter(|stream| senders.contains(&stream.sender));
-    sent.any(|stream| json(stream).is_some())
+    sent.any(|stream| context.content(stream).is_some())
 }
 
 /// What the app's stub imports for them.
@@ -28,7 +27,7 @@ pub fn imports_of_app(context: &Context<'_>) -> Vec<&'static str> {
             names.push("DataError");
         } else {
             names.push("Subscription");
-            names.extend(json(stream).is_none().then_some("Body"));
+            names.extend(context.content(stream).is_none().then_some("Body"));
         }
     }
     names
@@ -78,8 +77,7 @@ pub fn data(&self) -> &DataConnection<{protocol}> {{
         for stream in streams(context) {
             let code = &stream.code.spelling;
             let name = &stream.name;
-            out.blank();
-            out.docs(&docs(context, stream));
+            out.documented(&facts::method_docs(context, stream, |_| ()));
             if stream.sender == Side::Robot {
                 let carried = content(context, stream).unwrap_or_else(|| "Body".to_owned());
                 out.line("#[must_use]");
@@ -133,7 +131,7 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
         ));
         for stream in streams(context).filter(|stream| stream.sender == Side::Robot) {
             let code = &stream.code.spelling;
-            let mut docs = docs(context, stream);
+            let mut docs = facts::method_docs(context, stream, |_| ());
             docs.paragraph("Returns the number of data connections that took it.");
             let (method, parameter) = sent(context, stream, "send_stream", "send_stream_json");
             let params = [
@@ -142,8 +140,7 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
                 "id: u32".to_owned(),
                 parameter,
             ];
-            out.blank();
-            out.docs(&docs);
+            out.documented(&docs);
             let open = format!("pub async fn send_{}(", stream.name);
             out.list(&open, &params, ") -> Result<usize, PushError> {");
             let sending = format!("{method}(audience, {code}, id, content)");
@@ -165,14 +162,9 @@ fn streams<'c>(context: &'c Context<'_>) -> impl Iterator<Item = &'c Operation> 
     context.package.streams.iter().map(|stream| stream.of)
 }
 
-fn json(stream: &Operation) -> Option<&fc_spec::model::Body> {
-    stream.body(Direction::Request)
-}
-
 /// The type of its content; `None` for raw bytes.
 fn content(context: &Context<'_>, stream: &Operation) -> Option<String> {
-    let body = json(stream)?;
-    Some(message(context.package.item(&body.ty)))
+    Some(format!("messages::{}", context.content(stream)?))
 }
 
 /// The method of the runtime that sends it, and the parameter with its content.
@@ -186,11 +178,4 @@ fn sent<'n>(
         Some(ty) => (json, format!("content: &{ty}")),
         None => (bytes, "content: &[u8]".to_owned()),
     }
-}
-
-fn docs<'c>(context: &Context<'_>, stream: &'c Operation) -> Docs<'c> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(context.style, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    docs
 }

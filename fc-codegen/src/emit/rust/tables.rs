@@ -3,17 +3,15 @@
 use super::constants::{Place, spelled};
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions, Record};
-use crate::surface::package::Spelled;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions, Record};
+use crate::package::items::Spelled;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
 
 /// The file.
-pub fn file(context: &Context<'_>) -> String {
+pub fn tables_file(context: &Context<'_>) -> String {
     let mut rows = Source::rust();
     let mut used = Used::default();
     for table in &context.package.tables {
@@ -80,20 +78,13 @@ fn table_function(
     context: &Context<'_>,
     table: &Spelled<'_, Table>,
 ) {
-    let mut docs = Docs::of(&table.title);
-    docs.text(&table.about);
-    if let Some(store) = &table.kept {
-        docs.paragraph(facts::kept(store));
-    }
-    docs.paragraph(context.links(&table.location, "reference/tables.md"));
-    out.docs(&docs);
+    out.docs(&about::table(context, table.of));
     out.line("#[must_use]");
     let package = &context.package;
     let row = &package.item(&table.row).ty.name;
     used.types.insert(row.to_string());
     out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
-        let samples = Samples::new(package.model);
-        let expressions = Expressions::new(package, &samples);
+        let expressions = Expressions::new(package);
         let rows = table.rows.iter();
         let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
         let rows = Expr::List(rows.collect());

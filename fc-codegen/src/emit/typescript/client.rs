@@ -6,11 +6,11 @@ use super::messages::{deprecated, union};
 use super::operations::carried;
 use super::protocol;
 use super::source::{alternatives, head, import, import_types};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::process::{is_followed, set_off};
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::process::{is_followed, set_off};
+use crate::package::source::Source;
 use fc_spec::model::{Operation, Side};
 
 /// The file.
@@ -146,7 +146,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         let reported = own(context, "Reported");
         let reports = group.reports.iter().map(|report| {
             let name = &report.request.ty.name;
-            let docs = Docs::of(&report.operation.title);
+            let docs = Docs::titled(&report.operation.title);
             (docs, format!("{reported}<'{name}', {name}>"))
         });
         let name = group.part(context, "report");

@@ -3,8 +3,8 @@
 use super::context::{Context, is_large, repr_is_large};
 use super::layout::Layout;
 use super::source::float;
-use crate::surface::expr::{Expr, Record};
-use crate::surface::package::{Item, Shape};
+use crate::package::expr::{Expr, Record};
+use crate::package::items::{Item, Shape};
 use fc_spec::model::{EnumRepr, Number, Scalar};
 use std::collections::BTreeSet;
 

@@ -1,10 +1,10 @@
 //! What the files of the package ask beyond those of any: the types of TypeScript, and what is imported from where.
 
-use crate::surface::package::{Item, Shape};
+use crate::package::items::{Item, Shape};
 use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
 
-pub use crate::emit::stub::context::{Context, page_of};
+pub use crate::package::context::{Context, page_of};
 
 /// What a `number` holds exactly.
 const SAFE: i128 = (1 << 53) - 1;

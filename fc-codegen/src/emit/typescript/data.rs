@@ -17,7 +17,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut out = "import type { Protocol } from '../src/protocol.ts'\n".to_owned();
     let variables: Vec<String> = groups.iter().map(|it| it.variable("protocol")).collect();
     for (group, variable) in groups.iter().zip(&variables) {
-        let (name, path) = (&*group.name, "/protocol.ts'\n");
+        let (name, path) = (group.name, "/protocol.ts'\n");
         out.extend(["import * as ", variable, " from './groups/", name, path]);
     }
     out.push_str("\n/** The protocol of the spec. */\nexport const protocol: Protocol = ");
@@ -35,7 +35,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
 }
 
 /// `protocol.ts` of a group. Types and operations, of which there may be many, are made one by one.
-pub fn group(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn group(samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = "import type { Operation, TypeDef } from '../../../src/protocol.ts'\n\n\
          /** The types of the group. */\n\
          export const types: Record<string, TypeDef> = "
@@ -48,8 +48,7 @@ pub fn group(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>
     out.push_str(
         "\n\n/** The operations of the group. */\nexport const operations: Operation[] = ",
     );
-    let operations = context.model().operations.iter();
-    let operations = operations.filter(|one| group.owns(one));
+    let operations = group.operations.iter();
     let operations = operations.map(|one| (String::new(), operation(samples, one)));
     spread(&mut out, ['[', ']'], operations);
     out.push('\n');

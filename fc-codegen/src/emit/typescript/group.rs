@@ -4,11 +4,12 @@
 use super::context::{Context, own};
 use super::root;
 use super::source::{Source, head, nothing};
-use crate::emit::stub::process::set_off;
-use crate::surface::language::{Role, TYPESCRIPT};
-use crate::surface::package::{Call, Item, Module, Spelled};
-use fc_spec::model::{self, Direction, Field, Operation, Side, TypeRef};
-use std::borrow::Cow;
+use crate::package::items::{Item, Spelled};
+use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::process::set_off;
+use fc_spec::model::{Direction, Field, TypeRef};
+
+pub use crate::package::group::Group;
 
 /// What a group may have.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -29,83 +30,10 @@ pub enum What {
     Types,
 }
 
-/// A group, or the types that several groups share.
-pub struct Group<'p, 'm> {
-    /// Id, of which names are made.
-    pub id: &'p str,
-    /// What its folder is called.
-    pub name: Cow<'p, str>,
-    /// The file of the spec.
-    pub from: &'p str,
-    /// Its message types, if it has any.
-    pub module: Option<&'p Module<'m>>,
-    /// The commands that have a code.
-    pub commands: Vec<Call<'p>>,
-    /// The reports that have a code.
-    pub reports: Vec<Call<'p>>,
-    /// The streams that have a code.
-    pub streams: Vec<&'p Spelled<'m, Operation>>,
-}
-
 impl<'p, 'm> Group<'p, 'm> {
-    /// Those of a package that have anything, in the order of the spec; what several share is the last.
-    pub fn all(context: &'p Context<'m>) -> Vec<Self> {
-        let package = &context.package;
-        let modules = &package.modules;
-        let groups = context.model().groups.iter().map(|group| {
-            let module = modules
-                .iter()
-                .find(|it| it.group.is_some_and(|it| it.id == group.id));
-            let spelled = || (TYPESCRIPT.spelling(Role::Module, &group.id)).unwrap_or_else(|it| it);
-            Self {
-                id: &group.id,
-                name: module.map_or_else(spelled, |it| Cow::Borrowed(&*it.name)),
-                from: &group.location.file,
-                module,
-                commands: of_group(context.commands(), &group.id),
-                reports: of_group(context.reports(), &group.id),
-                streams: package
-                    .streams
-                    .iter()
-                    .filter(|it| it.group == group.id)
-                    .collect(),
-            }
-        });
-        let shared = modules.iter().filter(|it| it.group.is_none());
-        let shared = shared.map(|module| Self {
-            id: &module.id,
-            name: Cow::Borrowed(&*module.name),
-            from: module
-                .items
-                .first()
-                .map_or("the spec", |it| &it.ty.location.file),
-            module: Some(module),
-            commands: Vec::new(),
-            reports: Vec::new(),
-            streams: Vec::new(),
-        });
-        let is_empty = |it: &Self| {
-            let mut operations = context.model().operations.iter();
-            it.module.is_none() && !operations.any(|operation| it.owns(operation))
-        };
-        groups.chain(shared).filter(|it| !is_empty(it)).collect()
-    }
-
-    /// What it is in the spec; `None` for what several groups share.
-    pub fn titled(&self, context: &Context<'m>) -> Option<&'m model::Group> {
-        let mut groups = context.model().groups.iter();
-        let shared = self.module.is_some_and(|it| it.group.is_none());
-        groups.find(|group| !shared && group.id == self.id)
-    }
-
-    /// Whether an operation is one of its own, with a code or without.
-    pub fn owns(&self, operation: &Operation) -> bool {
-        self.module.is_none_or(|it| it.group.is_some()) && operation.group == self.id
-    }
-
-    /// Its message types.
+    /// The message types.
     pub fn items(&self) -> &'p [Item<'m>] {
-        self.module.map_or(&[], |module| &module.items)
+        self.types
     }
 
     /// Whether it has that.
@@ -118,9 +46,9 @@ impl<'p, 'm> Group<'p, 'm> {
                 others.into_iter().any(|other| self.has(other))
             }
             What::Reports => !self.reports.is_empty(),
-            What::RobotStreams => self.streams.iter().any(|it| it.sender == Side::Robot),
+            What::RobotStreams => self.subscribed().next().is_some(),
             What::Streams => !self.streams.is_empty(),
-            What::Types => self.module.is_some(),
+            What::Types => !self.types.is_empty(),
         }
     }
 
@@ -156,11 +84,6 @@ impl<'p, 'm> Group<'p, 'm> {
     }
 }
 
-fn of_group<'p>(mut calls: Vec<Call<'p>>, id: &str) -> Vec<Call<'p>> {
-    calls.retain(|call| call.operation.group == id);
-    calls
-}
-
 /// Whether the absence of a field means something.
 pub fn has_default(field: &Spelled<'_, Field>) -> bool {
     field.details().default.is_some()
@@ -172,7 +95,7 @@ pub fn index(about: [&str; 2], groups: &[Group<'_, '_>], file: &str, what: What)
     let mut names: Vec<&str> = groups
         .iter()
         .filter(|it| it.has(what))
-        .map(|it| &*it.name)
+        .map(|it| it.name)
         .collect();
     if names.is_empty() {
         return nothing(out);

@@ -1,7 +1,7 @@
 //! Values as Biome lays them out: on one line where they fit and are no table.
 
 use super::source::literal;
-use crate::emit::stub::source::{Source, join};
+use crate::package::source::{Source, join};
 
 /// A value before it is laid out.
 #[derive(Clone, Debug)]

@@ -6,13 +6,13 @@ use super::context::{Context, field_type, imported, imports, own, parts, repr_is
 use super::group::Group;
 use super::source::{self, Source, alternatives, import_types, literal, tag_text};
 use super::{client, robot};
-use crate::emit::stub::about;
-use crate::emit::stub::conditions::Conditions;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
+use crate::package::about;
+use crate::package::conditions::sentence;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
+use crate::package::items::{Item, Shape, Spelled};
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
     Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
 };
@@ -24,11 +24,10 @@ pub const ABOUT: [&str; 2] = [
 ];
 
 /// `messages.ts` of a group: its message types, and what it adds to the stubs.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = source::file();
     let mut docs = Docs::default();
-    let titled = group.titled(context);
-    about::group(&mut docs, titled);
+    about::group(&mut docs, group.of);
     docs.raw("@module");
     out.docs(&docs);
     out.blank();
@@ -57,7 +56,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>)
         out.blank();
         match &item.shape {
             Shape::Record(_, fields) => {
-                structure(&mut out, context, samples, item, fields);
+                structure(&mut out, context, item, fields);
                 if let Some((command, Direction::Request)) = item.body_of() {
                     errors(&mut out, context, command);
                 }
@@ -82,7 +81,6 @@ pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
 fn structure(
     out: &mut Source,
     context: &Context<'_>,
-    samples: &Samples<'_>,
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
@@ -99,14 +97,10 @@ fn structure(
         None => facts::type_docs(context, item),
     };
     out.docs(&docs);
-    let expressions = Expressions::new(&context.package, samples);
-    let conditions = Conditions {
-        fields,
-        expressions: &expressions,
-    };
+    let expressions = Expressions::new(&context.package);
     out.block(format!("export interface {}", item.ty.name), |out| {
         for field in fields {
-            let condition = conditions.sentence(field, spelled);
+            let condition = sentence(&expressions, field, fields, spelled);
             let mut docs = facts::field_docs(context.style, field, condition);
             deprecated(&mut docs, field.details().deprecated.as_ref());
             out.docs(&docs);
@@ -197,7 +191,7 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     out.blank();
     out.docs(&docs);
     let errors = package.errors(command).map(|(error, result)| {
-        let docs = Docs::of(error.cause.as_ref().unwrap_or(&result.text));
+        let docs = Docs::titled(error.cause.as_ref().unwrap_or(&result.text));
         (docs, literal(&result.name))
     });
     alternatives(out, name, &errors.collect::<Vec<_>>());
@@ -214,7 +208,7 @@ fn choice(
     out.docs(&docs);
     let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {
-        let mut docs = Docs::of(&variant.text);
+        let mut docs = Docs::titled(&variant.text);
         facts::variant_end(&mut docs, variant);
         deprecated(&mut docs, variant.deprecated.as_ref());
         let (case, ty) = (literal(&variant.name), context.name_of(&variant.of.ty));

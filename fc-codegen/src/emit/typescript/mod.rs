@@ -20,9 +20,9 @@ mod source;
 mod tables;
 mod wire;
 
+use crate::package::language::TYPESCRIPT as LANGUAGE;
 use crate::product::{Artifact, Product};
 use crate::sample::Samples;
-use crate::surface::language::TYPESCRIPT as LANGUAGE;
 use crate::target::Targets;
 use context::Context;
 use fc_spec::model::Model;
@@ -83,7 +83,7 @@ static KINDS: [Kind; 6] = [
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, Some(targets));
     let samples = &Samples::new(model);
-    let groups = &Group::all(context);
+    let groups = &Group::all(&context.package);
     let mut files: Vec<(String, &str, String)> = Vec::new();
     for (path, text) in [
         ("client.ts", client::file(context, groups)),
@@ -91,8 +91,8 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("operations.ts", protocol::file(context, groups)),
         ("protocol.ts", data::file(context, groups)),
         ("robot.ts", robot::file(context, groups)),
-        (samples::SHOWN.file, samples::file(context, samples)),
-        ("tables.ts", tables::file(context, samples)),
+        (samples::SHOWN.file, samples::file(context)),
+        ("tables.ts", tables::file(context)),
         ("wire.ts", wire::file(context)),
     ] {
         files.push((path.to_owned(), "the spec", text));
@@ -103,16 +103,14 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         files.push((format!("{file}.ts"), "the spec", text));
         for group in groups.iter().filter(|it| it.has(kind.what)) {
             let text = (kind.text)(context, samples, group);
-            files.push((format!("groups/{}/{file}.ts", group.name), group.from, text));
+            let path = format!("groups/{}/{file}.ts", group.name);
+            files.push((path, group.file(), text));
         }
     }
     for group in groups {
-        let text = data::group(context, samples, group);
-        files.push((
-            format!("groups/{}/protocol.ts", group.name),
-            group.from,
-            text,
-        ));
+        let text = data::group(samples, group);
+        let path = format!("groups/{}/protocol.ts", group.name);
+        files.push((path, group.file(), text));
     }
     let artifact = |(path, from, text): (String, &str, String)| {
         let contents = format!(

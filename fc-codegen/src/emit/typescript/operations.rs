@@ -5,16 +5,15 @@ use super::context::{Context, page_of};
 use super::group::Group;
 use super::layout::Layout;
 use super::source::{Source, float, head, import_types, literal};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::process::{is_followed, set_off};
-use crate::emit::stub::source::join;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::items::{Call, Shape};
+use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::process::{is_followed, set_off};
+use crate::package::source::join;
 use crate::sample::{Profile, Samples};
-use crate::surface::expr::{Expr, Expressions};
-use crate::surface::language::{Role, TYPESCRIPT};
-use crate::surface::package::{Call, Shape};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type,
-    TypeRef,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef,
 };
 
 /// Members of an object.
@@ -135,7 +134,7 @@ fn write(
     types: &[String],
     members: Members,
 ) {
-    let mut docs = Docs::of(&operation.title);
+    let mut docs = Docs::titled(&operation.title);
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
     super::messages::deprecated(&mut docs, operation.deprecated.as_ref());
     out.blank();
@@ -204,7 +203,7 @@ fn example(
         return Layout::word("() => ({})");
     };
     let value = samples.body(operation, direction, Profile::Example);
-    let record = Expressions::new(&context.package, samples).record(&body.ty, &value);
+    let record = Expressions::new(&context.package).record(&body.ty, &value);
     let value = constant(context, &Expr::Record(record), false);
     Layout::Around("() => (", Box::new(value), ")")
 }
@@ -266,17 +265,11 @@ fn ties(
 
 /// The way to a field: `.data?.state`.
 fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
-    let mut holder: Option<&TypeRef> = Some(body);
     let mut out = String::new();
     let mut dot = ".";
-    for field in context.model().way(body, keys) {
-        let name = holder.map_or(field.name.as_str(), |ty| context.field_name(ty, field));
-        out.extend([dot, name]);
-        dot = if field.optional { "?." } else { "." };
-        holder = match &field.ty {
-            Type::Named(named) => Some(named),
-            _ => None,
-        };
+    for step in context.steps(body, keys) {
+        out.extend([dot, step.name]);
+        dot = if step.optional { "?." } else { "." };
     }
     out
 }

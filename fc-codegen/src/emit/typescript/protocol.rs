@@ -4,9 +4,9 @@ use super::context::Context;
 use super::group::{Group, What};
 use super::layout::Layout;
 use super::source::{Source, head, import_types};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::ranges::{self, UNKNOWN};
-use crate::surface::language::{Role, TYPESCRIPT};
+use crate::package::docs::Docs;
+use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::ranges::{self, UNKNOWN};
 use fc_spec::model::CodeRange;
 
 /// The file.
@@ -57,7 +57,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     }
 
     let protocol = &context.model().protocol;
-    let mut docs = Docs::of(&protocol.title);
+    let mut docs = Docs::titled(&protocol.title);
     docs.text(&protocol.about);
     docs.paragraph(format!("Version {} of the spec.", protocol.version));
     out.blank();

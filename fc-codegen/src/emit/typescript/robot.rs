@@ -7,11 +7,11 @@ use super::messages::deprecated;
 use super::operations::carried;
 use super::protocol::{imported, ranges};
 use super::source::{head, import, import_types};
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
-use crate::emit::stub::ranges::UNKNOWN;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Call;
+use crate::package::docs::Docs;
+use crate::package::facts;
+use crate::package::items::Call;
+use crate::package::ranges::UNKNOWN;
+use crate::package::source::Source;
 use fc_spec::model::{Effect, Side};
 
 /// The file.
@@ -121,7 +121,7 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
     let open = extending(out, "Robot", parts);
     out.block(open, |out| {
         for (name, range) in ranges(context) {
-            let mut docs = Docs::of(&range.text);
+            let mut docs = Docs::titled(&range.text);
             let (first, last) = (&range.first_spelling, &range.last_spelling);
             docs.paragraph(format!(
                 "Codes {first} to {last} without a separate method."

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::source::{file as empty, named};
-use crate::emit::stub::docs::Docs;
+use crate::package::docs::Docs;
 use fc_spec::model::Side;
 
 /// What apps and robots need of the runtime.
@@ -31,7 +31,7 @@ pub fn has(name: &str) -> bool {
 pub fn file(context: &Context<'_>) -> String {
     let mut out = empty();
     let protocol = &context.model().protocol;
-    let mut docs = Docs::of(&protocol.title);
+    let mut docs = Docs::titled(&protocol.title);
     docs.text(&protocol.about);
     docs.paragraph(format!(
         "规范版本 {}。Version {} of the spec.",

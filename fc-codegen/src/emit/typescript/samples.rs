@@ -4,36 +4,27 @@
 use super::constants::Constants;
 use super::context::{Context, imported, own};
 use super::source::{self, Source, TYPESCRIPT, import, import_types};
-use crate::emit::stub::samples as stub;
-use crate::emit::stub::style::Style;
-use crate::sample::Samples;
-use crate::surface::expr::Record;
-use crate::surface::language::{Role, TYPESCRIPT as LANGUAGE};
-use crate::surface::name::free;
-use crate::surface::package::Call;
-use fc_spec::model::{Direction, Kind, Operation, Side};
+use crate::package::expr::Record;
+use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
+use crate::package::name::free;
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::style::Style;
 use std::collections::BTreeSet;
 
 /// TypeScript as it stands on a page.
 static ON_PAGES: Style = Style {
-    width: stub::PAGE_WIDTH,
+    width: PAGE_WIDTH,
     ..TYPESCRIPT
 };
 
 /// How the pages show the package.
-pub const SHOWN: stub::Shown = stub::Shown {
+pub const SHOWN: Shown = Shown {
     fence: "ts",
     file: "samples.ts",
     language: |_| &LANGUAGE,
     style: &ON_PAGES,
-    snippets: |context, samples| Box::new(Snippets::new(context, samples)),
+    write: |out, context, sample| write(out, context, &mut Names::new(context), sample),
 };
-
-/// What makes the samples of a package.
-pub struct Snippets<'p, 'm> {
-    context: &'p Context<'m>,
-    samples: &'p Samples<'m>,
-}
 
 /// The types of messages that samples name, and the constants in them.
 struct Names<'p, 'm> {
@@ -41,153 +32,85 @@ struct Names<'p, 'm> {
     constants: Constants<'p, 'm>,
 }
 
-impl stub::Snippets for Snippets<'_, '_> {
-    fn app(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(self.context.style);
-        self.write_app(&mut out, &mut self.names(), operation)?;
-        Some(out.finish())
-    }
-
-    fn robot(&self, operation: &Operation) -> Option<String> {
-        let mut out = Source::new(self.context.style);
-        self.write_robot(&mut out, &mut self.names(), operation)?;
-        Some(out.finish())
-    }
-}
-
-impl<'p, 'm> Snippets<'p, 'm> {
-    /// Of the TypeScript package, with values from `samples`.
-    #[must_use]
-    pub fn new(context: &'p Context<'m>, samples: &'p Samples<'m>) -> Self {
-        Self { context, samples }
-    }
-
-    fn names(&self) -> Names<'p, 'm> {
-        Names {
-            types: BTreeSet::new(),
-            constants: Constants::new(self.context, ""),
-        }
-    }
-
-    fn write_app(
-        &self,
-        out: &mut Source,
-        names: &mut Names<'_, '_>,
-        operation: &Operation,
-    ) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_app_stream(out, names, operation);
-        }
-        let Call {
-            method, request, ..
-        } = self.context.package.call(operation)?;
-        if operation.kind() == Kind::Command {
-            let request = self.example(operation, Direction::Request)?;
-            names.assign(out, "request", &request);
+fn write(
+    out: &mut Source,
+    context: &Context<'_>,
+    names: &mut Names<'_, '_>,
+    sample: &Sample<'_, '_>,
+) {
+    match sample {
+        Sample::Call(call, request) => {
+            names.assign(out, "request", request);
+            let method = call.method;
             out.line(format!("const answer = await client.{method}(request)"));
             out.line("console.log(answer)");
-        } else {
-            let name = &request.ty.name;
+        }
+        Sample::Take(call) => {
+            let name = &call.request.ty.name;
             out.block("for await (const report of client.reports())", |out| {
                 out.line(format!(
                     "if (report.case === '{name}') console.log(report.value)"
                 ));
             });
         }
-        Some(())
-    }
-
-    fn write_robot(
-        &self,
-        out: &mut Source,
-        names: &mut Names<'_, '_>,
-        operation: &Operation,
-    ) -> Option<()> {
-        if operation.kind() == Kind::Stream {
-            return self.write_robot_stream(out, names, operation);
-        }
-        let call = self.context.package.call(operation)?;
-        let name = call.method;
-        if operation.kind() == Kind::Command {
-            let answer = self.example(operation, Direction::Response)?;
+        Sample::Answer(call, answer) => {
             let [request, response] =
                 [call.request, call.response].map(|it| it.ty.name.to_string());
-            let [context, soon] = ["Context", "Answer"].map(|it| own(self.context, it));
-            let parameters = [format!("request: {request}"), format!("context: {context}")];
+            let [ty, soon] = ["Context", "Answer"].map(|it| own(context, it));
+            let parameters = [format!("request: {request}"), format!("context: {ty}")];
             let close = format!("): {soon}<{response}> {{");
-            out.list(&format!("{name}("), &parameters, &close);
+            out.list(&format!("{}(", call.method), &parameters, &close);
             out.enclose("", "}", |out| {
                 out.line("console.log(context.peer, 'asks:', request)");
-                names.constants.record(&answer).write(out, "return ", "");
+                names.constants.record(answer).write(out, "return ", "");
             });
             names.types.extend([request, response]);
-        } else {
-            let report = self.example(operation, Direction::Request)?;
-            names.assign(out, "report", &report);
-            let head = format!("for (const acknowledgement of await reporter.{name}(report))");
-            out.block(head, |out| out.line("console.log(acknowledgement)"));
         }
-        Some(())
-    }
-
-    fn write_app_stream(
-        &self,
-        out: &mut Source,
-        names: &mut Names<'_, '_>,
-        stream: &Operation,
-    ) -> Option<()> {
-        let name = self.stream(stream)?;
-        if stream.sender == Side::Robot {
+        Sample::Push(call, report) => {
+            names.assign(out, "report", report);
+            let push = format!("await reporter.{}(report)", call.method);
+            out.block(format!("for (const acknowledgement of {push})"), |out| {
+                out.line("console.log(acknowledgement)");
+            });
+        }
+        Sample::Subscribe(stream) => {
+            let name = &stream.name;
             let head = format!("for await (const item of streams.subscribe{name}())");
             out.block(head, |out| out.line("console.log(item.id, item.content)"));
-        } else {
-            self.content(out, names, stream);
-            out.line(format!("await streams.send{name}(1, content)"));
         }
-        Some(())
+        Sample::Send(stream, value) => {
+            names.assign_content(out, value.as_ref());
+            out.line(format!("await streams.send{}(1, content)", stream.name));
+        }
+        Sample::Stream(stream, value) => {
+            names.assign_content(out, value.as_ref());
+            let name = &stream.name;
+            out.line(format!(
+                "const taken = await streamer.send{name}(1, content)"
+            ));
+            out.line("console.log(`${taken} data connections took it`)");
+        }
     }
+}
 
-    fn write_robot_stream(
-        &self,
-        out: &mut Source,
-        names: &mut Names<'_, '_>,
-        stream: &Operation,
-    ) -> Option<()> {
-        let name = self
-            .stream(stream)
-            .filter(|_| stream.sender == Side::Robot)?;
-        self.content(out, names, stream);
-        out.line(format!(
-            "const taken = await streamer.send{name}(1, content)"
-        ));
-        out.line("console.log(`${taken} data connections took it`)");
-        Some(())
-    }
-
-    /// What the package calls a stream; `None` without a code.
-    fn stream(&self, stream: &Operation) -> Option<&'p str> {
-        let mut streams = self.context.package.streams.iter();
-        let found = streams.find(|known| known.of.name == stream.name)?;
-        Some(&found.name)
+impl<'p, 'm> Names<'p, 'm> {
+    fn new(context: &'p Context<'m>) -> Self {
+        Self {
+            types: BTreeSet::new(),
+            constants: Constants::new(context, ""),
+        }
     }
 
     /// `const content = …`.
-    fn content(&self, out: &mut Source, names: &mut Names<'_, '_>, stream: &Operation) {
-        match self.example(stream, Direction::Request) {
-            Some(content) => names.assign(out, "content", &content),
+    fn assign_content(&mut self, out: &mut Source, value: Option<&Record<'_>>) {
+        match value {
+            Some(value) => self.assign(out, "content", value),
             None => out.line(format!(
-                "const content = new TextEncoder().encode('{}')",
-                stub::BYTES
+                "const content = new TextEncoder().encode('{BYTES}')"
             )),
         }
     }
 
-    fn example(&self, operation: &Operation, direction: Direction) -> Option<Record<'p>> {
-        stub::example(&self.context.package, self.samples, operation, direction)
-    }
-}
-
-impl Names<'_, '_> {
     /// `const name: Type = { … }`.
     fn assign(&mut self, out: &mut Source, name: &str, record: &Record<'_>) {
         let ty = &record.item.ty.name;
@@ -198,67 +121,44 @@ impl Names<'_, '_> {
 }
 
 /// `samples.ts`: all samples, and a function that runs them.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let snippets = Snippets::new(context, samples);
-    let (commands, reports) = (context.commands(), context.reports());
+pub fn file(context: &Context<'_>) -> String {
+    let run = &SampleRun::build(context);
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
-    let mut names = snippets.names();
+    let mut names = Names::new(context);
     let mut body = Source::new(&TYPESCRIPT);
     let head = format!("class {robot} implements Robot");
-    if commands.is_empty() {
+    if run.answers.is_empty() {
         body.line([&head, " {}"].concat());
     } else {
         body.block(head, |out| {
-            for command in &commands {
+            for answer in &run.answers {
                 out.blank();
-                let _ = snippets.write_robot(out, &mut names, command.operation);
+                write(out, context, &mut names, answer);
             }
         });
     }
-    let streams = [Side::Robot, Side::App].map(|side| stub::streams(&context.package, side));
-    let mut function = |word: &str, operation: &Operation, parameter: &str, is_robot: bool| {
+    for step in run.steps() {
+        let (function, [name, ty]) = (function_name(step), step.parameter());
+        let head = format!("async function {function}({name}: {ty}): Promise<void>");
         body.blank();
-        let name = function_name(word, operation);
-        let head = format!("async function {name}({parameter}): Promise<void>");
-        body.block(head, |out| {
-            let _ = if is_robot {
-                snippets.write_robot(out, &mut names, operation)
-            } else {
-                snippets.write_app(out, &mut names, operation)
-            };
-        });
-    };
-    for command in &commands {
-        function("call", command.operation, "client: Client", false);
-    }
-    for report in &reports {
-        function("take", report.operation, "client: Client", false);
-        function("push", report.operation, "reporter: Reporter", true);
-    }
-    let [from_robot, from_app] = &streams;
-    for stream in from_robot {
-        function("subscribe", stream, "streams: Streams", false);
-        function("send", stream, "streamer: Streamer", true);
-    }
-    for stream in from_app {
-        function("send", stream, "streams: Streams", false);
+        body.block(head, |out| write(out, context, &mut names, &step.sample));
     }
     body.blank();
-    run(&mut body, context, &robot, [&commands, &reports], &streams);
+    run_all(&mut body, context, &robot, run);
 
     let mut out = source::head([
         "文档中的示例代码：随软件包编译，由测试运行。",
         "The samples of the documentation: compiled with the package, and run by a test of it.",
     ]);
     let mut runtime = vec!["Platform", "ServerPlatform"];
-    if !commands.is_empty() {
+    if run.has(Verb::Call) {
         runtime.extend(["Answer", "Context"]);
     }
     let runtime: Vec<String> = runtime.iter().map(|it| imported(context, it)).collect();
     import_types(&mut out, &runtime, "../src/runtime.ts");
     let mut client = vec!["Client"];
-    client.extend((!context.package.streams.is_empty()).then_some("Streams"));
+    client.extend(run.has_streams().then_some("Streams"));
     import(&mut out, &client, "./client.ts");
     let Names { types, constants } = names;
     let enums: Vec<String> = constants.enums.into_iter().collect();
@@ -267,34 +167,39 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     import(&mut out, &enums, "./messages.ts");
     import_types(&mut out, &["Robot"], "./robot.ts");
     let mut stub = vec!["serve"];
-    stub.extend((!reports.is_empty()).then_some("Reporter"));
-    stub.extend((!from_robot.is_empty()).then_some("Streamer"));
+    stub.extend(run.has(Verb::Push).then_some("Reporter"));
+    stub.extend(run.has(Verb::Stream).then_some("Streamer"));
     import(&mut out, &stub, "./robot.ts");
     out.blank();
     out.append(&body);
     out.finish()
 }
 
-/// What the function around a sample is called.
-fn function_name(word: &str, operation: &Operation) -> String {
-    let name = format!("{word}_{}", operation.name);
-    let (Ok(name) | Err(name)) = LANGUAGE.spelling(Role::Function, &name);
+fn function_name(step: &SampleStep<'_, '_>) -> String {
+    let words = step.name();
+    let (Ok(name) | Err(name)) = LANGUAGE.spelling(Role::Function, &words);
     name.into_owned()
 }
 
-/// The function that runs them.
-fn run(
-    out: &mut Source,
-    context: &Context<'_>,
-    robot: &str,
-    [commands, reports]: [&[Call<'_>]; 2],
-    [from_robot, from_app]: &[Vec<&Operation>; 2],
-) {
-    let has_streams = !from_robot.is_empty() || !from_app.is_empty();
-    let data = if has_streams {
+fn call(step: &SampleStep<'_, '_>) -> String {
+    format!("{}({})", function_name(step), step.parameter()[0])
+}
+
+/// The function that runs all samples.
+fn run_all(out: &mut Source, context: &Context<'_>, robot: &str, run: &SampleRun<'_, '_>) {
+    let data = if run.has_streams() {
         ", dataPort: server.dataPort"
     } else {
         ""
+    };
+    let wait = |out: &mut Source, verb: Verb| {
+        for step in run.that(verb) {
+            out.line(format!("await {}", call(step)));
+        }
+    };
+    let all = |out: &mut Source, name: &str, verb: Verb| {
+        let calls: Vec<String> = run.that(verb).map(call).collect();
+        out.list(&format!("const {name} = Promise.all(["), &calls, "])");
     };
     let [app, server] = ["Platform", "ServerPlatform"].map(|it| own(context, it));
     out.line(
@@ -312,44 +217,26 @@ const host = '127.0.0.1'
 const server = await serve(robot, new {robot}(), {{ address: host, commandPort: 0, dataPort: 0 }})
 const client = await Client.connect(app, {{ host, commandPort: server.commandPort{data} }})"
         ));
-        for command in commands {
-            let name = function_name("call", command.operation);
-            out.line(format!("await {name}(client)"));
-        }
-        if !reports.is_empty() {
+        wait(out, Verb::Call);
+        if run.has(Verb::Take) {
             out.line("const reporter = new Reporter(server)");
-            let takes: Vec<String> = reports
-                .iter()
-                .map(|report| format!("{}(client)", function_name("take", report.operation)))
-                .collect();
-            out.list("const taken = Promise.all([", &takes, "])");
-            for report in reports {
-                let name = function_name("push", report.operation);
-                out.line(format!("await {name}(reporter)"));
-            }
+            all(out, "taken", Verb::Take);
+            wait(out, Verb::Push);
         }
-        if has_streams {
+        if run.has_streams() {
             out.line("const data = client.data()\nawait data.connected()\nconst streams = new Streams(data)");
         }
-        if !from_robot.is_empty() {
+        if run.has(Verb::Subscribe) {
             out.line("const streamer = new Streamer(server)");
-            let subscribes = from_robot.iter();
-            let subscribes: Vec<String> = subscribes
-                .map(|stream| format!("{}(streams)", function_name("subscribe", stream)))
-                .collect();
-            out.list("const subscribed = Promise.all([", &subscribes, "])");
+            all(out, "subscribed", Verb::Subscribe);
         }
-        for stream in from_robot {
-            out.line(format!("await {}(streamer)", function_name("send", stream)));
-        }
-        for stream in from_app {
-            out.line(format!("await {}(streams)", function_name("send", stream)));
-        }
+        wait(out, Verb::Stream);
+        wait(out, Verb::Send);
         out.line("client.close()");
-        if !from_robot.is_empty() {
+        if run.has(Verb::Subscribe) {
             out.line("await subscribed");
         }
-        if !reports.is_empty() {
+        if run.has(Verb::Take) {
             out.line("await taken");
         }
         out.line("await server.shutdown(1000)");

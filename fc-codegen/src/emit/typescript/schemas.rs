@@ -5,13 +5,13 @@ use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
 use super::group::Group;
 use super::layout::Layout;
 use super::source::{head, import, import_types};
+use crate::package::expr::Expressions;
+use crate::package::items::{Item, Shape, Spelled};
+use crate::package::language::Case;
+use crate::package::marks::{Bound, FieldMarks};
 use crate::sample::Samples;
-use crate::surface::expr::Expressions;
-use crate::surface::package::{Item, Shape, Spelled};
-use fc_spec::model::{
-    Asked, Condition, Constraint, EnumRepr, EnumType, EnumValue, Field, Quirk, Scalar, Type, Value,
-    WireForm,
-};
+use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
+use std::borrow::Cow;
 
 /// What the files of schemas say of themselves.
 pub const ABOUT: [&str; 2] = [
@@ -20,7 +20,7 @@ pub const ABOUT: [&str; 2] = [
 ];
 
 /// The schemas of a group.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(ABOUT);
     let items = group.items();
     let kinds = items.iter().map(|item| imported(context, kind(item)));
@@ -34,7 +34,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>)
             &format!("../{from}/schemas.ts"),
         );
     }
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for item in items {
         out.blank();
         let name = &item.ty.name;
@@ -55,7 +55,7 @@ fn kind(item: &Item<'_>) -> &'static str {
     }
 }
 
-fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_, '_>, item: &Item<'_>) -> Layout {
+fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_>, item: &Item<'_>) -> Layout {
     let name = &item.ty.name;
     let (is, members) = match &item.shape {
         Shape::Record(_, fields) => {
@@ -125,72 +125,51 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
 
 fn field(
     context: &Context<'_>,
-    expressions: &Expressions<'_, '_, '_>,
-    beside: &[Spelled<'_, Field>],
+    expressions: &Expressions<'_, '_>,
+    fields: &[Spelled<'_, Field>],
     field: &Spelled<'_, Field>,
 ) -> Layout {
     let details = field.details();
+    let marks = FieldMarks::build(field.of, fields);
     let large = is_large(context, field);
     let held = |field: &Field, wire: &Scalar| {
         let value = expressions.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
-    let has = |quirk| details.quirks.contains(&quirk);
-    let flags = [
-        ("optional", field.optional),
-        ("safe", is_safe(field)),
-        ("emptyIsAbsent", has(Quirk::EmptyIsAbsent)),
-        ("lenientNumber", has(Quirk::LenientNumber)),
-        ("lenientBool", has(Quirk::LenientBool)),
-        ("sensitive", field.sensitive),
+    let mut members: Vec<(Cow<'_, str>, Layout)> = vec![
+        ("key".into(), Layout::text(&field.wire)),
+        ("type".into(), type_schema(context, &field.ty)),
     ];
-    let mut members = vec![
-        ("key", Layout::text(&field.wire)),
-        ("type", type_schema(context, &field.ty)),
-    ];
-    members.extend(
-        flags
-            .into_iter()
-            .filter_map(|(key, is)| Layout::flag(key, is)),
-    );
-    if !details.also.is_empty() {
-        members.push(("also", Layout::texts(&details.also)));
+    let mut flag = |key, is| members.extend(Layout::flag(key, is));
+    flag("optional".into(), field.optional);
+    flag("safe".into(), is_safe(field));
+    for quirk in marks.quirks_in_order() {
+        flag(Case::Camel.apply(quirk), true);
     }
-    if field.wire_form != WireForm::Plain {
-        members.push(("form", Layout::text(field.wire_form.name())));
+    flag("sensitive".into(), field.sensitive);
+    if !marks.also.is_empty() {
+        members.push(("also".into(), Layout::texts(marks.also)));
     }
-    members.extend(details.constraints().map(|constraint| match constraint {
-        Constraint::Min(min) => ("min", number(min, large)),
-        Constraint::Max(max) => ("max", number(max, large)),
-        Constraint::Length(least, most) => {
-            ("length", Layout::list([least, most].map(Layout::number)))
-        }
-        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern.portable())),
-        Constraint::Only(taken) => ("only", Layout::list(taken.iter().map(|it| held(field, it)))),
-    }));
-    members.extend(
-        details
-            .default
-            .as_ref()
-            .map(|default| ("default", held(field, default))),
-    );
-    if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
-        let key = match condition {
-            Condition::When(_) => "when",
-            Condition::Unless(_) => "unless",
+    members.extend(marks.form.map(|form| ("form".into(), Layout::text(form))));
+    members.extend(marks.constraints.iter().map(|(name, bound)| {
+        let value = match bound {
+            Bound::Number(value) => number(value, large),
+            Bound::Range(least, most) => Layout::list([*least, *most].map(Layout::number)),
+            Bound::Pattern(pattern) => Layout::text(pattern),
+            Bound::Values(taken) => Layout::list(taken.iter().map(|it| held(field, it))),
         };
-        let asked = condition
-            .asked()
-            .iter()
-            .filter_map(|Asked { wire, values }| {
-                let asked = beside.iter().find(|it| it.wire == *wire)?;
-                Some((
-                    &*asked.name,
-                    Layout::list(values.iter().map(|it| held(asked, it))),
-                ))
-            });
-        members.push((key, Layout::object(asked)));
-    }
+        (Case::Camel.apply(name), value)
+    }));
+    let default = details.default.as_ref();
+    members.extend(default.map(|default| ("default".into(), held(field, default))));
+    members.extend(marks.condition.map(|condition| {
+        let asked = condition.fields.into_iter();
+        let asked = asked.map(|(asked, values)| {
+            let values = values.iter().map(|it| held(asked, it));
+            (&*asked.name, Layout::list(values))
+        });
+        (condition.word.into(), Layout::object(asked))
+    }));
     Layout::object(members)
 }
 

@@ -1,12 +1,12 @@
 //! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
 
-use crate::emit::stub::docs::{Docs, escape_links};
-use crate::emit::stub::source::join;
-use crate::emit::stub::style::{Comment, Style};
+use crate::package::docs::{Docs, escape_links};
+use crate::package::source::join;
+use crate::package::style::{Comment, Style};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 
-pub use crate::emit::stub::source::Source;
+pub use crate::package::source::Source;
 
 /// TypeScript as this package is written.
 pub static TYPESCRIPT: Style = Style {
@@ -22,7 +22,6 @@ pub static TYPESCRIPT: Style = Style {
         fence: |language| language,
     },
     link: |name| format!("{{@link {name}}}"),
-    elsewhere: |item| item.ty.name.to_string(),
     integer: |value| value.to_string(),
     redacted: "Left out by `redacted`.",
 };

@@ -6,11 +6,11 @@ use super::group::{Group, has_default};
 use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, import_types, literal, nothing};
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::facts;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::expr::{Expr, Expressions};
+use crate::package::facts;
 use crate::sample::Samples;
-use crate::surface::expr::{Expr, Expressions};
 use fc_spec::model::Value;
 
 /// What `defaults.ts` says of itself.
@@ -20,16 +20,16 @@ pub const DEFAULTS: [&str; 2] = [
 ];
 
 /// `tables.ts`.
-pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
+pub fn file(context: &Context<'_>) -> String {
     let mut out = head(about::TABLES);
     let tables = &context.package.tables;
     if tables.is_empty() {
         return nothing(out);
     }
     out.line("import * as messages from './messages.ts'");
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for table in tables {
-        let mut docs = Docs::of(&table.title);
+        let mut docs = Docs::titled(&table.title);
         docs.text(&table.about);
         if let Some(store) = &table.kept {
             docs.paragraph(facts::kept(store));
@@ -50,7 +50,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
 }
 
 /// `defaults.ts` of a group: a constant for each struct of which a field may be absent and means something then.
-pub fn defaults(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
+pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(DEFAULTS);
     import_types(
         &mut out,
@@ -58,7 +58,7 @@ pub fn defaults(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
         "../../../src/runtime.ts",
     );
     out.line("import * as messages from '../../messages.ts'");
-    let expressions = Expressions::new(&context.package, samples);
+    let expressions = Expressions::new(&context.package);
     for item in group.items() {
         let fields = item.fields().iter().filter(|it| has_default(it));
         let (keys, members): (Vec<String>, Vec<_>) = fields

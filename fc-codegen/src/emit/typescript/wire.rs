@@ -5,13 +5,14 @@ use super::layout::Layout;
 use super::operations::ack_policy;
 use super::schemas::type_schema;
 use super::source::{head, import_types};
-use crate::emit::stub::about;
-use crate::emit::stub::docs::Docs;
-use crate::emit::stub::source::Source;
-use crate::surface::package::Spelled;
+use crate::package::about;
+use crate::package::docs::Docs;
+use crate::package::items::Spelled;
+use crate::package::language::Case;
+use crate::package::source::Source;
+use crate::package::wire::WireFacts;
 use fc_spec::model::{
     DigestAlgorithm, EnvelopeField, EnvelopeRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
-    ResultRole,
 };
 
 /// What the runtime bounds where no protocol says anything of it.
@@ -86,7 +87,7 @@ fn interface(
         for field in fields {
             let ty = type_of(context, &field.ty, is_64_bit(&field.ty));
             out.blank();
-            out.docs(&Docs::of(&field.text));
+            out.docs(&Docs::titled(&field.text));
             out.line(if field.optional {
                 format!("{}?: {ty} | undefined", field.name)
             } else {
@@ -108,7 +109,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.line("/** {@link ResultCode}：各个值。Its values. */");
     out.enclose("export const ResultCode = {", "} as const", |out| {
         for result in results {
-            let mut docs = Docs::of(&result.text);
+            let mut docs = Docs::titled(&result.text);
             docs.text(&result.about);
             out.blank();
             out.docs(&docs);
@@ -120,12 +121,12 @@ fn results(out: &mut Source, context: &Context<'_>) {
 fn wire(context: &Context<'_>) -> Layout {
     let model = context.model();
     let (ports, calls) = (&model.transport.ports, &model.calls);
-    let results = ResultRole::ALL.iter().filter_map(|role| {
-        let mut results = context.package.results.iter();
-        let result = results.find(|result| result.role == Some(*role))?;
+    let wire = WireFacts::build(context);
+    let results = wire.results.iter().filter_map(|fact| {
+        let result = fact.result?;
         let code = Layout::word(format!("ResultCode.{}", result.name));
         let result = Layout::object([("code", code), ("text", Layout::text(&result.text.zh))]);
-        Some((role.name(), result))
+        Some((fact.role, result))
     });
     let defaults = [
         ("callTimeout", Layout::number(calls.timeout_ms)),
@@ -137,7 +138,7 @@ fn wire(context: &Context<'_>) -> Layout {
                 .map_or_else(|| Layout::word("null"), Layout::number),
         ),
         ("ack", ack_policy(calls.ack)),
-        ("limits", limits(context)),
+        ("limits", limits(&wire)),
     ];
     let envelopes = [
         (
@@ -161,18 +162,15 @@ fn wire(context: &Context<'_>) -> Layout {
     ])
 }
 
-fn limits(context: &Context<'_>) -> Layout {
-    let limits = &context.model().limits;
-    let bounds = [
-        ("frameBytes", limits.frame_bytes),
-        ("inflatedBytes", limits.inflated_bytes),
-        ("jsonDepth", limits.json_depth),
-        ("inFlight", limits.in_flight),
-        ("queuedReports", limits.queued_reports),
-        ("connections", limits.connections),
-    ];
-    let bounds = bounds.into_iter().chain(OWN_LIMITS);
-    Layout::lines(bounds.map(|(name, value)| (name, Layout::number(value))))
+fn limits(wire: &WireFacts<'_, '_>) -> Layout {
+    let limits = wire.limits.iter();
+    let limits = limits.map(|(name, value)| (Case::Camel.apply(name), *value));
+    let own = OWN_LIMITS.map(|(name, value)| (name.into(), value));
+    Layout::lines(
+        limits
+            .chain(own)
+            .map(|(name, value)| (name, Layout::number(value))),
+    )
 }
 
 /// An envelope, and which of its fields is for what.

@@ -1,6 +1,5 @@
 //! How a language is written: its lines, its comments, the few words that a comment cannot say without it.
 
-use crate::surface::package::Item;
 use std::borrow::Cow;
 
 /// How a language is written.
@@ -14,8 +13,6 @@ pub struct Style {
     pub comment: Comment,
     /// A name in a comment as a link to what it names.
     pub link: fn(&str) -> String,
-    /// A message type as the comments of another file name it, to be linked to.
-    pub elsewhere: fn(&Item<'_>) -> String,
     /// An integer as it stands in source text.
     pub integer: fn(i128) -> String,
     /// Says that a value is kept out of what is printed.

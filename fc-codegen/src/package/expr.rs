@@ -1,6 +1,6 @@
 //! Constants of the spec as typed expressions: the rows of its tables, the bodies of its examples.
 
-use super::package::{Item, Package, Shape, Spelled};
+use super::items::{Item, Package, Shape, Spelled};
 use crate::sample::Samples;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -46,16 +46,15 @@ pub struct Record<'p> {
 
 /// Makes expressions of checked values.
 #[derive(Debug)]
-pub struct Expressions<'s, 'p, 'm> {
+pub struct Expressions<'p, 'm> {
     package: &'p Package<'m>,
-    samples: &'s Samples<'m>,
 }
 
-impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
+impl<'p, 'm> Expressions<'p, 'm> {
     /// For the values of a package's model.
     #[must_use]
-    pub fn new(package: &'p Package<'m>, samples: &'s Samples<'m>) -> Self {
-        Self { package, samples }
+    pub fn new(package: &'p Package<'m>) -> Self {
+        Self { package }
     }
 
     /// A value of a struct, in wire form.
@@ -101,7 +100,8 @@ impl<'s, 'p, 'm> Expressions<'s, 'p, 'm> {
                 None => Expr::Unlisted(item, Box::new(plain(value))),
             },
             Shape::Choice(choice, variants) => {
-                let taken = self.samples.variant_of(choice, value);
+                let samples = Samples::new(self.package.model);
+                let taken = samples.variant_of(choice, value);
                 let is_taken =
                     |it: &&Spelled<'_, Variant>| taken.is_some_and(|of| of.name == it.of.name);
                 match variants.iter().find(is_taken) {

@@ -2,7 +2,10 @@
 
 use super::context::Context;
 use super::docs::Docs;
-use fc_spec::model::{Exchange, KeyPath, Messages, Operation, SetOff, TypeRef};
+use crate::package::items::Spelled;
+use fc_spec::model::{
+    EnumType, EnumValue, Exchange, KeyPath, Messages, Operation, SetOff, TypeRef,
+};
 
 /// The reports that a command sets off and that can be sent, with their bodies and with what ties them.
 pub fn set_off<'m>(
@@ -16,9 +19,24 @@ pub fn set_off<'m>(
     })
 }
 
-/// Whether a command sets off a report that can be followed.
+/// Returns `true` if a command sets off a report that can be followed.
 pub fn is_followed(context: &Context<'_>, command: &Operation) -> bool {
     set_off(context, command).next().is_some()
+}
+
+/// Returns `true` if the values of an enum are states of a process.
+pub fn has_states(shape: &EnumType) -> bool {
+    let mut values = shape.values.iter();
+    shape.order.is_some() || values.any(|value| value.is_final || value.is_error)
+}
+
+/// The values that follow a value, in the order of the spec.
+pub fn next_values<'v, 'm>(
+    value: &EnumValue,
+    values: &'v [Spelled<'m, EnumValue>],
+) -> impl Iterator<Item = &'v Spelled<'m, EnumValue>> {
+    let next = value.then.iter();
+    next.filter_map(|next| values.iter().find(|known| known.of.name == *next))
 }
 
 /// The key that has the state of a report, and its type.
@@ -41,8 +59,7 @@ pub fn state<'m>(
 /// Adds the paragraphs about following a command.
 pub fn docs(docs: &mut Docs<'_>, context: &Context<'_>, command: &Operation) {
     for (set_off, report, messages) in set_off(context, command) {
-        let item = context.package.item(&messages.request.ty);
-        let ty = (context.style.link)(&(context.style.elsewhere)(item));
+        let ty = (context.style.link)(context.name_of(&messages.request.ty));
         docs.raw(format!(
             "`.follow()`：先返回响应，再逐个返回它引起的 {ty}。\n\
              `.follow()` returns the response, and then each {ty} that the command sets off.",

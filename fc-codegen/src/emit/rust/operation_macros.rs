@@ -3,8 +3,8 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::emit::stub::docs::Docs;
-use crate::surface::package::{Call, Shape};
+use crate::package::docs::Docs;
+use crate::package::items::{Call, Shape};
 
 /// One of the macros.
 struct Each {

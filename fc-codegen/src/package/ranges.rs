@@ -1,7 +1,7 @@
 //! Ranges of codes that a robot handles as a whole.
 
 use super::context::Context;
-use crate::surface::name::free;
+use crate::package::name::free;
 use fc_spec::model::{CodeRange, RangeUse};
 
 /// The method for codes that nothing else handles, in words that a language joins in its own way.

@@ -4,7 +4,7 @@ use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::process;
 use super::style::Style;
-use crate::surface::package::Item;
+use crate::package::items::Item;
 use fc_spec::model::{
     Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
     Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk, Scalar,
@@ -14,7 +14,7 @@ use fc_spec::model::{
 /// The comment on a struct's field; `condition` says when it is there.
 pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>) -> Docs<'m> {
     let details = field.details();
-    let mut docs = Docs::of(&field.text);
+    let mut docs = Docs::titled(&field.text);
     docs.texts(details.note.as_ref());
     if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
@@ -29,7 +29,7 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
 
 /// The comment on a value of an enum.
 pub fn value_docs(value: &EnumValue) -> Docs<'_> {
-    let mut docs = Docs::of(&value.text);
+    let mut docs = Docs::titled(&value.text);
     if let Some(since) = &value.since {
         docs.paragraph(format!("Since {since}."));
     }
@@ -45,30 +45,40 @@ pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
     docs.paragraph(variant.available.as_ref().map_or_else(String::new, limits));
 }
 
-/// The comment on the method that calls a command; `declared` says what tells the errors apart that it declares.
+/// The comment on a method of an operation, with `more` before the links at its end.
+pub fn method_docs<'m>(
+    context: &Context<'_>,
+    operation: &'m Operation,
+    more: impl FnOnce(&mut Docs<'m>),
+) -> Docs<'m> {
+    let mut docs = operation_docs(operation);
+    operation_end(context.style, &mut docs, operation);
+    more(&mut docs);
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    docs
+}
+
+/// The comment on a method of a command; `declared` is the sentence about the type of its errors.
+pub fn command_docs<'m>(
+    context: &Context<'_>,
+    command: &'m Operation,
+    declared: impl FnOnce(&str) -> String,
+) -> Docs<'m> {
+    let error = context.package.error_type(command).map(declared);
+    method_docs(context, command, |docs| docs.raw(error.unwrap_or_default()))
+}
+
+/// The same for a method whose call can be followed.
 pub fn call_docs<'m>(
     context: &Context<'_>,
     command: &'m Operation,
     declared: impl FnOnce(&str) -> String,
 ) -> Docs<'m> {
-    let mut docs = answered_docs(context, command, declared);
-    process::docs(&mut docs, context, command);
-    docs.paragraph(context.links(&command.location, &page_of(command)));
-    docs
-}
-
-/// What the comment on a method says that calls a command and does not follow it, without the links at its end.
-pub fn answered_docs<'m>(
-    context: &Context<'_>,
-    command: &'m Operation,
-    declared: impl FnOnce(&str) -> String,
-) -> Docs<'m> {
-    let mut docs = operation_docs(command);
-    operation_end(context.style, &mut docs, command);
-    if let Some(error) = context.package.error_type(command) {
-        docs.raw(declared(error));
-    }
-    docs
+    let error = context.package.error_type(command).map(declared);
+    method_docs(context, command, |docs| {
+        docs.raw(error.unwrap_or_default());
+        process::docs(docs, context, command);
+    })
 }
 
 /// In which coordinate system something is given.
@@ -186,7 +196,7 @@ pub fn limits(available: &Available) -> String {
 
 /// What every comment on an operation starts with: title, description, what is withdrawn.
 pub fn operation_docs(operation: &Operation) -> Docs<'_> {
-    let mut docs = Docs::of(&operation.title);
+    let mut docs = Docs::titled(&operation.title);
     docs.texts(operation.about.as_ref());
     if let Some(deprecation) = &operation.deprecated {
         withdrawn(&mut docs, deprecation);
@@ -450,7 +460,7 @@ pub fn item_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
 /// The comment on a type that is not a whole body.
 pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;
-    let mut docs = Docs::of(&ty.title);
+    let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
     if let TypeShape::Struct(shape) = &ty.shape
         && let Some(system) = &shape.coordinates

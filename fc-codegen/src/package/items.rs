@@ -6,7 +6,7 @@
 use super::language::{Language, Role};
 use super::name::{Clash, Named, Scope, free};
 use fc_spec::model::{
-    DeclaredError, Direction, Entity, EnumType, EnumValue, EnvelopeField, Field, Group,
+    DeclaredError, Direction, Effect, Entity, EnumType, EnumValue, EnvelopeField, Field, Group,
     HeaderField, Kind, Messages, Model, OneOf, Operation, ResultCode, StructType, Table, Type,
     TypeDef, TypeRef, TypeShape, Variant,
 };
@@ -45,6 +45,8 @@ pub struct Package<'m> {
     methods: HashMap<&'m str, Cow<'m, str>>,
     /// The types of the ids of entities, where the language has such.
     pub ids: Vec<Spelled<'m, Entity>>,
+    /// The groups as modules.
+    pub(super) group_names: Vec<Spelled<'m, Group>>,
     types: HashSet<Cow<'m, str>>,
     /// Names that the language cannot have. A package with any of them is not to be written.
     pub clashes: Vec<Clash<'m>>,
@@ -141,13 +143,22 @@ pub struct Call<'p> {
     pub response: &'p Item<'p>,
 }
 
+impl Call<'_> {
+    /// Returns `true` unless the spec states that the command moves nothing.
+    #[must_use]
+    pub fn may_move(&self) -> bool {
+        let effect = self.operation.effect();
+        !matches!(effect, Some(Effect::Read | Effect::Config))
+    }
+}
+
 /// What the module is called whose types several groups share: the first of these that is no group.
 const SHARED: [&str; 3] = ["types", "shared", "shared_types"];
 
 impl<'m> Package<'m> {
     /// Spells every name of a protocol in this language.
     #[must_use]
-    pub fn of(model: &'m Model, language: &Language) -> Self {
+    pub fn build(model: &'m Model, language: &Language) -> Self {
         let mut names = Names::new(language);
         let mut types = Scope::new(language, Role::Type);
         let protocol = Named::alone("protocol", "protocol");
@@ -211,7 +222,7 @@ impl<'m> Package<'m> {
         let groups = names.all(Role::Module, &model.groups, |it| {
             (&it.id, Named::alone("group", &it.id))
         });
-        let (modules, places) = modules(language, groups, items);
+        let (modules, places) = modules(language, &groups, items);
         let streams = streams.into_iter().filter(|it| it.code.value.is_some());
         let envelope = |names: &mut Names<'_, 'm>, direction: Direction, keys: &'m [_]| {
             names.all(Role::Field, keys, |it: &EnvelopeField| {
@@ -227,6 +238,7 @@ impl<'m> Package<'m> {
             errors,
             methods,
             ids,
+            group_names: groups,
             tables: names.all(Role::Function, &model.tables, |it| {
                 (&it.id, Named::alone("table", &it.id))
             }),
@@ -326,6 +338,29 @@ impl<'m> Package<'m> {
         })
     }
 
+    /// The command or the report whose request a type is; `None` without a code.
+    #[must_use]
+    pub fn opened_by<'p>(&'p self, item: &'p Item<'_>) -> Option<Call<'p>> {
+        let (operation, side) = item.body_of()?;
+        let is_request = side == Direction::Request;
+        self.call(operation).filter(|_| is_request)
+    }
+
+    /// The command whose request a type is, with the enum of the errors that it declares.
+    #[must_use]
+    pub fn declared_by<'i>(&self, item: &Item<'i>) -> Option<(&'i Operation, &str)> {
+        let (command, side) = item.body_of()?;
+        let errors = self.error_type(command)?;
+        (side == Direction::Request).then_some((command, errors))
+    }
+
+    /// A stream with its name; `None` without a code.
+    #[must_use]
+    pub fn stream(&self, operation: &Operation) -> Option<&Spelled<'m, Operation>> {
+        let mut streams = self.streams.iter();
+        streams.find(|known| known.of.name == operation.name)
+    }
+
     /// The commands or the reports that have a code, by group: were they in the order of their codes, any two new
     /// ones would stand side by side, and two branches could not be merged.
     #[must_use]
@@ -346,7 +381,7 @@ fn declaring(model: &Model) -> impl Iterator<Item = &Operation> {
 #[must_use]
 pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
     let languages = languages.iter();
-    let packages = languages.map(|language| Package::of(model, language));
+    let packages = languages.map(|language| Package::build(model, language));
     packages.flat_map(|package| package.clashes).collect()
 }
 
@@ -365,7 +400,7 @@ type Place = (usize, usize);
 /// Puts each type into the module of its group; a group that has none has no module.
 fn modules<'m>(
     language: &Language,
-    groups: Vec<Spelled<'m, Group>>,
+    groups: &[Spelled<'m, Group>],
     items: Vec<Item<'m>>,
 ) -> (Vec<Module<'m>>, Vec<Place>) {
     let homes: HashSet<_> = items.iter().map(|it| it.ty.of.group.as_deref()).collect();
@@ -377,9 +412,9 @@ fn modules<'m>(
         group: None,
         items: Vec::new(),
     };
-    let groups = groups.into_iter().map(|Spelled { name, of }| Module {
+    let groups = groups.iter().map(|Spelled { name, of }| Module {
         id: of.id.clone(),
-        name,
+        name: name.clone(),
         group: Some(of),
         items: Vec::new(),
     });

@@ -63,6 +63,12 @@ impl Source {
         self.comment(&self.style.comment, docs);
     }
 
+    /// An empty line, and a documentation comment on what follows.
+    pub fn documented(&mut self, docs: &Docs<'_>) {
+        self.blank();
+        self.docs(docs);
+    }
+
     /// A comment of this kind.
     pub fn comment(&mut self, comment: &Comment, docs: &Docs<'_>) {
         let width = self.room().saturating_sub(comment.mark.len() + 1);
@@ -212,7 +218,6 @@ mod tests {
             fence: |language| language,
         },
         link: str::to_owned,
-        elsewhere: |item| item.ty.name.to_string(),
         integer: |value| value.to_string(),
         redacted: "",
     };

@@ -19,7 +19,7 @@ enum Block<'t> {
 
 impl<'t> Docs<'t> {
     /// A comment that starts with a text in both languages.
-    pub fn of(text: &'t Text) -> Self {
+    pub fn titled(text: &'t Text) -> Self {
         let mut docs = Self::default();
         docs.text(text);
         docs
@@ -31,6 +31,21 @@ impl<'t> Docs<'t> {
         for text in texts {
             docs.paragraph(*text);
         }
+        docs
+    }
+
+    /// The same in Chinese and in English, with names in it.
+    pub fn named(zh: String, en: String) -> Self {
+        let mut docs = Self::default();
+        docs.paragraph(zh);
+        docs.paragraph(en);
+        docs
+    }
+
+    /// A short comment that is written unchanged, links included.
+    pub fn linked(text: String) -> Self {
+        let mut docs = Self::default();
+        docs.raw(text);
         docs
     }
 
@@ -57,9 +72,12 @@ impl<'t> Docs<'t> {
         }
     }
 
-    /// Adds a short paragraph as it stands, links included.
+    /// Adds a short paragraph unchanged, links included, unless it is empty.
     pub fn raw(&mut self, text: impl Into<String>) {
-        self.0.push(Block::Raw(text.into()));
+        let text = text.into();
+        if !text.is_empty() {
+            self.0.push(Block::Raw(text));
+        }
     }
 
     /// Whether the first two paragraphs are a line of Chinese and the same in English.
@@ -364,12 +382,12 @@ mod tests {
             zh: "MD5".into(),
             en: "MD5".into(),
         };
-        assert_eq!(lines(&Docs::of(&same), 80), ["MD5"]);
+        assert_eq!(lines(&Docs::titled(&same), 80), ["MD5"]);
         let both = Text {
             zh: "站点".into(),
             en: "Station".into(),
         };
-        assert_eq!(lines(&Docs::of(&both), 80), ["站点", "Station"]);
+        assert_eq!(lines(&Docs::titled(&both), 80), ["站点", "Station"]);
     }
 
     #[test]
@@ -383,7 +401,7 @@ mod tests {
                 zh: zh.into(),
                 en: en.into(),
             };
-            let lines = lines(&Docs::of(&text), 80);
+            let lines = lines(&Docs::titled(&text), 80);
             assert!(lines.iter().any(String::is_empty), "{lines:?}");
         }
     }

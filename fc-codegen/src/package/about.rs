@@ -1,0 +1,138 @@
+//! Descriptions of the parts of a package, in Chinese and in English.
+
+use super::context::{Context, page_of};
+use super::docs::Docs;
+use super::facts;
+use fc_spec::model::{
+    CodeRange, DeclaredError, Entity, Group, Model, Operation, ResultCode, Table, TypeDef,
+};
+
+/// The layer below the messages.
+pub const WIRE: [&str; 2] = [
+    "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
+    "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
+];
+
+/// The envelope of requests.
+pub const REQUEST_ENVELOPE: [&str; 2] = [
+    "每个请求和上报都带的公共字段。",
+    "The keys of every request and report, in addition to those of its body.",
+];
+
+/// The envelope of responses.
+pub const RESPONSE_ENVELOPE: [&str; 2] = [
+    "每个响应和应答都带的公共字段。",
+    "The keys of every response and acknowledgement, in addition to those of its body.",
+];
+
+/// The tables of constants.
+pub const TABLES: [&str; 2] = ["规范中的常量表。", "Tables of constants in the spec."];
+
+/// Adds what the types of a module are: those of a group, or those that several share.
+pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
+    if let Some(group) = group {
+        docs.text(&group.title);
+        docs.texts(group.about.as_ref());
+    } else {
+        docs.paragraph("各分组共用的类型。");
+        docs.paragraph("Types that several groups share.");
+    }
+}
+
+/// The result codes.
+pub fn results(context: &Context<'_>) -> Docs<'static> {
+    let mut docs = Docs::said(&[
+        "结果码。用结果码判断成败，不要用随附的文字。",
+        "Result codes. Use the code to detect success, not the text that comes with it.",
+    ]);
+    if let Some(page) = context.page("reference/results.md") {
+        docs.paragraph(page);
+    }
+    docs
+}
+
+/// A result code.
+pub fn result(result: &ResultCode) -> Docs<'_> {
+    let mut docs = Docs::titled(&result.text);
+    docs.text(&result.about);
+    docs
+}
+
+/// The errors that a command declares.
+pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
+    let title = &command.title;
+    let zh = format!("{}：声明的错误", title.zh);
+    let mut docs = Docs::named(zh, format!("{}: its declared errors", title.en));
+    docs.paragraph(context.links(&command.location, &page_of(command)));
+    docs
+}
+
+/// An error that a command declares.
+pub fn error<'m>(error: &'m DeclaredError, result: &'m ResultCode) -> Docs<'m> {
+    Docs::titled(error.cause.as_ref().unwrap_or(&result.text))
+}
+
+/// The protocol.
+pub fn protocol(model: &Model) -> Docs<'_> {
+    let mut docs = Docs::titled(&model.protocol.title);
+    docs.text(&model.protocol.about);
+    docs.paragraph(format!("Version {} of the spec.", model.protocol.version));
+    docs
+}
+
+/// A table of constants.
+pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
+    let mut docs = Docs::titled(&table.title);
+    docs.text(&table.about);
+    docs.paragraph(table.kept.as_deref().map_or_else(String::new, facts::kept));
+    docs.paragraph(context.links(&table.location, "reference/tables.md"));
+    docs
+}
+
+/// The type of the ids of an entity.
+pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
+    let title = &entity.title;
+    let zh = format!("{}：ID", title.zh);
+    let mut docs = Docs::named(zh, format!("{}: its ID", title.en));
+    docs.paragraph(context.links(&entity.location, "reference/entities.md"));
+    docs
+}
+
+/// An enum, with a paragraph about values that are not in the spec.
+pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static str) -> Docs<'m> {
+    let mut docs = Docs::titled(&ty.title);
+    docs.texts(ty.about.as_ref());
+    docs.paragraph(open);
+    if let Some(since) = &ty.since {
+        docs.paragraph(format!("Since {since}."));
+    }
+    docs.paragraph(context.links(&ty.location, "reference/types.md"));
+    docs
+}
+
+/// A method for the codes of a range that a robot handles as a whole.
+pub fn range(range: &CodeRange) -> Docs<'_> {
+    let mut docs = Docs::titled(&range.text);
+    let (first, last) = (&range.first_spelling, &range.last_spelling);
+    docs.paragraph(format!(
+        "Codes {first} to {last} without a separate method."
+    ));
+    refused(&mut docs);
+    docs
+}
+
+/// A method for codes that are not in the spec.
+pub fn unknown() -> Docs<'static> {
+    let mut docs = Docs::said(&[
+        "功能码不在规范中的指令。",
+        "Commands with a code that is not in the spec.",
+    ]);
+    refused(&mut docs);
+    docs
+}
+
+/// The default of a method for requests without a type.
+fn refused(docs: &mut Docs<'_>) {
+    docs.paragraph("不实现此方法时，按未知指令拒绝。");
+    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
+}

@@ -1,0 +1,215 @@
+//! How an operation is called and answered: the samples on the pages of the documentation. A file of each package has the
+//! same samples and runs them.
+
+use super::context::Context;
+use super::source::Source;
+use super::style::Style;
+use crate::package::expr::{Expressions, Record};
+use crate::package::items::{Call, Spelled};
+use crate::package::language::Language;
+use crate::sample::Profile;
+use crate::target::Targets;
+use fc_spec::model::{Direction, Kind, Operation, Side};
+
+/// Columns of a line on a page, which is narrower than a file.
+pub const PAGE_WIDTH: usize = 80;
+
+/// A language in which the pages show every operation.
+pub struct Shown {
+    /// The language of a fence.
+    pub fence: &'static str,
+    /// The file that has all samples, below the product's place.
+    pub file: &'static str,
+    /// How names are spelled in it.
+    pub language: fn(&Targets) -> &'static Language,
+    /// How it is written on a page.
+    pub style: &'static Style,
+    /// Writes a sample.
+    pub write: fn(&mut Source, &Context<'_>, &Sample<'_, '_>),
+}
+
+/// A sample with the values in it. A stream without a value is one of bytes.
+pub enum Sample<'p, 'm> {
+    /// An app calls a command.
+    Call(Call<'p>, Record<'p>),
+    /// An app takes a report.
+    Take(Call<'p>),
+    /// An app subscribes to a stream.
+    Subscribe(&'p Spelled<'m, Operation>),
+    /// An app sends a stream.
+    Send(&'p Spelled<'m, Operation>, Option<Record<'p>>),
+    /// A robot answers a command.
+    Answer(Call<'p>, Record<'p>),
+    /// A robot pushes a report.
+    Push(Call<'p>, Record<'p>),
+    /// A robot sends a stream.
+    Stream(&'p Spelled<'m, Operation>, Option<Record<'p>>),
+}
+
+/// Bytes that a stream carries in the samples.
+pub const BYTES: &str = "any bytes";
+
+/// What an app does with an operation; `None` without a code.
+pub fn app<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
+    let example = || example(context, operation, Direction::Request);
+    Some(match operation.kind() {
+        Kind::Command => Sample::Call(context.package.call(operation)?, example()?),
+        Kind::Report => Sample::Take(context.package.call(operation)?),
+        Kind::Stream => {
+            let stream = context.package.stream(operation)?;
+            match stream.sender {
+                Side::Robot => Sample::Subscribe(stream),
+                Side::App => Sample::Send(stream, example()),
+            }
+        }
+    })
+}
+
+/// What a robot does with an operation; `None` without a code, and for a stream of the app.
+pub fn robot<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
+    let example = |direction| example(context, operation, direction);
+    Some(match operation.kind() {
+        Kind::Command => {
+            let call = context.package.call(operation)?;
+            Sample::Answer(call, example(Direction::Response)?)
+        }
+        Kind::Report => {
+            let call = context.package.call(operation)?;
+            Sample::Push(call, example(Direction::Request)?)
+        }
+        Kind::Stream => {
+            let stream = context.package.stream(operation)?;
+            if stream.sender == Side::App {
+                return None;
+            }
+            Sample::Stream(stream, example(Direction::Request))
+        }
+    })
+}
+
+/// The spec's example of a body; `None` for a stream of bytes.
+fn example<'p>(
+    context: &'p Context<'_>,
+    operation: &Operation,
+    direction: Direction,
+) -> Option<Record<'p>> {
+    let body = operation.body(direction)?;
+    let value = context
+        .samples()
+        .body(operation, direction, Profile::Example);
+    Some(Expressions::new(&context.package).record(&body.ty, &value))
+}
+
+/// All samples of a package, in the order in which a file has them.
+pub struct SampleRun<'p, 'm> {
+    /// The answers of the robot.
+    pub answers: Vec<Sample<'p, 'm>>,
+    steps: Vec<SampleStep<'p, 'm>>,
+}
+
+/// A function with a sample.
+pub struct SampleStep<'p, 'm> {
+    /// What it does.
+    pub verb: Verb,
+    /// The operation in the spec.
+    pub operation: &'p Operation,
+    /// What it shows.
+    pub sample: Sample<'p, 'm>,
+}
+
+/// What a step does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verb {
+    /// An app calls a command.
+    Call,
+    /// An app takes a report.
+    Take,
+    /// A robot pushes a report.
+    Push,
+    /// An app subscribes to a stream.
+    Subscribe,
+    /// A robot sends a stream.
+    Stream,
+    /// An app sends a stream.
+    Send,
+}
+
+impl<'p, 'm> SampleRun<'p, 'm> {
+    /// The samples of a package, with values from `samples`.
+    pub fn build(context: &'p Context<'m>) -> Self {
+        let mut steps = Vec::new();
+        let mut add = |verb, operation, sample: Option<Sample<'p, 'm>>| {
+            steps.extend(sample.map(|sample| SampleStep {
+                verb,
+                operation,
+                sample,
+            }));
+        };
+        let commands = context.commands();
+        for Call { operation, .. } in &commands {
+            add(Verb::Call, *operation, app(context, operation));
+        }
+        for Call { operation, .. } in context.reports() {
+            add(Verb::Take, operation, app(context, operation));
+            add(Verb::Push, operation, robot(context, operation));
+        }
+        let streams = context.package.streams.iter().map(|stream| stream.of);
+        for operation in streams.clone().filter(|it| it.sender == Side::Robot) {
+            add(Verb::Subscribe, operation, app(context, operation));
+            add(Verb::Stream, operation, robot(context, operation));
+        }
+        for operation in streams.filter(|it| it.sender == Side::App) {
+            add(Verb::Send, operation, app(context, operation));
+        }
+        let answers = commands.iter();
+        let answers = answers.filter_map(|it| robot(context, it.operation));
+        Self {
+            answers: answers.collect(),
+            steps,
+        }
+    }
+
+    /// All steps.
+    pub fn steps(&self) -> &[SampleStep<'p, 'm>] {
+        &self.steps
+    }
+
+    /// The steps that do this.
+    pub fn that(&self, verb: Verb) -> impl Iterator<Item = &SampleStep<'p, 'm>> {
+        self.steps.iter().filter(move |step| step.verb == verb)
+    }
+
+    /// Returns `true` if any step does this.
+    pub fn has(&self, verb: Verb) -> bool {
+        self.that(verb).next().is_some()
+    }
+
+    /// Returns `true` if any step needs the data port.
+    pub fn has_streams(&self) -> bool {
+        self.has(Verb::Subscribe) || self.has(Verb::Send)
+    }
+}
+
+impl SampleStep<'_, '_> {
+    /// The name of the function in words: `call_get_station`.
+    pub fn name(&self) -> String {
+        let verb = match self.verb {
+            Verb::Call => "call",
+            Verb::Take => "take",
+            Verb::Push => "push",
+            Verb::Subscribe => "subscribe",
+            Verb::Stream | Verb::Send => "send",
+        };
+        [verb, "_", &self.operation.name].concat()
+    }
+
+    /// The name and the type of its parameter, which is a stub.
+    pub fn parameter(&self) -> [&'static str; 2] {
+        match self.verb {
+            Verb::Call | Verb::Take => ["client", "Client"],
+            Verb::Push => ["reporter", "Reporter"],
+            Verb::Stream => ["streamer", "Streamer"],
+            Verb::Subscribe | Verb::Send => ["streams", "Streams"],
+        }
+    }
+}
