@@ -84,11 +84,10 @@ impl<'p, 'm> Group<'p, 'm> {
             reports: Vec::new(),
             streams: Vec::new(),
         });
-        let is_empty = |it: &Self| {
-            let mut operations = context.model().operations.iter();
-            it.module.is_none() && !operations.any(|operation| it.owns(operation))
-        };
-        groups.chain(shared).filter(|it| !is_empty(it)).collect()
+        groups
+            .chain(shared)
+            .filter(|it| it.has(What::Messages))
+            .collect()
     }
 
     /// What it is in the spec; `None` for what several groups share.
@@ -96,11 +95,6 @@ impl<'p, 'm> Group<'p, 'm> {
         let mut groups = context.model().groups.iter();
         let shared = self.module.is_some_and(|it| it.group.is_none());
         groups.find(|group| !shared && group.id == self.id)
-    }
-
-    /// Whether an operation is one of its own, with a code or without.
-    pub fn owns(&self, operation: &Operation) -> bool {
-        self.module.is_none_or(|it| it.group.is_some()) && operation.group == self.id
     }
 
     /// Its message types.

@@ -28,6 +28,11 @@ impl Layout {
         Self::Text(literal(text))
     }
 
+    /// A text, or `null`.
+    pub fn text_or_null(text: Option<&str>) -> Self {
+        text.map_or_else(|| Self::word("null"), Self::text)
+    }
+
     /// An integer.
     pub fn number(number: impl Into<i128>) -> Self {
         Self::Number(number.into().to_string())

@@ -13,8 +13,8 @@ use crate::surface::expr::{Expr, Expressions};
 use crate::surface::language::{Role, TYPESCRIPT};
 use crate::surface::package::{Call, Shape};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Type,
-    TypeRef,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Text,
+    Type, TypeRef,
 };
 
 /// Members of an object.
@@ -162,24 +162,27 @@ pub fn ack_policy(ack: Ack) -> Layout {
     Layout::object([("timeout", timeout), ("retries", retries)])
 }
 
+/// The command code; `null` while none is assigned.
+pub fn code(operation: &Operation) -> Layout {
+    let code = operation.code.value.map(|_| &operation.code.spelling);
+    Layout::word(code.map_or_else(|| "null".to_owned(), |it| it.to_lowercase()))
+}
+
+/// A text in both languages.
+pub fn languages(text: &Text) -> [(&'static str, Layout); 2] {
+    [
+        ("zh", Layout::text(&text.zh)),
+        ("en", Layout::text(&text.en)),
+    ]
+}
+
 /// What every operation says of itself.
 fn facts_of(operation: &Operation, is: &str) -> Members {
-    let code = operation
-        .code
-        .value
-        .map(|_| operation.code.spelling.to_lowercase());
-    let title = [
-        ("zh", Layout::text(&operation.title.zh)),
-        ("en", Layout::text(&operation.title.en)),
-    ];
     let mut members = vec![
         ("is", Layout::text(is)),
         ("name", Layout::text(&operation.name)),
-        (
-            "code",
-            Layout::word(code.unwrap_or_else(|| "null".to_owned())),
-        ),
-        ("title", Layout::object(title)),
+        ("code", code(operation)),
+        ("title", Layout::object(languages(&operation.title))),
     ];
     members.extend(
         operation

@@ -203,6 +203,7 @@ fn frame(context: &Context<'_>) -> Layout {
             ("role", Layout::text(role)),
         ])
     };
+    let headers = frame.header.iter().map(|it| Layout::object(header(it)));
     let kinds = frame.kinds.each().into_iter();
     let encodings = frame.encodings.iter();
     Layout::lines([
@@ -211,7 +212,7 @@ fn frame(context: &Context<'_>) -> Layout {
             "headerLength",
             Layout::Number(frame.header_len().to_string()),
         ),
-        ("header", Layout::list(frame.header.iter().map(header))),
+        ("header", Layout::list(headers)),
         ("requestHead", bytes(&frame.request_head)),
         ("responseHead", bytes(&frame.response_head)),
         (
@@ -225,25 +226,26 @@ fn frame(context: &Context<'_>) -> Layout {
     ])
 }
 
-fn header(field: &HeaderField) -> Layout {
-    let or_null = |word: Option<&str>| word.map_or_else(|| Layout::word("null"), Layout::text);
+/// The numbers of a header field.
+pub fn header(field: &HeaderField) -> [(&'static str, Layout); 7] {
     let ty = match field.ty {
         HeaderType::Bytes(_) => "bytes",
         _ => "uint",
     };
-    Layout::object([
+    let zero_when_plain = field.has_quirk(HeaderQuirk::ZeroWhenPlain);
+    [
         ("offset", Layout::Number(field.offset.to_string())),
         ("size", Layout::Number(field.ty.size().to_string())),
         ("type", Layout::text(ty)),
-        ("role", or_null(field.role.map(HeaderRole::name))),
+        (
+            "role",
+            Layout::text_or_null(field.role.map(HeaderRole::name)),
+        ),
         (
             "algorithm",
-            or_null(field.digest().map(DigestAlgorithm::name)),
+            Layout::text_or_null(field.digest().map(DigestAlgorithm::name)),
         ),
         ("value", Layout::number(field.value)),
-        (
-            "zeroWhenPlain",
-            Layout::word(field.has_quirk(HeaderQuirk::ZeroWhenPlain).to_string()),
-        ),
-    ])
+        ("zeroWhenPlain", Layout::word(zero_when_plain.to_string())),
+    ]
 }
