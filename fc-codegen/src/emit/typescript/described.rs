@@ -4,18 +4,17 @@
 use super::context::Context;
 use super::layout::Layout;
 use super::operations::{code, languages};
-use super::source::{head, import_types};
+use super::source::{head, named};
 use super::wire::header;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
-/// The file.
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let mut out = head([
         "协议及其文字和示例，供显示任意帧的工具使用。",
         "The protocol with its texts and examples, for tools that show any frame.",
     ]);
-    import_types(&mut out, &["Protocol"], "../src/protocol.ts");
+    named(&mut out, "import type", ["Protocol"], "../src/protocol.ts");
     let operations = &context.model().operations;
     if operations
         .iter()

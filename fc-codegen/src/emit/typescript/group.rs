@@ -1,7 +1,7 @@
 //! What the package has of a group of the spec: a folder with a file for each kind of thing. A command, a report or a
 //! stream is in the files of its group alone; the files that all groups share name groups.
 
-use super::context::{Context, own};
+use super::context::{Context, own, spelled};
 use super::root;
 use super::source::{Source, head, nothing};
 use crate::emit::stub::process::set_off;
@@ -25,7 +25,6 @@ pub enum What {
     RobotStreams,
     /// Streams that have a code.
     Streams,
-    /// Message types.
     Types,
 }
 
@@ -56,10 +55,12 @@ impl<'p, 'm> Group<'p, 'm> {
             let module = modules
                 .iter()
                 .find(|it| it.group.is_some_and(|it| it.id == group.id));
-            let spelled = || (TYPESCRIPT.spelling(Role::Module, &group.id)).unwrap_or_else(|it| it);
             Self {
                 id: &group.id,
-                name: module.map_or_else(spelled, |it| Cow::Borrowed(&*it.name)),
+                name: module.map_or_else(
+                    || Cow::Owned(spelled(Role::Module, &group.id)),
+                    |it| Cow::Borrowed(&*it.name),
+                ),
                 from: &group.location.file,
                 module,
                 commands: of_group(context.commands(), &group.id),
@@ -97,12 +98,10 @@ impl<'p, 'm> Group<'p, 'm> {
         groups.find(|group| !shared && group.id == self.id)
     }
 
-    /// Its message types.
     pub fn items(&self) -> &'p [Item<'m>] {
         self.module.map_or(&[], |module| &module.items)
     }
 
-    /// Whether it has that.
     pub fn has(&self, what: What) -> bool {
         match what {
             What::Commands => !self.commands.is_empty(),
@@ -112,7 +111,7 @@ impl<'p, 'm> Group<'p, 'm> {
                 others.into_iter().any(|other| self.has(other))
             }
             What::Reports => !self.reports.is_empty(),
-            What::RobotStreams => self.streams.iter().any(|it| it.sender == Side::Robot),
+            What::RobotStreams => !self.robot_streams().is_empty(),
             What::Streams => !self.streams.is_empty(),
             What::Types => self.module.is_some(),
         }
@@ -120,19 +119,43 @@ impl<'p, 'm> Group<'p, 'm> {
 
     /// What a type of the package is called that has a part of the stubs: `IdentityCalls` of `calls`.
     pub fn part(&self, context: &Context<'_>, word: &str) -> String {
-        let words = format!("{}_{word}", self.id);
-        let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(Role::Type, &words);
-        if root::has(&name) || TYPESCRIPT.spelling(Role::Type, &words).is_err() {
-            return [&*name, "$"].concat();
+        match TYPESCRIPT.spelling(Role::Type, &format!("{}_{word}", self.id)) {
+            Ok(name) if !root::has(&name) => own(context, &name),
+            Ok(name) | Err(name) => [&*name, "$"].concat(),
         }
-        own(context, &name)
     }
 
     /// What a file calls what it imports of it: `identityCommands` of `commands`.
     pub fn variable(&self, word: &str) -> String {
-        let words = format!("{}_{word}", self.id);
-        let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(Role::Method, &words);
-        name.into_owned()
+        spelled(Role::Method, &format!("{}_{word}", self.id))
+    }
+
+    /// Its part of something that a user names: an interface with a member for each of these, if there are any.
+    pub fn interface<T>(
+        &self,
+        out: &mut Source,
+        context: &Context<'_>,
+        [word, about]: [&str; 2],
+        members: &[T],
+        member: impl Fn(&mut Source, &T),
+    ) {
+        if members.is_empty() {
+            return;
+        }
+        out.blank();
+        out.line(about);
+        let name = self.part(context, word);
+        out.block(format!("export interface {name}"), |out| {
+            for one in members {
+                out.blank();
+                member(out, one);
+            }
+        });
+    }
+
+    pub fn robot_streams(&self) -> Vec<&'p Spelled<'m, Operation>> {
+        let streams = self.streams.iter().copied();
+        streams.filter(|it| it.sender == Side::Robot).collect()
     }
 
     /// The types that its operations name.

@@ -2,8 +2,8 @@
 //! `samples.ts`, which is compiled with the package and run by a test of it.
 
 use super::constants::Constants;
-use super::context::{Context, imported, own};
-use super::source::{self, Source, TYPESCRIPT, import, import_types};
+use super::context::{Context, imported, own, spelled};
+use super::source::{self, Source, TYPESCRIPT, named};
 use crate::emit::stub::samples as stub;
 use crate::emit::stub::style::Style;
 use crate::sample::Samples;
@@ -255,21 +255,21 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     if !commands.is_empty() {
         runtime.extend(["Answer", "Context"]);
     }
-    let runtime: Vec<String> = runtime.iter().map(|it| imported(context, it)).collect();
-    import_types(&mut out, &runtime, "../src/runtime.ts");
+    let runtime = runtime.iter().map(|it| imported(context, it));
+    named(&mut out, "import type", runtime, "../src/runtime.ts");
     let mut client = vec!["Client"];
     client.extend((!context.package.streams.is_empty()).then_some("Streams"));
-    import(&mut out, &client, "./client.ts");
+    named(&mut out, "import", client, "./client.ts");
     let Names { types, constants } = names;
-    let enums: Vec<String> = constants.enums.into_iter().collect();
-    let types: Vec<String> = types.into_iter().filter(|it| !enums.contains(it)).collect();
-    import_types(&mut out, &types, "./messages.ts");
-    import(&mut out, &enums, "./messages.ts");
-    import_types(&mut out, &["Robot"], "./robot.ts");
+    let enums = constants.enums;
+    let types = types.difference(&enums);
+    named(&mut out, "import type", types, "./messages.ts");
+    named(&mut out, "import", &enums, "./messages.ts");
+    named(&mut out, "import type", ["Robot"], "./robot.ts");
     let mut stub = vec!["serve"];
     stub.extend((!reports.is_empty()).then_some("Reporter"));
     stub.extend((!from_robot.is_empty()).then_some("Streamer"));
-    import(&mut out, &stub, "./robot.ts");
+    named(&mut out, "import", stub, "./robot.ts");
     out.blank();
     out.append(&body);
     out.finish()
@@ -278,8 +278,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
 /// What the function around a sample is called.
 fn function_name(word: &str, operation: &Operation) -> String {
     let name = format!("{word}_{}", operation.name);
-    let (Ok(name) | Err(name)) = LANGUAGE.spelling(Role::Function, &name);
-    name.into_owned()
+    spelled(Role::Function, &name)
 }
 
 /// The function that runs them.

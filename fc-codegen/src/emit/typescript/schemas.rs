@@ -3,36 +3,29 @@
 use super::constants::{constant, number};
 use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
 use super::group::Group;
-use super::layout::Layout;
-use super::source::{head, import, import_types};
+use super::layout::{Layout, Members};
+use super::source::{head, named};
 use crate::sample::Samples;
 use crate::surface::expr::Expressions;
 use crate::surface::package::{Item, Shape, Spelled};
 use fc_spec::model::{
-    Asked, Condition, Constraint, EnumRepr, EnumType, EnumValue, Field, Quirk, Scalar, Type, Value,
+    Condition, Constraint, EnumRepr, EnumType, EnumValue, Field, Quirk, Scalar, Type, Value,
     WireForm,
 };
 
-/// What the files of schemas say of themselves.
 pub const ABOUT: [&str; 2] = [
     "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
     "Schemas of the message types for the reader and the writer. The compiler checks each against its type.",
 ];
 
-/// The schemas of a group.
 pub fn file(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(ABOUT);
     let items = group.items();
     let kinds = items.iter().map(|item| imported(context, kind(item)));
-    let kinds: Vec<String> = kinds.collect();
-    import_types(&mut out, &kinds, "../../../src/schema.ts");
+    named(&mut out, "import type", kinds, "../../../src/schema.ts");
     out.line("import * as messages from '../../messages.ts'");
     for (from, names) in imports(context, group.id, items.iter().flat_map(parts)) {
-        import(
-            &mut out,
-            &names.into_iter().collect::<Vec<_>>(),
-            &format!("../{from}/schemas.ts"),
-        );
+        named(&mut out, "import", names, &format!("../{from}/schemas.ts"));
     }
     let expressions = Expressions::new(&context.package, samples);
     for item in items {
@@ -56,28 +49,30 @@ fn kind(item: &Item<'_>) -> &'static str {
 }
 
 fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_, '_>, item: &Item<'_>) -> Layout {
-    let name = &item.ty.name;
-    let (is, members) = match &item.shape {
+    let name = &*item.ty.name;
+    let is = |word| {
+        Members::default()
+            .with("is", Layout::text(word))
+            .with("name", Layout::text(name))
+    };
+    let members = match &item.shape {
         Shape::Record(_, fields) => {
             let schemas = fields.iter();
             let schemas = schemas.map(|it| (&*it.name, field(context, expressions, fields, it)));
-            ("struct", vec![("fields", Layout::lines(schemas))])
+            is("struct").with("fields", Layout::lines(schemas))
         }
-        Shape::Enum(shape, values) => {
-            let mut members = vec![("repr", Layout::text(repr(shape.repr)))];
-            members.extend(Layout::flag("closed", shape.closed));
-            members.push(("values", Layout::word(format!("messages.{name}"))));
-            members.extend(process(name, shape, values).map(|process| ("process", process)));
-            ("enum", members)
-        }
+        Shape::Enum(shape, values) => is("enum")
+            .with("repr", Layout::text(repr(shape.repr)))
+            .with("closed", Layout::flag(shape.closed))
+            .with("values", Layout::path(["messages", name]))
+            .with("process", process(name, shape, values)),
         Shape::Choice(_, variants) => {
             let form = |ty| Layout::word(format!("() => {}", context.name_of(ty)));
             let forms = variants.iter().map(|it| (&*it.name, form(&it.of.ty)));
-            ("choice", vec![("forms", Layout::lines(forms))])
+            is("choice").with("forms", Layout::lines(forms))
         }
     };
-    let named = [("is", Layout::text(is)), ("name", Layout::text(name))];
-    Layout::object(named.into_iter().chain(members))
+    members.object()
 }
 
 fn repr(repr: EnumRepr) -> &'static str {
@@ -87,16 +82,13 @@ fn repr(repr: EnumRepr) -> &'static str {
     }
 }
 
-/// What the spec says of an enum's values as states, if it says any of it.
+/// The rules for an enum's values as states, if the spec has any.
 fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Option<Layout> {
-    let name =
-        |value: &Spelled<'_, EnumValue>| Layout::word(format!("messages.{ty}.{}", value.name));
-    let those = |is: fn(&EnumValue) -> bool| -> Vec<Layout> {
-        values
-            .iter()
-            .filter(|value| is(value.of))
-            .map(name)
-            .collect()
+    let name = |value: &Spelled<'_, EnumValue>| Layout::path(["messages", ty, &value.name]);
+    let some = |list: Vec<Layout>| (!list.is_empty()).then_some(Layout::List(list));
+    let those = |is: fn(&EnumValue) -> bool| {
+        let values = values.iter().filter(|value| is(value.of));
+        some(values.map(name).collect())
     };
     let next = values.iter().filter(|value| !value.then.is_empty());
     let next = next.map(|value| {
@@ -105,22 +97,12 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
             .filter(|other| value.then.contains(&other.of.name));
         Layout::List(vec![name(value), Layout::list(follow.map(name))])
     });
-    let order = shape
-        .order
-        .map(|order| ("order", Layout::text(order.name())));
-    let lists = [
-        ("next", next.collect()),
-        ("final", those(|it| it.is_final)),
-        ("error", those(|it| it.is_error)),
-    ];
-    let lists = lists
-        .into_iter()
-        .filter(|(_, list): &(_, Vec<Layout>)| !list.is_empty());
-    let members = order
-        .into_iter()
-        .chain(lists.map(|(key, list)| (key, Layout::List(list))));
-    let members: Vec<_> = members.collect();
-    (!members.is_empty()).then(|| Layout::object(members))
+    Members::default()
+        .with("order", shape.order.map(|it| Layout::text(it.name())))
+        .with("next", some(next.collect()))
+        .with("final", those(|it| it.is_final))
+        .with("error", those(|it| it.is_error))
+        .some_object()
 }
 
 fn field(
@@ -135,63 +117,54 @@ fn field(
         let value = expressions.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
-    let has = |quirk| details.quirks.contains(&quirk);
-    let flags = [
-        ("optional", field.optional),
-        ("safe", is_safe(field)),
-        ("emptyIsAbsent", has(Quirk::EmptyIsAbsent)),
-        ("lenientNumber", has(Quirk::LenientNumber)),
-        ("lenientBool", has(Quirk::LenientBool)),
-        ("sensitive", field.sensitive),
-    ];
-    let mut members = vec![
-        ("key", Layout::text(&field.wire)),
-        ("type", type_schema(context, &field.ty)),
-    ];
-    members.extend(
-        flags
-            .into_iter()
-            .filter_map(|(key, is)| Layout::flag(key, is)),
-    );
-    if !details.also.is_empty() {
-        members.push(("also", Layout::texts(&details.also)));
+    let quirk = |quirk| Layout::flag(details.quirks.contains(&quirk));
+    let form = field.wire_form;
+    let mut members = Members::default()
+        .with("key", Layout::text(&field.wire))
+        .with("type", type_schema(context, &field.ty))
+        .with("optional", Layout::flag(field.optional))
+        .with("safe", Layout::flag(is_safe(field)))
+        .with("emptyIsAbsent", quirk(Quirk::EmptyIsAbsent))
+        .with("lenientNumber", quirk(Quirk::LenientNumber))
+        .with("lenientBool", quirk(Quirk::LenientBool))
+        .with("sensitive", Layout::flag(field.sensitive))
+        .with(
+            "also",
+            (!details.also.is_empty()).then(|| Layout::texts(&details.also)),
+        )
+        .with(
+            "form",
+            (form != WireForm::Plain).then(|| Layout::text(form.name())),
+        );
+    for constraint in details.constraints() {
+        let (key, value) = match constraint {
+            Constraint::Min(min) => ("min", number(min, large)),
+            Constraint::Max(max) => ("max", number(max, large)),
+            Constraint::Length(least, most) => {
+                ("length", Layout::list([least, most].map(Layout::number)))
+            }
+            Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern.portable())),
+            Constraint::Only(taken) => {
+                ("only", Layout::list(taken.iter().map(|it| held(field, it))))
+            }
+        };
+        members = members.with(key, value);
     }
-    if field.wire_form != WireForm::Plain {
-        members.push(("form", Layout::text(field.wire_form.name())));
-    }
-    members.extend(details.constraints().map(|constraint| match constraint {
-        Constraint::Min(min) => ("min", number(min, large)),
-        Constraint::Max(max) => ("max", number(max, large)),
-        Constraint::Length(least, most) => {
-            ("length", Layout::list([least, most].map(Layout::number)))
-        }
-        Constraint::Pattern(pattern) => ("pattern", Layout::text(pattern.portable())),
-        Constraint::Only(taken) => ("only", Layout::list(taken.iter().map(|it| held(field, it)))),
-    }));
-    members.extend(
-        details
-            .default
-            .as_ref()
-            .map(|default| ("default", held(field, default))),
-    );
+    let default = details.default.as_ref().map(|it| held(field, it));
+    members = members.with("default", default);
     if let Some(condition) = details.condition.as_ref().filter(|_| field.optional) {
         let key = match condition {
             Condition::When(_) => "when",
             Condition::Unless(_) => "unless",
         };
-        let asked = condition
-            .asked()
-            .iter()
-            .filter_map(|Asked { wire, values }| {
-                let asked = beside.iter().find(|it| it.wire == *wire)?;
-                Some((
-                    &*asked.name,
-                    Layout::list(values.iter().map(|it| held(asked, it))),
-                ))
-            });
-        members.push((key, Layout::object(asked)));
+        let asked = condition.asked().iter().filter_map(|asked| {
+            let field = beside.iter().find(|it| it.wire == asked.wire)?;
+            let values = asked.values.iter().map(|it| held(field, it));
+            Some((&*field.name, Layout::list(values)))
+        });
+        members = members.with(key, Layout::object(asked));
     }
-    Layout::object(members)
+    members.object()
 }
 
 /// What a type is in a schema.

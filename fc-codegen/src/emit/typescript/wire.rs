@@ -1,10 +1,10 @@
 //! `wire.ts`: the envelopes, the result codes, and the numbers of the protocol beneath its messages.
 
 use super::context::{Context, is_64_bit, type_of};
-use super::layout::Layout;
+use super::layout::{Layout, Members};
 use super::operations::ack_policy;
 use super::schemas::type_schema;
-use super::source::{head, import_types};
+use super::source::{head, named, property};
 use crate::emit::stub::about;
 use crate::emit::stub::docs::Docs;
 use crate::emit::stub::source::Source;
@@ -17,11 +17,15 @@ use fc_spec::model::{
 /// What the runtime bounds where no protocol says anything of it.
 const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 << 20)];
 
-/// The file.
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
     let mut out = head(about::WIRE);
-    import_types(&mut out, &["Struct", "Wire"], "../src/runtime.ts");
+    named(
+        &mut out,
+        "import type",
+        ["Struct", "Wire"],
+        "../src/runtime.ts",
+    );
     envelope(
         &mut out,
         context,
@@ -58,12 +62,11 @@ fn envelope(
         interface(out, context, name, fields);
     }
     let schemas = fields.iter().map(|field| {
-        let mut schema = vec![
-            ("key", Layout::text(&field.wire)),
-            ("type", type_schema(context, &field.ty)),
-        ];
-        schema.extend(Layout::flag("optional", field.optional));
-        (&*field.name, Layout::object(schema))
+        let schema = Members::default()
+            .with("key", Layout::text(&field.wire))
+            .with("type", type_schema(context, &field.ty))
+            .with("optional", Layout::flag(field.optional));
+        (&*field.name, schema.object())
     });
     let members = [
         ("is", Layout::text("struct")),
@@ -87,11 +90,7 @@ fn interface(
             let ty = type_of(context, &field.ty, is_64_bit(&field.ty));
             out.blank();
             out.docs(&Docs::of(&field.text));
-            out.line(if field.optional {
-                format!("{}?: {ty} | undefined", field.name)
-            } else {
-                format!("{}: {ty}", field.name)
-            });
+            out.line(property(&field.name, &ty, field.optional));
         }
     });
 }
