@@ -1,8 +1,7 @@
-// The protocol with MD5 and gzip for a browser.
+// The protocol with MD5 of the package and gzip for a browser.
 
 import { Gunzip, gzipSync } from 'fflate'
-import { md5 } from 'js-md5'
-import { protocol, type Codec, type GunzipFault } from './fc'
+import { md5, protocol, type Codec, type GunzipFault } from './fc'
 
 /** Unpacks one gzip member, giving up past `limit` bytes. */
 function gunzip(member: Uint8Array, limit: number): Uint8Array | GunzipFault {
@@ -34,7 +33,7 @@ function gunzip(member: Uint8Array, limit: number): Uint8Array | GunzipFault {
 export const codec: Codec = {
   protocol,
   algorithms: {
-    md5: (data) => Uint8Array.from(md5.array(data)),
+    md5,
     gzip: (data) => gzipSync(data, { mtime: 0 }),
     gunzip,
   },

@@ -7,6 +7,9 @@ export interface Segment {
   bytes: Uint8Array
 }
 
+/** The bytes that a frame may begin with. */
+export type Heads = readonly (readonly number[])[]
+
 interface Missing {
   missing: { line: number; offset: number; before: number }
 }
@@ -92,7 +95,7 @@ function bytesOf({ groups }: Line, cap: number, order: Order): number[] {
 }
 
 /** The bytes of a dump, or where it has a hole; `null` if the text is none. `heads` decide between two readings. */
-export function readDump(text: string, heads: number[][] = []): Dump | null {
+export function readDump(text: string, heads: Heads = []): Dump | null {
   const lines = linesOf(text)
   const first = lines[0]
   if (!first) return null
@@ -111,7 +114,7 @@ export function readDump(text: string, heads: number[][] = []): Dump | null {
 }
 
 /** The order of `xxd -e`, which its column of text or the head of a frame shows; bits where `xxd -b` printed them. */
-function orderOf(lines: Line[], heads: number[][]): Order {
+function orderOf(lines: Line[], heads: Heads): Order {
   const [first, second] = lines
   const all = (digits: RegExp) => lines.every(({ marked, groups }) => marked && groups.length > 0 && (groups[0].gap > 2 || digits.test(groups[0].digits)))
   const size = second ? Number.parseInt(second.offset, 16) - Number.parseInt(first.offset, 16) : 16
@@ -295,7 +298,7 @@ function joined(lines: Line[], offsets: number[], bytesOf: (line: Line, index: n
 }
 
 /** Numbers of `od -An`, which prints no offsets: read where a frame begins them, and only there. */
-export function readUnnumbered(text: string, heads: number[][]): Uint8Array | null {
+export function readUnnumbered(text: string, heads: Heads): Uint8Array | null {
   const tokens = text.trim().split(/\s+/)
   for (const notation of NOTATIONS) {
     // Bytes in hex are hex, and decimal numbers of several bytes are anything.

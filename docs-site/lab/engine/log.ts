@@ -3,7 +3,7 @@
 // Each line is a time, words and perhaps bytes. Those that belong to frames are told from ids, addresses and digests by
 // the words before them: where one frame begins behind these words, all bytes behind them are read.
 
-import { readDump, type Segment } from './dump'
+import { readDump, type Heads, type Segment } from './dump'
 
 /** Bytes in a line, and the columns that they take. */
 export interface Run {
@@ -77,7 +77,7 @@ export const isLog = (source: string): boolean =>
   })
 
 /** The bytes of a log; `null` if it has none that can be told from other words. */
-export function readLog(source: string, heads: number[][], spelled: Spelled): Segment[] | LogSlip | null {
+export function readLog(source: string, heads: Heads, spelled: Spelled): Segment[] | LogSlip | null {
   const begins = (bytes: Uint8Array) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
   const lines = source.split('\n')
   const dump = readDumped(lines)

@@ -2,7 +2,7 @@
 // streams remain. Segments that are no packets stay as they are.
 
 import { readUint } from '../fc'
-import type { Segment } from './dump'
+import type { Heads, Segment } from './dump'
 
 interface Packet {
   /** Addresses and ports of both ends, the sender first. */
@@ -128,7 +128,7 @@ export function parsePackets(segments: Segment[]): Segment[] {
  * The streams of captured IP packets that have frames: of a whole network, a file has other traffic as well. `tcp` is
  * the number of its TCP packets.
  */
-export function framesIn(packets: Uint8Array[], heads: number[][]): { segments: Segment[]; tcp: number } {
+export function framesIn(packets: Uint8Array[], heads: Heads): { segments: Segment[]; tcp: number } {
   const all = packets.map(inside).filter((packet) => packet !== null)
   const { found, flows } = streamsOf(all)
   const begins = ({ bytes }: Segment) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))

@@ -1,7 +1,7 @@
 // Pasted text to bytes: how engineers copy them out of their tools, and why a text is refused.
 
 import type { Text } from '../fc'
-import { readDump, readUnnumbered, type Segment } from './dump'
+import { readDump, readUnnumbered, type Heads, type Segment } from './dump'
 import { isLog, readLog, type Run } from './log'
 import { framesIn, parsePackets } from './packets'
 import { readCaptureFile } from './pcap'
@@ -31,10 +31,10 @@ const refuse = (zh: string, en: string): never => {
 /** More text than this is not read: a page should stay usable. */
 export const PASTE_LIMIT = 8 * 1024 * 1024
 
-const begins = (bytes: Uint8Array, heads: number[][]) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
+const begins = (bytes: Uint8Array, heads: Heads) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
 
 /** The streams in bytes: of a file of captured packets those with frames, of others the bytes themselves. */
-function streamsIn(bytes: Uint8Array, heads: number[][]): Segment[] {
+function streamsIn(bytes: Uint8Array, heads: Heads): Segment[] {
   const packets = readCaptureFile(bytes)
   if (!packets) return parsePackets([{ stream: 0, bytes }])
   const { segments, tcp } = framesIn(packets, heads)
@@ -51,7 +51,7 @@ function streamsIn(bytes: Uint8Array, heads: number[][]): Segment[] {
  * Reads pasted text. `heads` are the ways in which a frame can begin: they tell bytes from other words. An empty text
  * has no bytes. Throws `Refusal`.
  */
-export function readPaste(text: string, heads: number[][]): Pasted {
+export function readPaste(text: string, heads: Heads): Pasted {
   if (text.length > PASTE_LIMIT) refuse('内容太长，请分段粘贴。', 'This is too long. Paste a part of it.')
   const source = text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n')
   const alone = (spelling: Spelling, bytes: Uint8Array): Pasted => ({ spelling, segments: streamsIn(bytes, heads) })
@@ -148,7 +148,7 @@ function readBuffers(source: string): Segment[] | null {
 }
 
 /** Bytes in a line of a log that are no hex: a string literal, a list of numbers or base64. */
-function spelledIn(line: string, heads: number[][]): Run | null {
+function spelledIn(line: string, heads: Heads): Run | null {
   const literal = ESCAPE.test(line) ? /"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'/g : null
   for (const { 0: text, index } of literal ? line.matchAll(literal) : []) {
     if (ESCAPE.test(text)) return { from: index, to: index + text.length, bytes: readString(text) }
@@ -171,7 +171,7 @@ export const FILE_LIMIT = 64 * 1024 * 1024
  * The text of an opened file, for the box of the laboratory. Captured packets become a dump of their streams, and other
  * bytes a dump; a text file stays. Throws `Refusal`.
  */
-export function readFile(bytes: Uint8Array, heads: number[][]): string {
+export function readFile(bytes: Uint8Array, heads: Heads): string {
   if (bytes.length > FILE_LIMIT) refuse('文件太大，请截取一部分。', 'This file is too large. Take a part of it.')
   const isCapture = readCaptureFile(bytes) !== null
   const text = isCapture ? null : textOf(bytes)

@@ -244,9 +244,13 @@ test('the bytes of a field at fault stand out, and only they', driven, async () 
   })
 })
 
+const { struct: envelope, code: role } = protocol.envelope.response
+/** The key of the result code. */
+const RESULT = envelope.fields[role].key
+
 /** A response whose result code is no number. */
 function faulty() {
-  const json = JSON.stringify({ ...JSON.parse(command.responseExample), [protocol.resultCodeKey]: 'x' })
+  const json = JSON.stringify({ ...JSON.parse(command.responseExample), [RESULT]: 'x' })
   return { json, hex: lab.hex(lab.messageFrame(codec, command, { side: 'response', id: 1, gzip: false }, json)) }
 }
 
@@ -254,11 +258,11 @@ test('a fault in a body names the place', driven, async () => {
   await withSite(async ({ open }) => {
     await inBoth(open, async (page) => {
       await paste(page, faulty().hex)
-      assert.equal(await page.locator('[data-out=findings] .bad .fc-path').textContent(), protocol.resultCodeKey)
+      assert.equal(await page.locator('[data-out=findings] .bad .fc-path').textContent(), RESULT)
       await page.locator('[data-field=side]').selectOption('response')
       await page.locator('[data-field=operation]').selectOption(command.name)
       await page.locator('[data-field=json]').fill(faulty().json)
-      assert.equal(await page.locator('[data-out=written] .bad .fc-path').textContent(), protocol.resultCodeKey)
+      assert.equal(await page.locator('[data-out=written] .bad .fc-path').textContent(), RESULT)
     })
   })
 })

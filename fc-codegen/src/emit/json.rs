@@ -1,24 +1,10 @@
 //! Short spellings for JSON.
 
-use fc_spec::model::{Number, Text, Value};
+use fc_spec::model::{Number, Value};
 
 /// An object.
 pub(super) fn object<const N: usize>(entries: [(&str, Value); N]) -> Value {
     Value::Object(entries.map(|(key, value)| (key.to_owned(), value)).into())
-}
-
-/// An object that ends with its description in both languages.
-pub(super) fn described<'k>(
-    about: &Text,
-    entries: impl IntoIterator<Item = (&'k str, Value)>,
-) -> Value {
-    let languages = [("zh", text(&about.zh)), ("en", text(&about.en))];
-    let entries = entries.into_iter().chain(languages);
-    Value::Object(
-        entries
-            .map(|(key, value)| (key.to_owned(), value))
-            .collect(),
-    )
 }
 
 /// A string.

@@ -76,8 +76,8 @@ const ALWAYS: [&str; 17] = [
     "stubs/python/src/demo/groups/lamp.py",
     "stubs/python/tests/test_samples.py",
     "stubs/typescript/generated/groups/lamp/messages.ts",
-    "stubs/typescript/generated/groups/lamp/protocol.ts",
     "stubs/typescript/generated/groups/lamp/schemas.ts",
+    "stubs/typescript/generated/protocol.ts",
     "stubs/typescript/generated/samples.ts",
     "fc-generated/src/messages/lamp.rs",
 ];

@@ -219,7 +219,7 @@ fn a_target_is_made_for_its_audience() {
         artifacts.any(|it| it.target == target && it.contents.contains(text))
     };
     assert!(says("rust", "pub x: f64") && !says("rust", "pub y: Option<f64>"));
-    assert!(says("typescript", "\"y\""));
+    assert!(says("typescript", "key: 'y'"));
     let audiences = targets.plugins().iter().map(|it| it.audience.as_deref());
     assert_eq!(audiences.collect::<Vec<_>>(), [Some("debugging_app")]);
 

@@ -111,13 +111,8 @@ impl Value {
     #[must_use]
     pub fn pretty(&self) -> String {
         let mut out = String::new();
-        self.write_pretty(&mut out, 0);
+        self.write(&mut out, Some(0));
         out
-    }
-
-    /// The same behind what is in `out`, as a part of something that is `depth` levels deep.
-    pub fn write_pretty(&self, out: &mut String, depth: usize) {
-        self.write(out, Some(depth));
     }
 
     /// Behind what is in `out`: each item on a line of its own that is indented by its depth, or all on one line

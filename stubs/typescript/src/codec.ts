@@ -1,4 +1,4 @@
-// The codec without types: frames and bodies by a protocol as data, for tools that show what is sent.
+// Frames and bodies of any operation, for tools that show what is sent. They read bodies by the schemas of the typed messages.
 
 export type { Algorithms, Codec, GunzipFault } from './algorithms.ts'
 export { readBody } from './body.ts'
@@ -8,47 +8,22 @@ export { errorText } from './errors.ts'
 export type { ErrorName } from './errors.ts'
 export { decodeFrame, encodeFrame, headerValue, sideOf } from './frame.ts'
 export type { Decoded, FieldValue, FrameParts, Verdict } from './frame.ts'
-export { JsonFault, compact, hasLoneSurrogate, integral, parseJson } from './json.ts'
-export type {
-  Json,
-  JsonArray,
-  JsonBool,
-  JsonEntry,
-  JsonFaultName,
-  JsonNull,
-  JsonNumber,
-  JsonObject,
-  JsonString,
-} from './json.ts'
+export { hasLoneSurrogate, integral } from './json.ts'
 export { fieldOf, kindOf, operationOf } from './lookup.ts'
-export { messageFrame } from './message.ts'
+export { compact, messageFrame } from './message.ts'
 export type { MessageParts } from './message.ts'
 export type {
-  ArrayType,
   CodeRange,
   DigestAlgorithm,
   Encoding,
-  EnumDef,
-  EnumValue,
-  Envelope,
-  Field,
   HeaderField,
   HeaderRole,
-  IntName,
   Kind,
-  Limits,
-  NamedType,
-  OneOfDef,
   Operation,
   Protocol,
   Result,
-  ScalarType,
   Side,
-  StreamFacts,
-  StructDef,
   Text,
-  Type,
-  TypeDef,
-  Variant,
 } from './protocol.ts'
+export type { Limits } from './wire.ts'
 export { protocol } from '../generated/protocol.ts'

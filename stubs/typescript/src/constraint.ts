@@ -26,29 +26,30 @@ export function matches(pattern: RegExp, text: string): boolean {
   }
 }
 
-/** Asks all that a field demands of its value, which is there. Throws a `BodyError`. */
-export function check(field: FieldPlan, value: Value): void {
+/** Returns the first constraint of a field that a value breaks, as an error; `null` if it breaks none. */
+export function broken(field: FieldPlan, value: Value): BodyError | null {
   const { schema } = field
   const { key, min, max, length, only } = schema
   if (min !== undefined && !each(value, (one) => compares(one) && one >= min)) {
-    throw new BodyError('out_of_range', `at least ${min}`, key)
+    return new BodyError('out_of_range', `at least ${min}`, key)
   }
   if (max !== undefined && !each(value, (one) => compares(one) && one <= max)) {
-    throw new BodyError('out_of_range', `at most ${max}`, key)
+    return new BodyError('out_of_range', `at most ${max}`, key)
   }
   if (length !== undefined) {
     const found = measure(value)
     const [least, most] = length
     if (found < least || found > most)
-      throw new BodyError('bad_length', least === most ? `${least}` : `${least} … ${most}`, key)
+      return new BodyError('bad_length', least === most ? `${least}` : `${least} … ${most}`, key)
   }
   const { pattern } = field
   if (pattern !== null && !each(value, (one) => typeof one === 'string' && matches(pattern, one))) {
-    throw new BodyError('bad_pattern', schema.pattern ?? '', key)
+    return new BodyError('bad_pattern', schema.pattern ?? '', key)
   }
   if (only !== undefined && !each(value, (one) => (only as readonly Value[]).includes(one))) {
-    throw new BodyError('out_of_range', only.join(' | '), key)
+    return new BodyError('out_of_range', only.join(' | '), key)
   }
+  return null
 }
 
 const compares = (value: Value): value is number | bigint => typeof value === 'number' || typeof value === 'bigint'

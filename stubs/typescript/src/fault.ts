@@ -26,6 +26,15 @@ export type BodyErrorKind =
     >
   | 'too_many_values'
 
+/** A key, or the place of an item. */
+type Step = string | number
+
+/** A path from one step further out. */
+function below(step: Step, path: string): string {
+  const own = typeof step === 'number' ? `[${step}]` : step
+  return path === '' || path.startsWith('[') ? own + path : `${own}.${path}`
+}
+
 /** A body that is none of its type. It quotes no value: what peers send stays out of logs. */
 export class BodyError extends Error {
   /** The fixed name. */
@@ -46,14 +55,42 @@ export class BodyError extends Error {
   }
 
   /** Notes that it is inside this key or item. */
-  inside(step: string | number): this {
-    const own = typeof step === 'number' ? `[${step}]` : step
-    this.path = this.path === '' || this.path.startsWith('[') ? own + this.path : `${own}.${this.path}`
+  inside(step: Step): this {
+    this.path = below(step, this.path)
     this.message = this.say()
     return this
   }
 
   private say(): string {
     return `${this.path || 'the body'}: ${this.kind}, expected ${this.expected}`
+  }
+}
+
+/** The findings of a reader that goes on behind errors, in its order. */
+export class Findings {
+  /** All errors. */
+  readonly faults: BodyError[] = []
+  /** Paths of the keys and enum values that the spec does not know. */
+  readonly unknown: string[] = []
+  private readonly steps: Step[] = []
+
+  /** Goes to the value of a key or an item. */
+  enter(step: Step): void {
+    this.steps.push(step)
+  }
+
+  /** Goes back behind it. */
+  leave(): void {
+    this.steps.pop()
+  }
+
+  /** Notes an error, whose path begins here. */
+  fault(problem: BodyError): void {
+    this.faults.push(this.steps.reduceRight<BodyError>((fault, step) => fault.inside(step), problem))
+  }
+
+  /** Notes an unknown key here, or the value at hand. */
+  unknownAt(path: string): void {
+    this.unknown.push(this.steps.reduceRight<string>((inner, step) => below(step, inner), path))
   }
 }

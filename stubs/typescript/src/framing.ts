@@ -53,6 +53,10 @@ export class Framing {
   readonly idMax: number
   /** The longest frame. */
   readonly frameBytes: number
+  /** The encoding of data that is not compressed. */
+  readonly plain: number
+  /** The encoding of compressed data; `null` if the protocol has none. */
+  readonly gzip: number | null
   private readonly layout: FrameLayout
   private readonly limits: FrameLimits
   private readonly algorithms: PlatformAlgorithms
@@ -61,8 +65,6 @@ export class Framing {
   private readonly fixed: readonly WireField[]
   private readonly code: Check
   private readonly id: Check
-  private readonly plain: number
-  private readonly gzip: number | null
   private readonly reports: number
   private readonly roles: ReadonlyMap<number, string>
 
@@ -129,7 +131,8 @@ export class Framing {
     return this.headerLength + data.length <= this.frameBytes
   }
 
-  private seal(id: FrameId, sent: Uint8Array, plainLength: number, encoding: number): Uint8Array {
+  /** Makes a frame of data in its encoding. */
+  seal(id: FrameId, sent: Uint8Array, plainLength: number, encoding: number): Uint8Array {
     const { layout, fields } = this
     const frame = room(this.headerLength + sent.length)
     frame.fill(0, 0, this.headerLength)

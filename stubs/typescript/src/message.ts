@@ -1,10 +1,13 @@
 // A message of an operation to its frame.
 
 import type { Codec } from './algorithms.ts'
+import { BodyError } from './fault.ts'
 import { encodeFrame } from './frame.ts'
-import { compact } from './json.ts'
 import { kindOf } from './lookup.ts'
 import type { Operation, Side } from './protocol.ts'
+import { judge } from './read.ts'
+import { utf8Of } from './room.ts'
+import { ANY } from './scanner.ts'
 
 /** What a message's frame says beside its body. */
 export interface MessageParts {
@@ -34,4 +37,30 @@ export function messageFrame(
     // Indentation is for people.
     data: new TextEncoder().encode(compact(json, codec.protocol.limits.jsonDepth)),
   })
+}
+
+const WHITE = ' \t\n\r'
+
+/** Drops white space outside strings, and touches nothing else: numbers keep their spelling. What is not JSON stays as it is. */
+export function compact(text: string, maxDepth: number): string {
+  try {
+    judge(utf8Of(text), { ...ANY, depth: maxDepth })
+  } catch (problem) {
+    if (!(problem instanceof BodyError)) throw problem
+    return text
+  }
+  // No regular expression: one for strings with escapes fills the stack where there are millions of these.
+  let bare = ''
+  let from = 0
+  let quoted = false
+  for (let at = 0; at < text.length; at++) {
+    const character = text.charAt(at)
+    if (character === '"') quoted = !quoted
+    else if (quoted && character === '\\') at++
+    else if (!quoted && WHITE.includes(character)) {
+      bare += text.slice(from, at)
+      from = at + 1
+    }
+  }
+  return bare + text.slice(from)
 }

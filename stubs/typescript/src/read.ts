@@ -2,15 +2,17 @@
 
 import { bytesOfBase64 } from './base64.ts'
 import { decoded } from './characters.ts'
-import { check } from './constraint.ts'
+import { broken } from './constraint.ts'
+import { isKnown } from './enums.ts'
 import { BodyError } from './fault.ts'
+import type { Findings } from './fault.ts'
 import { beforeRounding } from './floats.ts'
 import { integral } from './json.ts'
 import { isList, joint, named, planOf } from './plan.ts'
 import type { FieldPlan, Named, StructPlan, Value } from './plan.ts'
 import { ANY, CLOSE_LIST, CLOSE_OBJECT, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
-import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
 /** An object as it is being made. */
 type Made = Record<string, Value>
@@ -73,18 +75,42 @@ export function readEnveloped<E, M>(
   data: Uint8Array,
   allowance: Allowance,
 ): Enveloped<E, M> {
-  const first = plan(envelope)
-  const second = plan(message)
   try {
-    return whole(data, allowance, joint(first, second), (slots, extra) => ({
-      envelope: finish(first, slots, 0, null) as E,
-      message: finish(second, slots, first.fields.length, extra) as M,
-    }))
+    return both(envelope, message, data, allowance, null)
   } catch (problem) {
     judge(data, allowance)
     readAlone(envelope, data)
     throw problem
   }
+}
+
+/**
+ * Reads the same of a body that is JSON, and goes on behind each error. A value with an error is left out. Throws a `BodyError`
+ * for any other value than an object.
+ */
+export function readAll<E, M>(
+  envelope: Struct<E>,
+  message: Struct<M>,
+  data: Uint8Array,
+  findings: Findings,
+): Enveloped<E, M> {
+  return both(envelope, message, data, ANY, findings)
+}
+
+function both<E, M>(
+  envelope: Struct<E>,
+  message: Struct<M>,
+  data: Uint8Array,
+  allowance: Allowance,
+  findings: Findings | null,
+): Enveloped<E, M> {
+  const first = plan(envelope)
+  const second = plan(message)
+  const make = (slots: readonly Value[], extra: readonly ExtraKey[] | null): Enveloped<E, M> => ({
+    envelope: finish(first, slots, 0, null, findings) as E,
+    message: finish(second, slots, first.fields.length, extra, findings) as M,
+  })
+  return whole(data, allowance, joint(first, second), make, findings)
 }
 
 /** Reads the envelope alone, whatever the message is. Throws a `BodyError`. */
@@ -95,7 +121,7 @@ export function readEnvelope<E>(envelope: Struct<E>, data: Uint8Array, allowance
 
 function readAlone<E>(envelope: Struct<E>, data: Uint8Array): E {
   const only = plan(envelope)
-  return whole(data, ANY, only, (slots) => finish(only, slots, 0, null)) as E
+  return whole(data, ANY, only, (slots) => finish(only, slots, 0, null, null)) as E
 }
 
 const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct)
@@ -109,8 +135,9 @@ function whole<T>(
   allowance: Allowance,
   plan: StructPlan,
   make: (slots: readonly Value[], extra: readonly ExtraKey[] | null, plan: StructPlan) => T,
+  findings: Findings | null = null,
 ): T {
-  const scanner = new Scanner(data.length === 0 ? NOTHING : data, allowance)
+  const scanner = new Scanner(data.length === 0 ? NOTHING : data, allowance, findings)
   if (scanner.peek() !== OBJECT) throw new BodyError('not_an_object', '{ … }')
   const slots = new Array<Value>(plan.fields.length)
   const extra = readFields(scanner, plan, slots)
@@ -120,7 +147,7 @@ function whole<T>(
 }
 
 const message = (slots: readonly Value[], extra: readonly ExtraKey[] | null, plan: StructPlan): Made =>
-  finish(plan, slots, 0, extra)
+  finish(plan, slots, 0, extra, null)
 
 /** Throws what is wrong with a body as JSON, whatever its value is. */
 export function judge(data: Uint8Array, allowance: Allowance): void {
@@ -133,7 +160,7 @@ export function judge(data: Uint8Array, allowance: Allowance): void {
 
 function readObject(scanner: Scanner, plan: StructPlan): Made {
   const slots = new Array<Value>(plan.fields.length)
-  return finish(plan, slots, 0, readFields(scanner, plan, slots))
+  return finish(plan, slots, 0, readFields(scanner, plan, slots), scanner.findings)
 }
 
 /** Reads the values of an object into their slots, and gives the keys that the plan does not have. */
@@ -157,6 +184,7 @@ function readFields(scanner: Scanner, { fields, byKey }: StructPlan, slots: Valu
       readField(scanner, field, key, slots)
     } else {
       scanner.count(1)
+      scanner.findings?.unknownAt(key)
       extra ??= []
       extra.push({ key, json: scanner.valueText() })
     }
@@ -178,15 +206,21 @@ function inOrder(scanner: Scanner, fields: readonly FieldPlan[], from: number): 
 /** Reads the value of a field behind its key, which may be another than the one that is sent. */
 function readField(scanner: Scanner, field: FieldPlan, key: string, slots: Value[]): void {
   const { schema, slot } = field
+  const { at, depth, findings } = scanner
   scanner.count(1)
-  if (slots[slot] !== undefined) throw new BodyError('duplicate_key', 'each key once', key)
-  const empty = schema.optional === true && (schema.emptyIsAbsent === true ? scanner.takeEmpty() : scanner.takeNull())
+  findings?.enter(key)
   try {
+    if (slots[slot] !== undefined) throw new BodyError('duplicate_key', 'each key once')
+    const empty = schema.optional === true && (schema.emptyIsAbsent === true ? scanner.takeEmpty() : scanner.takeNull())
     slots[slot] = empty ? ABSENT : readValue(scanner, schema.type, schema)
   } catch (problem) {
-    if (problem instanceof BodyError) throw problem.inside(key)
-    throw problem
+    if (!(problem instanceof BodyError)) throw problem
+    if (findings === null) throw problem.inside(key)
+    findings.fault(problem)
+    scanner.skipFrom(at, depth)
+    slots[slot] ??= ABSENT
   }
+  findings?.leave()
 }
 
 /** Makes a message of the values of its fields, which begin at a slot, in their order. */
@@ -195,21 +229,29 @@ function finish(
   slots: readonly Value[],
   from: number,
   extra: readonly ExtraKey[] | null,
+  findings: Findings | null,
 ): Made {
   const made: Made = {}
   for (let index = 0; index < fields.length; index++) {
     const { name, schema } = fields[index] as FieldPlan
     const value = slots[from + index]
     if (value === undefined) {
-      if (schema.optional !== true) throw new BodyError('missing_field', schema.key, schema.key)
+      if (schema.optional !== true) fail(new BodyError('missing_field', schema.key, schema.key), findings)
     } else if (value !== ABSENT) made[name] = value
   }
   for (const field of constrained) {
     const value = made[field.name]
-    if (value !== undefined) check(field, value)
+    const fault = value === undefined ? null : broken(field, value)
+    if (fault !== null) fail(fault, findings)
   }
   if (extra !== null) made['extra'] = extra
   return made
+}
+
+/** Throws an error, or notes it where the reader goes on. */
+function fail(problem: BodyError, findings: Findings | null): void {
+  if (findings === null) throw problem
+  findings.fault(problem)
 }
 
 function readValue(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Value {
@@ -240,12 +282,16 @@ function readList(scanner: Scanner, type: TypeSchema, schema: FieldSchema): Valu
   scanner.enter()
   if (scanner.endsAtOnce(CLOSE_LIST)) return items
   const item = typeof type === 'function' ? named(type) : null
+  const { findings } = scanner
   try {
     do {
       scanner.count(1)
+      findings?.enter(items.length)
       items.push(item ? readNamed(scanner, item, schema) : readValue(scanner, type, schema))
+      findings?.leave()
     } while (scanner.goesOn(CLOSE_LIST))
   } catch (problem) {
+    findings?.leave()
     if (problem instanceof BodyError) throw problem.inside(items.length)
     throw problem
   }
@@ -271,7 +317,7 @@ const isAmong = ({ schema }: FieldPlan, keys: ReadonlySet<string>): boolean =>
   keys.has(schema.key) || (schema.also?.some((key) => keys.has(key)) ?? false)
 
 function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
-  let value: Value
+  let value: EnumValueOf
   if (type.repr === 'string') {
     if (scanner.peek() !== STRING) throw new BodyError('wrong_type', '" … "')
     value = scanner.string()
@@ -279,13 +325,9 @@ function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
   if (type.closed === true && !isKnown(type, value)) {
     throw new BodyError('unknown_value', Object.values(type.values).join(' | '))
   }
+  // A field that takes only some values refuses the others.
+  if (scanner.findings !== null && schema.only === undefined && !isKnown(type, value)) scanner.findings.unknownAt('')
   return value
-}
-
-/** Whether an enum has this value. */
-export function isKnown(type: AnyEnum, value: Value): boolean {
-  for (const known of Object.values(type.values)) if (known === value) return true
-  return false
 }
 
 function readBool(scanner: Scanner, { form, lenientBool }: FieldSchema): boolean {

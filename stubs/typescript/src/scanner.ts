@@ -5,6 +5,7 @@
 
 import { decoded, isAscii, oneForEach } from './characters.ts'
 import { BodyError } from './fault.ts'
+import type { Findings } from './fault.ts'
 import { hasLoneSurrogate } from './json.ts'
 
 /** What reading one body may cost. */
@@ -71,18 +72,22 @@ const TENS = Array.from({ length: EXACT + 1 }, (_, power) => 10 ** power)
 export class Scanner {
   /** Bytes read. */
   at: number
+  /** Levels that may still be entered. */
+  depth: number
+  /** Takes errors where the reader goes on behind them; `null` where it stops at the first. */
+  readonly findings: Findings | null
   private readonly bytes: Uint8Array
   private readonly end: number
   /** A character for each byte. */
   private readonly text: string
-  private depth: number
   private values: number
   /** The string that has been read last has an escape. */
   private escaped = false
 
   /** A place at the start of a text. */
-  constructor(bytes: Uint8Array, allowance: Allowance) {
+  constructor(bytes: Uint8Array, allowance: Allowance, findings: Findings | null = null) {
     this.at = 0
+    this.findings = findings
     this.bytes = bytes
     this.end = bytes.length
     this.text = oneForEach(bytes)
@@ -303,6 +308,13 @@ export class Scanner {
       } else this.skipScalar(code)
       if (!this.toNextValue(closing)) return
     }
+  }
+
+  /** Goes back to the place in front of a value, and skips the value. */
+  skipFrom(at: number, depth: number): void {
+    this.at = at
+    this.depth = depth
+    this.skip()
   }
 
   /** Behind a value: goes to the next one inside the brackets that are open; false if all are closed. */

@@ -1,16 +1,17 @@
 // Messages as bodies. What a message breaks of its own constraints is found before anything is sent.
 
 import { base64Of } from './base64.ts'
-import { check } from './constraint.ts'
+import { broken } from './constraint.ts'
+import { isKnown } from './enums.ts'
 import { BodyError } from './fault.ts'
 import { hasLoneSurrogate } from './json.ts'
 import { isList, named, planOf } from './plan.ts'
 import type { AnyStruct, FieldPlan, Named, Value } from './plan.ts'
-import { INTEGERS, SMALL, isKnown, shortFloat } from './read.ts'
+import { INTEGERS, SMALL, shortFloat } from './read.ts'
 import { utf8Of } from './room.ts'
 import { Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
-import type { AnyEnum, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
 /** A message with the struct that describes it. */
 type Part = readonly [struct: AnyStruct, message: Value]
@@ -105,7 +106,8 @@ function writeField(field: FieldPlan, value: Value): string {
     if (problem instanceof BodyError) throw problem.inside(schema.key)
     throw problem
   }
-  if (field.isConstrained) check(field, value)
+  const fault = field.isConstrained ? broken(field, value) : null
+  if (fault !== null) throw fault
   return text
 }
 
@@ -206,7 +208,7 @@ function writeNamed(type: Named, schema: FieldSchema, value: Value): string {
 function writeEnum(type: AnyEnum, schema: FieldSchema, value: Value): string {
   const text =
     type.repr === 'string' ? writeText(value) : inForm(schema, integer(type.repr, schema.safe === true, value))
-  if (type.closed === true && !isKnown(type, value)) {
+  if (type.closed === true && !isKnown(type, value as EnumValueOf)) {
     throw new BodyError('unknown_value', Object.values(type.values as Record<string, Value>).join(' | '))
   }
   return text

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { readBody } from 'fc-protocol/codec'
-import { ONE_KEY, ofOneKey } from './support.mjs'
+import { bare, ofOneKey } from './support.mjs'
 
 /** type, value, its length; `null` if it has none because it is at fault. */
 const CASES = [
@@ -35,7 +35,7 @@ for (const [type, value, length] of CASES) {
   test(`${type} '${value}'`, () => {
     const data = new TextEncoder().encode(JSON.stringify({ value }))
     const fault = (low, high) =>
-      readBody(ofOneKey(type, { length: [low, high] }), ONE_KEY, 'request', data).faults[0]?.name ?? null
+      readBody(bare, ofOneKey(type, { length: [low, high] }), 'request', data).faults[0]?.name ?? null
     if (length === null) return assert.equal(fault(0, 9), 'bad_base64')
     assert.equal(fault(length, length), null)
     assert.equal(fault(length + 1, length + 1), 'bad_length')
@@ -59,11 +59,11 @@ const BOOLS = [
 /** What no bool is sent as. */
 const NO_BOOLS = ['2', '-1', '0.5', '1e99', '"1"', '"0"', '"yes"', '""', '[]', '[1]', '{}']
 
-const FORMS = [{}, { wireString: true }, { wireNumber: true }]
+const FORMS = [{}, { form: 'string' }, { form: 'number' }]
 
 const faultOfBool = (constraints, value) => {
   const data = new TextEncoder().encode(`{"value":${value}}`)
-  return readBody(ofOneKey('bool', constraints), ONE_KEY, 'request', data).faults[0]?.name ?? null
+  return readBody(bare, ofOneKey('bool', constraints), 'request', data).faults[0]?.name ?? null
 }
 
 for (const [value, ...taken] of BOOLS) {
@@ -87,34 +87,91 @@ for (const value of NO_BOOLS) {
 /** What the value of an enum is at fault for, where its field takes only some. */
 const CHOICES = [
   // repr, closed, values, only, value, fault
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 1, null],
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 6, null],
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'],
-  ['u8', false, ['0', '1', '6'], ['1', '6'], 99, 'out_of_range'],
-  ['u8', true, ['0', '1', '6'], ['1', '6'], 0, 'out_of_range'],
-  ['u8', true, ['0', '1', '6'], ['1', '6'], 99, 'unknown_value'],
-  ['i8', false, ['-3', '3'], ['-3'], -3, null],
-  ['i8', false, ['-3', '3'], ['-3'], 3, 'out_of_range'],
+  ['u8', false, [0, 1, 6], [1, 6], 1, null],
+  ['u8', false, [0, 1, 6], [1, 6], 6, null],
+  ['u8', false, [0, 1, 6], [1, 6], 0, 'out_of_range'],
+  ['u8', false, [0, 1, 6], [1, 6], 99, 'out_of_range'],
+  ['u8', true, [0, 1, 6], [1, 6], 0, 'out_of_range'],
+  ['u8', true, [0, 1, 6], [1, 6], 99, 'unknown_value'],
+  ['i8', false, [-3, 3], [-3], -3, null],
+  ['i8', false, [-3, 3], [-3], 3, 'out_of_range'],
   ['string', false, ['day', 'night'], ['day'], 'day', null],
   ['string', false, ['day', 'night'], ['day'], 'night', 'out_of_range'],
   ['string', false, ['day', 'night'], ['day'], 'noon', 'out_of_range'],
   ['string', true, ['day', 'night'], ['day'], 'noon', 'unknown_value'],
 ]
 
-for (const [repr, closed, wires, only, value, fault] of CHOICES) {
+/** An enum with these values, whose names are the values. */
+const enumOf = (repr, closed, values) => () => ({
+  is: 'enum',
+  name: 'Inner',
+  repr,
+  closed,
+  values: Object.fromEntries(values.map((value) => [String(value), value])),
+})
+
+for (const [repr, closed, values, only, value, fault] of CHOICES) {
   test(`${value} of ${closed ? 'a closed' : 'an open'} enum, where only ${only} is taken`, () => {
-    const protocol = ofOneKey('object', { only })
-    protocol.types.Inner = {
-      is: 'enum',
-      repr,
-      closed,
-      values: wires.map((wire) => ({ wire, name: wire, zh: wire, en: wire })),
-    }
-    const report = readBody(protocol, ONE_KEY, 'request', new TextEncoder().encode(JSON.stringify({ value })))
+    const operation = ofOneKey(enumOf(repr, closed, values), { only })
+    const report = readBody(bare, operation, 'request', new TextEncoder().encode(JSON.stringify({ value })))
     assert.deepEqual(
       report.faults.map(({ name }) => name),
       fault === null ? [] : [fault],
     )
     assert.deepEqual(report.unknown, [])
+  })
+}
+
+/** A message with a list of parts, of which each has a value and perhaps a mode. */
+const NESTED = {
+  is: 'struct',
+  name: 'Outer',
+  fields: {
+    parts: { key: 'parts', type: { list: () => PART } },
+    name: { key: 'name', type: 'string', length: [1, 3], optional: true },
+    last: { key: 'last', type: 'bool' },
+  },
+}
+const PART = {
+  is: 'struct',
+  name: 'Part',
+  fields: {
+    value: { key: 'value', type: 'u8' },
+    mode: { key: 'mode', type: enumOf('u8', false, [0, 1]), optional: true },
+  },
+}
+
+/** body, faults by name and path, paths of what is unknown. */
+const SEVERAL = [
+  [
+    '{"parts":[{"value":256},{},{"value":"1","mode":9,"more":{}}],"name":"long","last":1,"x":[]}',
+    [
+      'out_of_range parts[0].value',
+      'missing_field parts[1].value',
+      'wrong_type parts[2].value',
+      'wrong_type last',
+      'bad_length name',
+    ],
+    ['parts[2].mode', 'parts[2].more', 'x'],
+  ],
+  ['{"last":true,"last":{"a":[1]},"parts":[1,2]}', ['duplicate_key last', 'wrong_type parts[0]'], []],
+  ['{"parts":{"deep":[{}]}}', ['wrong_type parts', 'missing_field last'], []],
+  ['[]', ['not_an_object '], []],
+  ['{"parts":', ['bad_json '], []],
+]
+
+for (const [text, faults, unknown] of SEVERAL) {
+  test(`the reader goes on behind each error of ${text}`, () => {
+    const report = readBody(bare, { request: NESTED, response: null }, 'request', new TextEncoder().encode(text))
+    assert.deepEqual(
+      report.faults.map(({ name, path }) => `${name} ${path}`),
+      faults,
+    )
+    assert.deepEqual(
+      report.unknown.map(({ path }) => path),
+      unknown,
+    )
+    assert.equal(report.isJson, faults[0] !== 'bad_json ')
+    assert.equal(report.text, text)
   })
 }

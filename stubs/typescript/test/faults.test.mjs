@@ -4,29 +4,26 @@ import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
-import { commands, Fc, reports } from 'fc-protocol'
+import { Fc } from 'fc-protocol'
+import { protocol, readBody } from 'fc-protocol/codec'
 import { BodyError, readEnveloped } from 'fc-protocol/runtime'
 import { holds, root } from './support.mjs'
 
 const { envelope, defaults } = Fc.wire
 const allowance = { depth: defaults.limits.jsonDepth, values: defaults.limits.jsonValues }
 
-/** The schemas of an operation's messages. */
-const messagesOf = (name) => {
-  const command = Object.values(commands).find((one) => one.name === name)
-  if (command) return { request: command.request, response: command.response }
-  const report = Object.values(reports).find((one) => one.name === name)
-  return { request: report.body, response: report.acknowledgement }
-}
-
 const { faults } = JSON.parse(readFileSync(path.join(root, '../../conformance/faults.json'), 'utf8'))
 
 test('the first of several faults is named', () => {
   assert.ok(faults.length > 10)
   for (const { name, operation, message, text, error, path: at } of faults) {
-    const struct = messagesOf(operation)[message]
+    const found = protocol.operations.find((one) => one.name === operation)
+    const data = new TextEncoder().encode(text)
+    const [first] = readBody(protocol, found, message, data).faults
+    assert.equal(first?.name, error, name)
+    if (at !== undefined) assert.equal(first.path, at, name)
     assert.throws(
-      () => readEnveloped(envelope[message].struct, struct, new TextEncoder().encode(text), allowance),
+      () => readEnveloped(envelope[message].struct, found[message], data, allowance),
       (problem) => {
         assert.ok(problem instanceof BodyError, name)
         assert.equal(problem.kind, error, name)

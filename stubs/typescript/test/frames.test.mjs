@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { FrameStream } from 'fc-protocol/runtime'
-import { bytesOf, codec, framingOf, holds, protocols, vectors } from './support.mjs'
+import { protocols } from './protocols.mjs'
+import { bytesOf, codec, framingOf, holds, vectors } from './support.mjs'
 
 /** All that comes out of chunks. */
 function all(codec, chunks) {

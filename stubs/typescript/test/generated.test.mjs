@@ -2,43 +2,17 @@
 // again; in the package's own protocol and in those that share nothing with it.
 
 import assert from 'node:assert/strict'
-import { cpSync } from 'node:fs'
-import path from 'node:path'
 import { test } from 'node:test'
 import { decodeFrame } from 'fc-protocol/codec'
-import { compile, emptyFolder, load, repository } from './packages.mjs'
-import { bytesOf, holds, protocols, root } from './support.mjs'
+import { protocols } from './protocols.mjs'
+import { bytesOf, holds } from './support.mjs'
 
 /** JSON as `JSON.parse` has it, whose rounding both sides of a comparison have. */
 const rounded = (text) => JSON.parse(text)
 
-/** The generated modules of a protocol, and the runtime that they stand on. */
-async function packageOf(name) {
-  if (name === 'the spec') {
-    const from = (file) => import(path.join(root, 'dist', file))
-    return {
-      runtime: await from('src/runtime.js'),
-      generated: await from('generated/index.js'),
-      wire: await from('generated/wire.js'),
-    }
-  }
-  const folder = emptyFolder(name)
-  cpSync(path.join(repository, 'fc-generated/tests', name, 'generated'), path.join(folder, 'generated'), {
-    recursive: true,
-  })
-  assert.equal(compile(folder), '')
-  const from = (file) => load(folder, file)
-  return {
-    runtime: await from('src/runtime.js'),
-    generated: await from('generated/index.js'),
-    wire: await from('generated/wire.js'),
-  }
-}
-
-for (const { name: of, codec, vectors } of protocols) {
-  const { runtime, generated, wire } = await packageOf(of)
+for (const { name: of, codec, vectors, runtime, generated, wire } of protocols) {
   const { BodyError, bytesOf: bytesOfText, readEnveloped, writeEnveloped } = runtime
-  const { schemas, commands, reports, streams } = generated
+  const { commands, reports, streams } = generated
   const { limits } = wire.wire.defaults
   const allowance = { depth: limits.jsonDepth, values: limits.jsonValues }
   const nothing = { is: 'struct', name: 'Nothing', fields: {} }
@@ -63,7 +37,7 @@ for (const { name: of, codec, vectors } of protocols) {
       const judge = (vector) => {
         const where = `${file} ${vector.name}`
         const own = operation[vector.direction]
-        const struct = own ? schemas[own] : nothing
+        const struct = own ?? nothing
         const envelope = envelopeOf(operation, vector.direction)
         let data = bytesOfText(vector.text ?? '')
         if (vector.frame !== undefined) {
@@ -147,8 +121,8 @@ for (const { name: of, codec, vectors } of protocols) {
   test(`${of}: vectors were read`, () => assert.ok(count > 20, `${count}`))
 }
 
-test('what is absent is what its default says', async () => {
-  const { defaults, withDefaults } = await load(path.join(root, 'dist/packages/meter'), 'generated/index.js')
+test('what is absent is what its default says', () => {
+  const { defaults, withDefaults } = protocols.find(({ name }) => name === 'meter').generated
   const request = { band: 1, price: 7, note: undefined }
   const filled = withDefaults(request, defaults.SetTariffRequest)
   // biome-ignore lint/suspicious/noThenProperty: the meter has a field of this name

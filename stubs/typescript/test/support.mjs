@@ -26,73 +26,37 @@ process.on('exit', () => {
   if (file) appendFileSync(file, [...held].map(([kind, number]) => `${kind} ${number}\n`).join(''))
 })
 
-/** Frames of a codec's protocol. */
-export const framingOf = ({ protocol, algorithms }) => new Framing(protocol, protocol.limits, algorithms)
+/** Frames of a codec's protocol, however well they are compressed. */
+export function framingOf({ protocol, algorithms }) {
+  const { frameBytes, inflatedBytes } = protocol.limits
+  return new Framing(protocol, { frameBytes, inflatedBytes }, algorithms)
+}
 
-const generated = path.join(root, '../../fc-generated')
-
-const vectorsIn = (folder) =>
+/** The files of vectors in a folder: `{ file, operation, code, accepted, rejected }`. */
+export const vectorsIn = (folder) =>
   readdirSync(folder)
     .filter((name) => name.endsWith('.json'))
     .sort()
     .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
 
-/** Every vector file: `{ file, operation, code, accepted, rejected }`. */
-export const vectors = vectorsIn(path.join(generated, 'vectors'))
-
-/** A protocol as data, of which each group has its part in a file; what is generated is JSON behind names of constants. */
-function protocolIn(folder) {
-  const valueOf = (file, name) => {
-    const module = readFileSync(path.join(folder, file), 'utf8')
-    const [value] = module.slice(module.indexOf(`export const ${name}: `)).split('\n\n', 1)
-    return value.slice(value.indexOf(' = ') + ' = '.length)
-  }
-  const [head] = valueOf('protocol.ts', 'protocol').split(',\n  "types": {', 1)
-  const groups = readdirSync(path.join(folder, 'groups')).map((group) => `groups/${group}/protocol.ts`)
-  const types = groups.map((file) => JSON.parse(valueOf(file, 'types')))
-  const operations = groups.flatMap((file) => JSON.parse(valueOf(file, 'operations')))
-  return { ...JSON.parse(`${head}}`), types: Object.assign({}, ...types), operations }
-}
-
-/** Another protocol and its vectors. */
-function other(name) {
-  const folder = path.join(generated, 'tests', name)
-  const protocol = protocolIn(path.join(folder, 'generated'))
-  return { name, codec: { protocol, algorithms: nodeAlgorithms }, vectors: vectorsIn(path.join(folder, 'vectors')) }
-}
-
-/** The package's own protocol, and those that share nothing with it. */
-export const protocols = [{ name: 'the spec', codec, vectors }, other('meter'), other('beacon')]
+/** Every vector file of the package's own protocol. */
+export const vectors = vectorsIn(path.join(root, '../../fc-generated/vectors'))
 
 export const bytesOf = (hex) => Uint8Array.from(Buffer.from(hex, 'hex'))
 
-/** The only operation of the protocols of `ofOneKey`. */
-export const ONE_KEY = { request: 'Outer', response: null }
+const nothing = { is: 'struct', name: 'Nothing', fields: {} }
 
-/** A protocol whose only message has one optional key of a type, as `bodies.json` asks for. */
-export function ofOneKey(name, constraints = {}) {
-  const is = name.startsWith('timestamp') ? 'i64' : name
-  const field = (type) => ({
-    key: 'value',
-    also: [],
-    type,
-    optional: true,
-    unit: null,
-    min: null,
-    max: null,
-    length: null,
-    pattern: null,
-    wireString: false,
-    emptyIsAbsent: false,
-    lenientNumber: false,
-    lenientBool: false,
-    ...constraints,
-  })
-  const types = {
-    Outer: { is: 'struct', fields: [field(name === 'object' ? { is: 'named', name: 'Inner' } : { is })] },
-    Inner: { is: 'struct', fields: [field({ is: 'i32' })] },
-  }
-  return { ...protocol, envelope: { request: [], response: [] }, types }
+/** A protocol whose messages have no envelope. */
+export const bare = { ...protocol, envelope: { request: { struct: nothing }, response: { struct: nothing } } }
+
+/** The type `object` of `bodies.json`. */
+const inner = () => ({ is: 'struct', name: 'Inner', fields: { value: { key: 'value', type: 'i32', optional: true } } })
+
+/** An operation whose request has one optional key of a type, as `bodies.json` asks for. */
+export function ofOneKey(name, details = {}) {
+  const type = name === 'object' ? inner : String(name).startsWith('timestamp') ? 'i64' : name
+  const value = { key: 'value', type, optional: true, ...details }
+  return { request: { is: 'struct', name: 'Outer', fields: { value } }, response: null }
 }
 
 /**

@@ -1,11 +1,11 @@
 //! `client.ts`: the app's side. Its methods are declared group by group.
 
-use super::context::{Context, own, page_of};
+use super::context::{Context, own};
 use super::group::{Group, What, merged, parts};
-use super::messages::{deprecated, union};
+use super::messages::{deprecated, end, union};
 use super::operations::carried;
 use super::protocol;
-use super::source::{alternatives, head, import, import_types};
+use super::source::{alternatives, head, named};
 use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Call;
@@ -13,7 +13,6 @@ use crate::package::process::{is_followed, set_off};
 use crate::package::source::Source;
 use fc_spec::model::{Operation, Side};
 
-/// The file.
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_streams = groups.iter().any(|it| it.has(What::Streams));
@@ -24,10 +23,10 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut names = vec!["Connection", "dial", "dialLater"];
     names.extend(has_commands.then_some("addCalls"));
     names.extend(has_streams.then_some("addAppStreams"));
-    import(&mut out, &names, "../src/runtime.ts");
+    named(&mut out, "import", names, "../src/runtime.ts");
     let mut names = vec!["ClientConfig", "Platform", "UnknownReport"];
     names.extend(has_streams.then_some("DataConnection"));
-    import_types(&mut out, &names, "../src/runtime.ts");
+    named(&mut out, "import type", names, "../src/runtime.ts");
     if has_commands || has_streams || groups.iter().any(|it| it.has(What::Reports)) {
         out.line("import type * as messages from './messages.ts'");
     }
@@ -35,7 +34,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut names = vec![name];
     names.extend(has_commands.then(|| "service".to_owned()));
     names.extend(has_streams.then(|| "streams".to_owned()));
-    import(&mut out, &names, "./operations.ts");
+    named(&mut out, "import", names, "./operations.ts");
     out.blank();
     out.line("/** 任意一个上报，`case` 是它的名称。Any report. `case` is its name. */");
     let mut reports = parts(context, groups, "report", What::Reports);
@@ -127,19 +126,13 @@ pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'stat
 
 /// What a group adds to this side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
-    if group.has(What::Commands) {
-        out.blank();
-        out.line(
-            "/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */",
-        );
-        let name = group.part(context, "calls");
-        out.block(format!("export interface {name}"), |out| {
-            for command in &group.commands {
-                out.blank();
-                call(out, context, command);
-            }
-        });
-    }
+    let calls = [
+        "calls",
+        "/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */",
+    ];
+    group.interface(out, context, calls, &group.commands, |out, command| {
+        call(out, context, command);
+    });
     if group.has(What::Reports) {
         out.blank();
         out.line("/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */");
@@ -152,25 +145,21 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         let name = group.part(context, "report");
         alternatives(out, &name, &reports.collect::<Vec<_>>());
     }
-    if group.has(What::Streams) {
-        out.blank();
-        out.line("/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */");
-        let name = group.part(context, "streams");
-        out.block(format!("export interface {name}"), |out| {
-            for stream in &group.streams {
-                let (name, held) = (&stream.name, carried(context, stream, ""));
-                out.blank();
-                out.docs(&stream_docs(context, stream));
-                if stream.sender == Side::Robot {
-                    let result = format!("{}<{held}>", own(context, "Subscription"));
-                    method(out, &format!("subscribe{name}"), &[], &result);
-                } else {
-                    let parameters = ["id: number".to_owned(), format!("content: {held}")];
-                    method(out, &format!("send{name}"), &parameters, "Promise<void>");
-                }
-            }
-        });
-    }
+    let streams = [
+        "streams",
+        "/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */",
+    ];
+    group.interface(out, context, streams, &group.streams, |out, stream| {
+        let (name, held) = (&stream.name, carried(context, stream, ""));
+        out.docs(&stream_docs(context, stream));
+        if stream.sender == Side::Robot {
+            let result = format!("{}<{held}>", own(context, "Subscription"));
+            method(out, &format!("subscribe{name}"), &[], &result);
+        } else {
+            let parameters = ["id: number".to_owned(), format!("content: {held}")];
+            method(out, &format!("send{name}"), &parameters, "Promise<void>");
+        }
+    });
 }
 
 fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
@@ -197,7 +186,6 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     method(out, command.method, &parameters, &answer);
 }
 
-/// A method of an interface.
 pub fn method(out: &mut Source, name: &str, parameters: &[String], result: &str) {
     out.list(&format!("{name}("), parameters, &format!("): {result}"));
 }
@@ -206,7 +194,6 @@ pub fn method(out: &mut Source, name: &str, parameters: &[String], result: &str)
 pub fn stream_docs<'m>(context: &Context<'_>, stream: &'m Operation) -> Docs<'m> {
     let mut docs = facts::operation_docs(stream);
     facts::operation_end(context.style, &mut docs, stream);
-    docs.paragraph(context.links(&stream.location, &page_of(stream)));
-    deprecated(&mut docs, stream.deprecated.as_ref());
+    end(&mut docs, context, stream);
     docs
 }

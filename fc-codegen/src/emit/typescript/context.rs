@@ -1,6 +1,7 @@
 //! What the files of the package ask beyond those of any: the types of TypeScript, and what is imported from where.
 
 use crate::package::items::{Item, Shape};
+use crate::package::language::{Role, TYPESCRIPT};
 use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,6 +65,12 @@ pub fn own(context: &Context<'_>, name: &str) -> String {
         ""
     };
     [name, mark].concat()
+}
+
+/// A name that no check has to find free.
+pub fn spelled(role: Role, words: &str) -> String {
+    let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(role, words);
+    name.into_owned()
 }
 
 /// Such a type as it is imported.

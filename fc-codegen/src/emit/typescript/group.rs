@@ -1,7 +1,7 @@
 //! What the package has of a group of the spec: a folder with a file for each kind of thing. A command, a report or a
 //! stream is in the files of its group alone; the files that all groups share name groups.
 
-use super::context::{Context, own};
+use super::context::{Context, own, spelled};
 use super::root;
 use super::source::{Source, head, nothing};
 use crate::package::items::{Item, Spelled};
@@ -26,17 +26,14 @@ pub enum What {
     RobotStreams,
     /// Streams that have a code.
     Streams,
-    /// Message types.
     Types,
 }
 
 impl<'p, 'm> Group<'p, 'm> {
-    /// The message types.
     pub fn items(&self) -> &'p [Item<'m>] {
         self.types
     }
 
-    /// Whether it has that.
     pub fn has(&self, what: What) -> bool {
         match what {
             What::Commands => !self.commands.is_empty(),
@@ -54,19 +51,38 @@ impl<'p, 'm> Group<'p, 'm> {
 
     /// What a type of the package is called that has a part of the stubs: `IdentityCalls` of `calls`.
     pub fn part(&self, context: &Context<'_>, word: &str) -> String {
-        let words = format!("{}_{word}", self.id);
-        let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(Role::Type, &words);
-        if root::has(&name) || TYPESCRIPT.spelling(Role::Type, &words).is_err() {
-            return [&*name, "$"].concat();
+        match TYPESCRIPT.spelling(Role::Type, &format!("{}_{word}", self.id)) {
+            Ok(name) if !root::has(&name) => own(context, &name),
+            Ok(name) | Err(name) => [&*name, "$"].concat(),
         }
-        own(context, &name)
     }
 
     /// What a file calls what it imports of it: `identityCommands` of `commands`.
     pub fn variable(&self, word: &str) -> String {
-        let words = format!("{}_{word}", self.id);
-        let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(Role::Method, &words);
-        name.into_owned()
+        spelled(Role::Method, &format!("{}_{word}", self.id))
+    }
+
+    /// Its part of something that a user names: an interface with a member for each of these, if there are any.
+    pub fn interface<T>(
+        &self,
+        out: &mut Source,
+        context: &Context<'_>,
+        [word, about]: [&str; 2],
+        members: &[T],
+        member: impl Fn(&mut Source, &T),
+    ) {
+        if members.is_empty() {
+            return;
+        }
+        out.blank();
+        out.line(about);
+        let name = self.part(context, word);
+        out.block(format!("export interface {name}"), |out| {
+            for one in members {
+                out.blank();
+                member(out, one);
+            }
+        });
     }
 
     /// The types that its operations name.

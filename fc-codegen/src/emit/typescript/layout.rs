@@ -8,7 +8,6 @@ use crate::package::source::{Source, join};
 pub enum Layout {
     /// What stands on one line however long it is.
     Atom(String),
-    /// A number.
     Number(String),
     /// A text, which may begin a line of its own.
     Text(String),
@@ -23,22 +22,23 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// A text.
     pub fn text(text: &str) -> Self {
         Self::Text(literal(text))
     }
 
-    /// An integer.
+    /// A text, or `null`.
+    pub fn text_or_null(text: Option<&str>) -> Self {
+        text.map_or_else(|| Self::word("null"), Self::text)
+    }
+
     pub fn number(number: impl Into<i128>) -> Self {
         Self::Number(number.into().to_string())
     }
 
-    /// A list.
     pub fn list(items: impl IntoIterator<Item = Self>) -> Self {
         Self::List(items.into_iter().collect())
     }
 
-    /// An object.
     pub fn object<K: Into<String>>(members: impl IntoIterator<Item = (K, Self)>) -> Self {
         let members = members.into_iter();
         Self::Object(members.map(|(key, value)| (key.into(), value)).collect())
@@ -55,12 +55,16 @@ impl Layout {
         Self::Atom(word.into())
     }
 
-    /// `true` where it is so, for a key that is left out where it is not.
-    pub fn flag<K>(key: K, is: bool) -> Option<(K, Self)> {
-        is.then(|| (key, Self::word("true")))
+    /// A name in a module, or in a constant of one.
+    pub fn path<const N: usize>(names: [&str; N]) -> Self {
+        Self::Atom(names.join("."))
     }
 
-    /// Texts.
+    /// `true`, for a member that is left out where it is `false`.
+    pub fn flag(is: bool) -> Option<Self> {
+        is.then(|| Self::word("true"))
+    }
+
     pub fn texts<S: AsRef<str>>(texts: &[S]) -> Self {
         Self::List(texts.iter().map(|text| Self::text(text.as_ref())).collect())
     }
@@ -149,6 +153,32 @@ impl Layout {
                 inner.write(out, &[head, open].concat(), &[close, tail].concat());
             }
         }
+    }
+}
+
+/// The members of an object, of which some may be absent.
+#[derive(Clone, Debug, Default)]
+pub struct Members(Vec<(String, Layout)>);
+
+impl Members {
+    /// Adds a member, unless it is absent.
+    pub fn with(mut self, key: &str, value: impl Into<Option<Layout>>) -> Self {
+        self.0.extend(value.into().map(|it| (key.to_owned(), it)));
+        self
+    }
+
+    pub fn object(self) -> Layout {
+        Layout::Object(self.0)
+    }
+
+    /// As an object; `None` without members.
+    pub fn some_object(self) -> Option<Layout> {
+        (!self.0.is_empty()).then(|| self.object())
+    }
+
+    /// As an object with each key on a line of its own.
+    pub fn lines(self) -> Layout {
+        Layout::Lines(self.0)
     }
 }
 

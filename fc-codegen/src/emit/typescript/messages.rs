@@ -2,9 +2,9 @@
 //! both sides, as interfaces. Nothing of it needs the schemas: these have the constants of enums at once when loaded.
 
 use super::constants::wire;
-use super::context::{Context, field_type, imported, imports, own, parts, repr_is_large};
+use super::context::{Context, field_type, imported, imports, own, page_of, parts, repr_is_large};
 use super::group::Group;
-use super::source::{self, Source, alternatives, import_types, literal, tag_text};
+use super::source::{self, Source, alternatives, literal, named, property, tag_text};
 use super::{client, robot};
 use crate::package::about;
 use crate::package::conditions::sentence;
@@ -17,7 +17,6 @@ use fc_spec::model::{
     Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
 };
 
-/// What the file of all messages says of itself.
 pub const ABOUT: [&str; 2] = [
     "每组指令的消息，以及各组在 app 和机器人两侧的方法。",
     "The messages of each group, and its methods on the side of the app and of the robot.",
@@ -42,13 +41,14 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     names.extend(items.iter().any(is_choice).then_some("Tagged"));
     names.extend(client::runtime_types(context, group));
     names.extend(robot::runtime_types(group));
-    let names: Vec<String> = names.iter().map(|name| imported(context, name)).collect();
-    import_types(&mut out, &names, "../../../src/runtime.ts");
+    let names = names.iter().map(|name| imported(context, name));
+    named(&mut out, "import type", names, "../../../src/runtime.ts");
     let types = items.iter().flat_map(parts).chain(group.bodies(context));
     for (from, names) in imports(context, group.id, types) {
-        import_types(
+        named(
             &mut out,
-            &names.into_iter().collect::<Vec<_>>(),
+            "import type",
+            names,
             &format!("../{from}/messages.ts"),
         );
     }
@@ -78,6 +78,12 @@ pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
     }
 }
 
+/// Ends the comment on an operation: links, and the mark of what is withdrawn.
+pub fn end(docs: &mut Docs<'_>, context: &Context<'_>, operation: &Operation) {
+    docs.paragraph(context.links(&operation.location, &page_of(operation)));
+    deprecated(docs, operation.deprecated.as_ref());
+}
+
 fn structure(
     out: &mut Source,
     context: &Context<'_>,
@@ -104,16 +110,12 @@ fn structure(
             let mut docs = facts::field_docs(context.style, field, condition);
             deprecated(&mut docs, field.details().deprecated.as_ref());
             out.docs(&docs);
-            let (name, ty) = (&field.name, field_type(context, field));
-            out.line(if field.optional {
-                format!("{name}?: {ty} | undefined")
-            } else {
-                format!("{name}: {ty}")
-            });
+            let ty = field_type(context, field);
+            out.line(property(&field.name, &ty, field.optional));
             out.blank();
         }
         out.line("/** 其他键，原样保留。Other keys, kept unchanged. */");
-        out.line(format!("extra?: {} | undefined", own(context, "Extra")));
+        out.line(property("extra", &own(context, "Extra"), true));
     });
 }
 

@@ -1,12 +1,12 @@
 //! The generated part of the TypeScript package: types with their schemas, operations, tables, both stubs; and the
-//! protocol as data, for tools that know no type.
+//! texts and examples of the protocol, for tools that show any frame.
 //!
 //! Text is laid out as Biome would; the tests hold it to that.
 
 mod client;
 mod constants;
 mod context;
-mod data;
+mod described;
 mod group;
 mod layout;
 mod messages;
@@ -89,7 +89,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("client.ts", client::file(context, groups)),
         ("index.ts", root::file(context)),
         ("operations.ts", protocol::file(context, groups)),
-        ("protocol.ts", data::file(context, groups)),
+        ("protocol.ts", described::file(context, samples)),
         ("robot.ts", robot::file(context, groups)),
         (samples::SHOWN.file, samples::file(context)),
         ("tables.ts", tables::file(context)),
@@ -106,11 +106,6 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
             let path = format!("groups/{}/{file}.ts", group.name);
             files.push((path, group.file(), text));
         }
-    }
-    for group in groups {
-        let text = data::group(samples, group);
-        let path = format!("groups/{}/protocol.ts", group.name);
-        files.push((path, group.file(), text));
     }
     let artifact = |(path, from, text): (String, &str, String)| {
         let contents = format!(

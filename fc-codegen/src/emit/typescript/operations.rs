@@ -1,28 +1,24 @@
 //! `commands.ts`, `reports.ts` and `streams.ts` of a group: a constant for each operation with all that the runtime has to know of it.
 
 use super::constants::constant;
-use super::context::{Context, page_of};
+use super::context::{Context, page_of, spelled};
 use super::group::Group;
-use super::layout::Layout;
-use super::source::{Source, float, head, import_types, literal};
+use super::layout::{Layout, Members};
+use super::messages::end;
+use super::source::{Source, float, head, literal, named};
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::items::{Call, Shape};
-use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::language::Role;
 use crate::package::process::{is_followed, set_off};
 use crate::package::source::join;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef,
+    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Text,
 };
 
-/// Members of an object.
-type Members = Vec<(&'static str, Layout)>;
-
-/// What `commands.ts` says of itself.
 pub const COMMANDS: [&str; 2] = ["每条指令的描述数据。", "Every command as data."];
 
-/// `commands.ts` of a group.
 pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let commands = &group.commands;
     let mut out = head(COMMANDS);
@@ -30,7 +26,7 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
     for call in commands {
         names.push(command_type(context, call.operation));
     }
-    import_types(&mut out, &names, "../../../src/runtime.ts");
+    named(&mut out, "import type", &names, "../../../src/runtime.ts");
     out.line("import * as messages from '../../messages.ts'");
     if names.contains(&"FollowedCommand") {
         out.line("import * as reports from '../../reports.ts'");
@@ -55,7 +51,7 @@ fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
     out.lines("export default {", members, &close);
 }
 
-/// What the runtime calls the type of a command's constant.
+/// The type of a command's constant in the runtime.
 fn command_type(context: &Context<'_>, command: &Operation) -> &'static str {
     if is_followed(context, command) {
         "FollowedCommand"
@@ -70,9 +66,8 @@ fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call:
     let followed = set_off(context, operation).next();
     let report = followed.map(|(_, _, messages)| context.name_of(&messages.request.ty));
     let failure = context.package.error_type(operation);
-    let types = [Some(request), Some(response), report, failure]
-        .into_iter()
-        .flatten();
+    let types = [Some(request), Some(response), report, failure];
+    let types = types.into_iter().flatten();
     let types: Vec<String> = types.map(|name| format!("messages.{name}")).collect();
 
     let example = |side| example(context, samples, operation, side);
@@ -83,45 +78,30 @@ fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call:
         ];
         (&*result.name, Layout::object(parts))
     });
-    let mut members = facts_of(operation, "command");
-    members.extend(
-        operation
-            .effect()
-            .map(|effect| ("effect", Layout::text(effect.name()))),
-    );
-    members.extend([
-        ("request", Layout::word(format!("schemas.{request}"))),
-        ("response", Layout::word(format!("schemas.{response}"))),
-        ("requestExample", example(Direction::Request)),
-        ("responseExample", example(Direction::Response)),
-        ("errors", Layout::object(errors)),
-    ]);
-    members.extend(
-        operation
-            .accepted()
-            .map(|it| ("preconditions", preconditions(context, it))),
-    );
-    if let Some((set_off, report, messages)) = followed
-        && let Some(report) = context.package.call(report)
-    {
-        let parts = [
-            ("report", Layout::word(format!("reports.{}", report.method))),
-            (
-                "tied",
-                ties(context, set_off, operation, &messages.request.ty),
-            ),
-        ];
-        members.push(("setsOff", Layout::object(parts)));
-    }
-    write(
-        out,
-        context,
-        operation,
-        call.method,
-        command_type(context, operation),
-        &types,
-        members,
-    );
+    let sets_off = followed.and_then(|(set_off, report, messages)| {
+        let method = context.package.call(report)?.method;
+        let tied = ties(context, set_off, operation, &messages.request.ty);
+        let report = Layout::path(["reports", method]);
+        Some(Layout::object([("report", report), ("tied", tied)]))
+    });
+    let accepted = operation.accepted();
+    let members = facts_of(operation, None)
+        .with(
+            "effect",
+            operation.effect().map(|it| Layout::text(it.name())),
+        )
+        .with("request", Layout::path(["schemas", request]))
+        .with("response", Layout::path(["schemas", response]))
+        .with("requestExample", example(Direction::Request))
+        .with("responseExample", example(Direction::Response))
+        .with("errors", Layout::object(errors))
+        .with(
+            "preconditions",
+            accepted.map(|it| preconditions(context, it)),
+        )
+        .with("setsOff", sets_off);
+    let ty = command_type(context, operation);
+    write(out, context, operation, [call.method, ty], &types, members);
 }
 
 /// `export const name: Type<A, B> = { … }` and its comment.
@@ -129,17 +109,15 @@ fn write(
     out: &mut Source,
     context: &Context<'_>,
     operation: &Operation,
-    name: &str,
-    ty: &str,
+    [name, ty]: [&str; 2],
     types: &[String],
     members: Members,
 ) {
     let mut docs = Docs::titled(&operation.title);
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
-    super::messages::deprecated(&mut docs, operation.deprecated.as_ref());
+    end(&mut docs, context, operation);
     out.blank();
     out.docs(&docs);
-    typed(out, name, ty, types, &Layout::lines(members));
+    typed(out, name, ty, types, &members.lines());
 }
 
 /// `export const name: Type<A, B> = value`.
@@ -161,35 +139,32 @@ pub fn ack_policy(ack: Ack) -> Layout {
     Layout::object([("timeout", timeout), ("retries", retries)])
 }
 
-/// What every operation says of itself.
-fn facts_of(operation: &Operation, is: &str) -> Members {
-    let code = operation
-        .code
-        .value
-        .map(|_| operation.code.spelling.to_lowercase());
-    let title = [
-        ("zh", Layout::text(&operation.title.zh)),
-        ("en", Layout::text(&operation.title.en)),
-    ];
-    let mut members = vec![
-        ("is", Layout::text(is)),
-        ("name", Layout::text(&operation.name)),
-        (
-            "code",
-            Layout::word(code.unwrap_or_else(|| "null".to_owned())),
-        ),
-        ("title", Layout::object(title)),
-    ];
-    members.extend(
-        operation
-            .since
-            .as_ref()
-            .map(|since| ("since", Layout::text(since))),
-    );
-    members.extend(Layout::flag("deprecated", operation.deprecated.is_some()));
-    members.push(("docs", Layout::text(&page_of(operation))));
-    members.push(("spec", Layout::text(&operation.location.file)));
-    members
+/// The command code; `null` while none is assigned.
+pub fn code(operation: &Operation) -> Layout {
+    let code = operation.code.value.map(|_| &operation.code.spelling);
+    Layout::word(code.map_or_else(|| "null".to_owned(), |it| it.to_lowercase()))
+}
+
+/// A text in both languages.
+pub fn languages(text: &Text) -> [(&'static str, Layout); 2] {
+    [
+        ("zh", Layout::text(&text.zh)),
+        ("en", Layout::text(&text.en)),
+    ]
+}
+
+/// The members of every operation; `case` is the name of a report among those of `reports()`.
+fn facts_of(operation: &Operation, case: Option<&str>) -> Members {
+    Members::default()
+        .with("is", Layout::text(operation.kind().name()))
+        .with("name", Layout::text(&operation.name))
+        .with("case", case.map(Layout::text))
+        .with("code", code(operation))
+        .with("title", Layout::object(languages(&operation.title)))
+        .with("since", operation.since.as_deref().map(Layout::text))
+        .with("deprecated", Layout::flag(operation.deprecated.is_some()))
+        .with("docs", Layout::text(&page_of(operation)))
+        .with("spec", Layout::text(&operation.location.file))
 }
 
 /// A function that gives the spec's example of a body.
@@ -208,11 +183,11 @@ fn example(
     Layout::Around("() => (", Box::new(value), ")")
 }
 
-/// What has to hold before a command is accepted.
+/// The conditions under which a command is accepted.
 fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
     let sets = accepted.state_sets().iter().map(|set| {
         let item = context.package.item(&set.ty);
-        let ty = &item.ty.name;
+        let ty = &*item.ty.name;
         let known = match &item.shape {
             Shape::Enum(_, values) => values.as_slice(),
             _ => &[],
@@ -220,23 +195,20 @@ fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
         let values = known
             .iter()
             .filter(|value| set.values.contains(&value.wire));
-        let values = values.map(|value| Layout::word(format!("messages.{ty}.{}", value.name)));
+        let values = values.map(|value| Layout::path(["messages", ty, &value.name]));
         Layout::object([
-            ("of", Layout::word(format!("schemas.{ty}"))),
+            ("of", Layout::path(["schemas", ty])),
             ("values", Layout::list(values)),
         ])
     });
-    let states = match &accepted.states {
-        None => None,
-        Some(AcceptedIn::Any) => Some(Layout::text("any")),
-        Some(AcceptedIn::States(_)) => Some(Layout::list(sets)),
-    };
-    let states = states.map(|states| ("states", states));
-    Layout::object(
-        states
-            .into_iter()
-            .chain([("after", Layout::texts(&accepted.after))]),
-    )
+    let states = accepted.states.as_ref().map(|states| match states {
+        AcceptedIn::Any => Layout::text("any"),
+        AcceptedIn::States(_) => Layout::list(sets),
+    });
+    Members::default()
+        .with("states", states)
+        .with("after", Layout::texts(&accepted.after))
+        .object()
 }
 
 /// What ties a report to a call, as functions that take both values.
@@ -274,43 +246,33 @@ fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
     out
 }
 
-/// What `reports.ts` says of itself.
 pub const REPORTS: [&str; 2] = ["每种上报的描述数据。", "Every report as data."];
 
-/// `reports.ts` of a group.
 pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let reports = &group.reports;
     let mut out = head(REPORTS);
-    import_types(
-        &mut out,
-        &["AnyReportOf", "Report"],
-        "../../../src/runtime.ts",
-    );
+    let names = ["AnyReportOf", "Report"];
+    named(&mut out, "import type", names, "../../../src/runtime.ts");
     out.line("import * as messages from '../../messages.ts'");
     out.line("import * as schemas from '../../schemas.ts'");
     for call in reports {
-        let body = &*call.request.ty.name;
-        let mut members = facts_of(call.operation, "report");
-        members.insert(2, ("case", Layout::text(body)));
-        members.push(("body", Layout::word(format!("schemas.{body}"))));
-        let acknowledgement = format!("schemas.{}", call.response.ty.name);
-        members.push(("acknowledgement", Layout::word(acknowledgement)));
-        members.push((
-            "example",
-            example(context, samples, call.operation, Direction::Request),
-        ));
-        members.extend(call.operation.cadence().map(|it| ("cadence", cadence(it))));
-        members.extend(process(context, &call.operation.exchange));
+        let operation = call.operation;
+        let [body, acknowledgement] = [call.request, call.response].map(|it| &*it.ty.name);
+        let members = facts_of(operation, Some(body))
+            .with("body", Layout::path(["schemas", body]))
+            .with(
+                "acknowledgement",
+                Layout::path(["schemas", acknowledgement]),
+            )
+            .with(
+                "example",
+                example(context, samples, operation, Direction::Request),
+            )
+            .with("cadence", operation.cadence().map(cadence));
+        let members = process(members, context, &operation.exchange);
         let types = [format!("messages.{body}"), literal(body)];
-        write(
-            &mut out,
-            context,
-            call.operation,
-            call.method,
-            "Report",
-            &types,
-            members,
-        );
+        let names = [call.method, "Report"];
+        write(&mut out, context, operation, names, &types, members);
     }
     let about =
         "/** 本组的上报，按方法名。The reports of the group, by the names of their methods. */";
@@ -319,8 +281,8 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '
     out.finish()
 }
 
-/// How a report is acknowledged, and what it says of how far a process has come.
-fn process(context: &Context<'_>, exchange: &Exchange) -> Members {
+/// Adds the acknowledgement of a report, and the keys that tell how far a process has come.
+fn process(members: Members, context: &Context<'_>, exchange: &Exchange) -> Members {
     let Exchange::Report {
         ack,
         state,
@@ -329,32 +291,22 @@ fn process(context: &Context<'_>, exchange: &Exchange) -> Members {
         ..
     } = exchange
     else {
-        return Vec::new();
+        return members;
     };
+    let body = &messages.request.ty;
     let state_of = |keys: &[String]| {
-        let body = &messages.request.ty;
         let (ty, _) = context.model().enum_at(body, keys)?;
-        let schema = Layout::word(format!("schemas.{}", context.name_of(ty)));
         let of = format!("(report) => report{}", path(context, body, keys));
         Some(Layout::object([
-            ("schema", schema),
+            ("schema", Layout::path(["schemas", context.name_of(ty)])),
             ("of", Layout::word(of)),
         ]))
     };
-    let mut members = vec![("ack", ack_policy(*ack))];
-    members.extend(
-        state
-            .as_deref()
-            .and_then(state_of)
-            .map(|state| ("state", state)),
-    );
-    if !failures.is_empty() {
-        members.push((
-            "failures",
-            Layout::list(failures.iter().filter_map(|keys| state_of(keys))),
-        ));
-    }
+    let failing = || Layout::list(failures.iter().filter_map(|keys| state_of(keys)));
     members
+        .with("ack", ack_policy(*ack))
+        .with("state", state.as_deref().and_then(state_of))
+        .with("failures", (!failures.is_empty()).then(failing))
 }
 
 fn cadence(cadence: &Cadence) -> Layout {
@@ -372,18 +324,13 @@ fn cadence(cadence: &Cadence) -> Layout {
     }
 }
 
-/// What `streams.ts` says of itself.
 pub const STREAMS: [&str; 2] = ["每个数据流的描述数据。", "Every stream as data."];
 
-/// `streams.ts` of a group.
 pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let streams = &group.streams;
     let mut out = head(STREAMS);
-    import_types(
-        &mut out,
-        &["AnyStream", "Stream"],
-        "../../../src/runtime.ts",
-    );
+    let names = ["AnyStream", "Stream"];
+    named(&mut out, "import type", names, "../../../src/runtime.ts");
     if streams
         .iter()
         .any(|stream| stream.body(Direction::Request).is_some())
@@ -395,45 +342,37 @@ pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) ->
         let body = stream
             .body(Direction::Request)
             .map(|body| context.name_of(&body.ty));
-        let schema = body.map_or_else(|| "null".to_owned(), |name| format!("schemas.{name}"));
-        let mut members = facts_of(stream, "stream");
-        members.push(("from", Layout::text(stream.sender.name())));
-        members.push(("content", Layout::word(schema)));
-        if let Some(facts) = stream.stream() {
-            let media = facts.content.media_type().filter(|_| body.is_none());
-            let (started, stopped) = (facts.started_by.as_deref(), facts.stopped_by.as_deref());
-            let said = [
-                ("mediaType", media),
-                ("startedBy", started),
-                ("stoppedBy", stopped),
-            ];
-            members.extend(
-                said.into_iter()
-                    .filter_map(|(key, word)| Some((key, Layout::text(word?)))),
-            );
-        }
+        let facts = stream.stream();
+        let media = facts.and_then(|it| it.content.media_type());
+        let started = facts.and_then(|it| it.started_by.as_deref());
+        let stopped = facts.and_then(|it| it.stopped_by.as_deref());
+        let schema = body.map(|body| Layout::path(["schemas", body]));
+        let members = facts_of(stream, None)
+            .with("from", Layout::text(stream.sender.name()))
+            .with("content", schema.unwrap_or_else(|| Layout::word("null")))
+            .with(
+                "mediaType",
+                media.filter(|_| body.is_none()).map(Layout::text),
+            )
+            .with("startedBy", started.map(Layout::text))
+            .with("stoppedBy", stopped.map(Layout::text));
+        let name = spelled(Role::Method, &stream.of.name);
+        let types = [carried(context, stream, "messages.")];
         write(
             &mut out,
             context,
             stream,
-            &stream_name(stream),
-            "Stream",
-            &[carried(context, stream, "messages.")],
+            [&name, "Stream"],
+            &types,
             members,
         );
     }
     let about = "/** 本组的数据流，按方法名中的名称。The streams of the group, by the names in their methods. */";
-    let named = streams
+    let members = streams
         .iter()
-        .map(|it| format!("{}: {}", it.name, stream_name(it)));
-    all(&mut out, about, "AnyStream", &named.collect::<Vec<_>>());
+        .map(|it| format!("{}: {}", it.name, spelled(Role::Method, &it.of.name)));
+    all(&mut out, about, "AnyStream", &members.collect::<Vec<_>>());
     out.finish()
-}
-
-/// What a stream's constant is called.
-pub fn stream_name(stream: &Operation) -> String {
-    let name = TYPESCRIPT.spelling(Role::Method, &stream.name);
-    name.unwrap_or_else(|name| name).into_owned()
 }
 
 /// The type of what a stream's frames carry, in a file that has `prefix` before the name of a message.

@@ -1,15 +1,14 @@
 //! `operations.ts`: the protocol with all of its operations, group by group, and what the methods of a robot are called.
 
-use super::context::Context;
+use super::context::{Context, spelled};
 use super::group::{Group, What};
 use super::layout::Layout;
-use super::source::{Source, head, import_types};
+use super::source::{Source, head, named};
 use crate::package::docs::Docs;
-use crate::package::language::{Role, TYPESCRIPT};
+use crate::package::language::Role;
 use crate::package::ranges::{self, UNKNOWN};
 use fc_spec::model::CodeRange;
 
-/// The file.
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut out = head([
         "协议：数值和全部接口。",
@@ -22,7 +21,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         "ProtocolOf",
         "ServiceOf",
     ];
-    import_types(&mut out, &names, "../src/runtime.ts");
+    named(&mut out, "import type", names, "../src/runtime.ts");
     let all = [
         ("commands", "AnyCommand", What::Commands),
         ("reports", "AnyReportOf", What::Reports),
@@ -115,12 +114,6 @@ pub fn imported(context: &Context<'_>) -> (String, String) {
 pub fn ranges<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = ranges::pass_through(context).into_iter();
     ranges
-        .map(|(words, range)| (method(&words), range))
+        .map(|(words, range)| (spelled(Role::Method, &words), range))
         .collect()
-}
-
-/// A method that is not an operation's.
-pub fn method(words: &str) -> String {
-    let name = TYPESCRIPT.spelling(Role::Method, words);
-    name.unwrap_or_else(|name| name).into_owned()
 }

@@ -1,12 +1,12 @@
 //! `robot.ts`: the robot's side. Its methods are declared group by group.
 
 use super::client::{constructor, method, stream_docs};
-use super::context::{Context, own, page_of};
+use super::context::{Context, own};
 use super::group::{Group, What, extending, merged, parts};
-use super::messages::deprecated;
+use super::messages::end;
 use super::operations::carried;
 use super::protocol::{imported, ranges};
-use super::source::{head, import, import_types};
+use super::source::{head, named};
 use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Call;
@@ -14,7 +14,6 @@ use crate::package::ranges::UNKNOWN;
 use crate::package::source::Source;
 use fc_spec::model::{Effect, Side};
 
-/// The file.
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_reports = groups.iter().any(|it| it.has(What::Reports));
@@ -27,7 +26,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     names.extend(has_commands.then_some("addExamples"));
     names.extend(has_reports.then_some("addReports"));
     names.extend(has_streams.then_some("addRobotStreams"));
-    import(&mut out, &names, "../src/runtime.ts");
+    named(&mut out, "import", names, "../src/runtime.ts");
     let names = [
         "Answer",
         "Context",
@@ -36,7 +35,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         "ServerConfig",
         "ServerPlatform",
     ];
-    import_types(&mut out, &names, "../src/runtime.ts");
+    named(&mut out, "import type", names, "../src/runtime.ts");
     if has_commands || has_reports || has_streams {
         out.line("import type * as messages from './messages.ts'");
     }
@@ -44,7 +43,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let mut names = vec![name, "service".to_owned()];
     names.extend(has_reports.then(|| "reports".to_owned()));
     names.extend(has_streams.then(|| "streams".to_owned()));
-    import(&mut out, &names, "./operations.ts");
+    named(&mut out, "import", names, "./operations.ts");
     out.blank();
     robot_interface(
         &mut out,
@@ -220,81 +219,68 @@ pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
 
 /// What a group adds to this side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
-    if group.has(What::Commands) {
-        out.blank();
-        out.line(
-            "/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */",
-        );
-        let robot = group.part(context, Side::Robot.name());
-        out.block(format!("export interface {robot}"), |out| {
-            for command in &group.commands {
-                handler(out, context, command);
-            }
-        });
-        out.blank();
-        out.line("/** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */");
-        let name = group.part(context, "examples");
-        out.block(format!("export interface {name}"), |out| {
-            for command in &group.commands {
-                let mut docs = Docs::default();
-                docs.raw(format!("{{@inheritDoc {robot}.{}}}", command.method));
-                out.blank();
-                out.docs(&docs);
-                let parameters = parameters(context, command);
-                let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
-                method(out, command.method, parameters, &command.response.ty.name);
-            }
-        });
-    }
+    let handlers = [
+        Side::Robot.name(),
+        "/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */",
+    ];
+    group.interface(out, context, handlers, &group.commands, |out, command| {
+        handler(out, context, command);
+    });
+    let robot = group.part(context, Side::Robot.name());
+    let examples = [
+        "examples",
+        "/** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */",
+    ];
+    group.interface(out, context, examples, &group.commands, |out, command| {
+        let mut docs = Docs::default();
+        docs.raw(format!("{{@inheritDoc {robot}.{}}}", command.method));
+        out.docs(&docs);
+        let parameters = parameters(context, command);
+        let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
+        method(out, command.method, parameters, &command.response.ty.name);
+    });
     let audience = format!("audience?: {}", own(context, "Audience"));
-    if group.has(What::Reports) {
-        out.blank();
-        out.line("/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */");
-        let name = group.part(context, "reporter");
-        out.block(format!("export interface {name}"), |out| {
-            for report in &group.reports {
-                let operation = report.operation;
-                let mut docs = facts::operation_docs(operation);
-                facts::operation_end(context.style, &mut docs, operation);
-                docs.paragraph("Resolves to the outcome at each app.");
-                docs.paragraph(context.links(&operation.location, &page_of(operation)));
-                deprecated(&mut docs, operation.deprecated.as_ref());
-                out.blank();
-                out.docs(&docs);
-                let parameters = [
-                    format!("report: {}", report.request.ty.name),
-                    audience.clone(),
-                ];
-                let result = format!("Promise<{}[]>", own(context, "Acknowledgement"));
-                method(out, report.method, &parameters, &result);
-            }
-        });
-    }
-    if group.has(What::RobotStreams) {
-        out.blank();
-        out.line("/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */");
-        let name = group.part(context, "streamer");
-        out.block(format!("export interface {name}"), |out| {
-            let mut streams = group.streams.iter();
-            while let Some(stream) = streams.find(|it| it.sender == Side::Robot) {
-                let mut docs = stream_docs(context, stream);
-                docs.paragraph("Resolves to the number of data connections that took it.");
-                out.blank();
-                out.docs(&docs);
-                let parameters = [
-                    "id: number".to_owned(),
-                    format!("content: {}", carried(context, stream, "")),
-                    audience.clone(),
-                ];
-                method(
-                    out,
-                    &format!("send{}", stream.name),
-                    &parameters,
-                    "Promise<number>",
-                );
-            }
-        });
-    }
+    let reporter = [
+        "reporter",
+        "/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */",
+    ];
+    group.interface(out, context, reporter, &group.reports, |out, report| {
+        let operation = report.operation;
+        let mut docs = facts::operation_docs(operation);
+        facts::operation_end(context.style, &mut docs, operation);
+        docs.paragraph("Resolves to the outcome at each app.");
+        end(&mut docs, context, operation);
+        out.docs(&docs);
+        let parameters = [
+            format!("report: {}", report.request.ty.name),
+            audience.clone(),
+        ];
+        let result = format!("Promise<{}[]>", own(context, "Acknowledgement"));
+        method(out, report.method, &parameters, &result);
+    });
+    let streamer = [
+        "streamer",
+        "/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */",
+    ];
+    group.interface(
+        out,
+        context,
+        streamer,
+        &group.subscribed().collect::<Vec<_>>(),
+        |out, stream| {
+            let mut docs = stream_docs(context, stream);
+            docs.paragraph("Resolves to the number of data connections that took it.");
+            out.docs(&docs);
+            let held = carried(context, stream, "");
+            let parameters = [
+                "id: number".to_owned(),
+                format!("content: {held}"),
+                audience.clone(),
+            ];
+            let name = format!("send{}", stream.name);
+            method(out, &name, &parameters, "Promise<number>");
+        },
+    );
 }
 
 fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
@@ -302,14 +288,12 @@ fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     let mut docs = facts::operation_docs(operation);
     facts::operation_end(context.style, &mut docs, operation);
     if context.package.error_type(operation).is_some() {
+        let method = command.method;
         docs.raw(format!(
-            "`Refusal.declared(commands.{}, …)` makes one of its errors.",
-            command.method
+            "`Refusal.declared(commands.{method}, …)` makes one of its errors."
         ));
     }
-    docs.paragraph(context.links(&operation.location, &page_of(operation)));
-    deprecated(&mut docs, operation.deprecated.as_ref());
-    out.blank();
+    end(&mut docs, context, operation);
     out.docs(&docs);
     let result = format!("{}<{}>", own(context, "Answer"), command.response.ty.name);
     method(out, command.method, &parameters(context, command), &result);

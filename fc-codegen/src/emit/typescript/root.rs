@@ -27,7 +27,6 @@ pub fn has(name: &str) -> bool {
         .any(|known| known == name)
 }
 
-/// The file.
 pub fn file(context: &Context<'_>) -> String {
     let mut out = empty();
     let protocol = &context.model().protocol;
@@ -50,16 +49,16 @@ pub fn file(context: &Context<'_>) -> String {
     };
     let package = &context.package;
     let has_streams = !package.streams.is_empty();
-    named(&mut out, "export", &free(RUNTIME), "../src/runtime.ts");
+    named(&mut out, "export", free(RUNTIME), "../src/runtime.ts");
     named(
         &mut out,
         "export type",
-        &free(RUNTIME_TYPES),
+        free(RUNTIME_TYPES),
         "../src/runtime.ts",
     );
     let mut client = vec!["Client"];
     client.extend(has_streams.then_some("Streams"));
-    named(&mut out, "export", &client, "./client.ts");
+    named(&mut out, "export", client, "./client.ts");
     out.line("export type { AnyReport } from './client.ts'");
     out.line("export * as commands from './commands.ts'");
     out.line("export * as defaults from './defaults.ts'");
@@ -79,16 +78,16 @@ pub fn file(context: &Context<'_>) -> String {
             .any(|it| it.sender == Side::Robot)
             .then_some("Streamer"),
     );
-    named(&mut out, "export", &robot, "./robot.ts");
+    named(&mut out, "export", robot, "./robot.ts");
     out.line("export type { PartialRobot, Robot } from './robot.ts'");
     out.line("export * as schemas from './schemas.ts'");
     out.line("export * as streams from './streams.ts'");
     out.line("export * as tables from './tables.ts'");
-    named(&mut out, "export", &["ResultCode"], "./wire.ts");
+    named(&mut out, "export", ["ResultCode"], "./wire.ts");
     named(
         &mut out,
         "export type",
-        &["RequestEnvelope", "ResponseEnvelope"],
+        ["RequestEnvelope", "ResponseEnvelope"],
         "./wire.ts",
     );
     out.finish()

@@ -2,8 +2,8 @@
 //! `samples.ts`, which is compiled with the package and run by a test of it.
 
 use super::constants::Constants;
-use super::context::{Context, imported, own};
-use super::source::{self, Source, TYPESCRIPT, import, import_types};
+use super::context::{Context, imported, own, spelled};
+use super::source::{self, Source, TYPESCRIPT, named};
 use crate::package::expr::Record;
 use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
 use crate::package::name::free;
@@ -155,30 +155,28 @@ pub fn file(context: &Context<'_>) -> String {
     if run.has(Verb::Call) {
         runtime.extend(["Answer", "Context"]);
     }
-    let runtime: Vec<String> = runtime.iter().map(|it| imported(context, it)).collect();
-    import_types(&mut out, &runtime, "../src/runtime.ts");
+    let runtime = runtime.iter().map(|it| imported(context, it));
+    named(&mut out, "import type", runtime, "../src/runtime.ts");
     let mut client = vec!["Client"];
     client.extend(run.has_streams().then_some("Streams"));
-    import(&mut out, &client, "./client.ts");
+    named(&mut out, "import", client, "./client.ts");
     let Names { types, constants } = names;
-    let enums: Vec<String> = constants.enums.into_iter().collect();
-    let types: Vec<String> = types.into_iter().filter(|it| !enums.contains(it)).collect();
-    import_types(&mut out, &types, "./messages.ts");
-    import(&mut out, &enums, "./messages.ts");
-    import_types(&mut out, &["Robot"], "./robot.ts");
+    let enums = constants.enums;
+    let types = types.difference(&enums);
+    named(&mut out, "import type", types, "./messages.ts");
+    named(&mut out, "import", &enums, "./messages.ts");
+    named(&mut out, "import type", ["Robot"], "./robot.ts");
     let mut stub = vec!["serve"];
     stub.extend(run.has(Verb::Push).then_some("Reporter"));
     stub.extend(run.has(Verb::Stream).then_some("Streamer"));
-    import(&mut out, &stub, "./robot.ts");
+    named(&mut out, "import", stub, "./robot.ts");
     out.blank();
     out.append(&body);
     out.finish()
 }
 
 fn function_name(step: &SampleStep<'_, '_>) -> String {
-    let words = step.name();
-    let (Ok(name) | Err(name)) = LANGUAGE.spelling(Role::Function, &words);
-    name.into_owned()
+    spelled(Role::Function, &step.name())
 }
 
 fn call(step: &SampleStep<'_, '_>) -> String {

@@ -3,36 +3,28 @@
 use super::constants::{constant, number};
 use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
 use super::group::Group;
-use super::layout::Layout;
-use super::source::{head, import, import_types};
+use super::layout::{Layout, Members};
+use super::source::{head, named};
 use crate::package::expr::Expressions;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::language::Case;
 use crate::package::marks::{Bound, FieldMarks};
 use crate::sample::Samples;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
-use std::borrow::Cow;
 
-/// What the files of schemas say of themselves.
 pub const ABOUT: [&str; 2] = [
     "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
     "Schemas of the message types for the reader and the writer. The compiler checks each against its type.",
 ];
 
-/// The schemas of a group.
 pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(ABOUT);
     let items = group.items();
     let kinds = items.iter().map(|item| imported(context, kind(item)));
-    let kinds: Vec<String> = kinds.collect();
-    import_types(&mut out, &kinds, "../../../src/schema.ts");
+    named(&mut out, "import type", kinds, "../../../src/schema.ts");
     out.line("import * as messages from '../../messages.ts'");
     for (from, names) in imports(context, group.id, items.iter().flat_map(parts)) {
-        import(
-            &mut out,
-            &names.into_iter().collect::<Vec<_>>(),
-            &format!("../{from}/schemas.ts"),
-        );
+        named(&mut out, "import", names, &format!("../{from}/schemas.ts"));
     }
     let expressions = Expressions::new(&context.package);
     for item in items {
@@ -56,28 +48,30 @@ fn kind(item: &Item<'_>) -> &'static str {
 }
 
 fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_>, item: &Item<'_>) -> Layout {
-    let name = &item.ty.name;
-    let (is, members) = match &item.shape {
+    let name = &*item.ty.name;
+    let is = |word| {
+        Members::default()
+            .with("is", Layout::text(word))
+            .with("name", Layout::text(name))
+    };
+    let members = match &item.shape {
         Shape::Record(_, fields) => {
             let schemas = fields.iter();
             let schemas = schemas.map(|it| (&*it.name, field(context, expressions, fields, it)));
-            ("struct", vec![("fields", Layout::lines(schemas))])
+            is("struct").with("fields", Layout::lines(schemas))
         }
-        Shape::Enum(shape, values) => {
-            let mut members = vec![("repr", Layout::text(repr(shape.repr)))];
-            members.extend(Layout::flag("closed", shape.closed));
-            members.push(("values", Layout::word(format!("messages.{name}"))));
-            members.extend(process(name, shape, values).map(|process| ("process", process)));
-            ("enum", members)
-        }
+        Shape::Enum(shape, values) => is("enum")
+            .with("repr", Layout::text(repr(shape.repr)))
+            .with("closed", Layout::flag(shape.closed))
+            .with("values", Layout::path(["messages", name]))
+            .with("process", process(name, shape, values)),
         Shape::Choice(_, variants) => {
             let form = |ty| Layout::word(format!("() => {}", context.name_of(ty)));
             let forms = variants.iter().map(|it| (&*it.name, form(&it.of.ty)));
-            ("choice", vec![("forms", Layout::lines(forms))])
+            is("choice").with("forms", Layout::lines(forms))
         }
     };
-    let named = [("is", Layout::text(is)), ("name", Layout::text(name))];
-    Layout::object(named.into_iter().chain(members))
+    members.object()
 }
 
 fn repr(repr: EnumRepr) -> &'static str {
@@ -87,16 +81,13 @@ fn repr(repr: EnumRepr) -> &'static str {
     }
 }
 
-/// What the spec says of an enum's values as states, if it says any of it.
+/// The rules for an enum's values as states, if the spec has any.
 fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Option<Layout> {
-    let name =
-        |value: &Spelled<'_, EnumValue>| Layout::word(format!("messages.{ty}.{}", value.name));
-    let those = |is: fn(&EnumValue) -> bool| -> Vec<Layout> {
-        values
-            .iter()
-            .filter(|value| is(value.of))
-            .map(name)
-            .collect()
+    let name = |value: &Spelled<'_, EnumValue>| Layout::path(["messages", ty, &value.name]);
+    let some = |list: Vec<Layout>| (!list.is_empty()).then_some(Layout::List(list));
+    let those = |is: fn(&EnumValue) -> bool| {
+        let values = values.iter().filter(|value| is(value.of));
+        some(values.map(name).collect())
     };
     let next = values.iter().filter(|value| !value.then.is_empty());
     let next = next.map(|value| {
@@ -105,22 +96,12 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
             .filter(|other| value.then.contains(&other.of.name));
         Layout::List(vec![name(value), Layout::list(follow.map(name))])
     });
-    let order = shape
-        .order
-        .map(|order| ("order", Layout::text(order.name())));
-    let lists = [
-        ("next", next.collect()),
-        ("final", those(|it| it.is_final)),
-        ("error", those(|it| it.is_error)),
-    ];
-    let lists = lists
-        .into_iter()
-        .filter(|(_, list): &(_, Vec<Layout>)| !list.is_empty());
-    let members = order
-        .into_iter()
-        .chain(lists.map(|(key, list)| (key, Layout::List(list))));
-    let members: Vec<_> = members.collect();
-    (!members.is_empty()).then(|| Layout::object(members))
+    Members::default()
+        .with("order", shape.order.map(|it| Layout::text(it.name())))
+        .with("next", some(next.collect()))
+        .with("final", those(|it| it.is_final))
+        .with("error", those(|it| it.is_error))
+        .some_object()
 }
 
 fn field(
@@ -136,41 +117,41 @@ fn field(
         let value = expressions.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
-    let mut members: Vec<(Cow<'_, str>, Layout)> = vec![
-        ("key".into(), Layout::text(&field.wire)),
-        ("type".into(), type_schema(context, &field.ty)),
-    ];
-    let mut flag = |key, is| members.extend(Layout::flag(key, is));
-    flag("optional".into(), field.optional);
-    flag("safe".into(), is_safe(field));
+    let mut members = Members::default()
+        .with("key", Layout::text(&field.wire))
+        .with("type", type_schema(context, &field.ty))
+        .with("optional", Layout::flag(field.optional))
+        .with("safe", Layout::flag(is_safe(field)));
     for quirk in marks.quirks_in_order() {
-        flag(Case::Camel.apply(quirk), true);
+        members = members.with(&Case::Camel.apply(quirk), Layout::flag(true));
     }
-    flag("sensitive".into(), field.sensitive);
-    if !marks.also.is_empty() {
-        members.push(("also".into(), Layout::texts(marks.also)));
-    }
-    members.extend(marks.form.map(|form| ("form".into(), Layout::text(form))));
-    members.extend(marks.constraints.iter().map(|(name, bound)| {
+    members = members
+        .with("sensitive", Layout::flag(field.sensitive))
+        .with(
+            "also",
+            (!marks.also.is_empty()).then(|| Layout::texts(marks.also)),
+        )
+        .with("form", marks.form.map(Layout::text));
+    for (name, bound) in &marks.constraints {
         let value = match bound {
             Bound::Number(value) => number(value, large),
             Bound::Range(least, most) => Layout::list([*least, *most].map(Layout::number)),
             Bound::Pattern(pattern) => Layout::text(pattern),
             Bound::Values(taken) => Layout::list(taken.iter().map(|it| held(field, it))),
         };
-        (Case::Camel.apply(name), value)
-    }));
-    let default = details.default.as_ref();
-    members.extend(default.map(|default| ("default".into(), held(field, default))));
-    members.extend(marks.condition.map(|condition| {
+        members = members.with(&Case::Camel.apply(name), value);
+    }
+    let default = details.default.as_ref().map(|it| held(field, it));
+    members = members.with("default", default);
+    if let Some(condition) = marks.condition {
         let asked = condition.fields.into_iter();
         let asked = asked.map(|(asked, values)| {
             let values = values.iter().map(|it| held(asked, it));
             (&*asked.name, Layout::list(values))
         });
-        (condition.word.into(), Layout::object(asked))
-    }));
-    Layout::object(members)
+        members = members.with(condition.word, Layout::object(asked));
+    }
+    members.object()
 }
 
 /// What a type is in a schema.

@@ -5,6 +5,7 @@ use crate::package::source::join;
 use crate::package::style::{Comment, Style};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 pub use crate::package::source::Source;
 
@@ -87,7 +88,6 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// A float as a literal.
 pub fn float(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
@@ -127,21 +127,23 @@ pub fn nothing(mut out: Source) -> String {
     out.finish()
 }
 
-/// `import type { a, b } from 'path'`, sorted.
-pub fn import_types<S: AsRef<str>>(out: &mut Source, names: &[S], path: &str) {
-    named(out, "import type", names, path);
-}
-
-/// `import { a, b } from 'path'`, sorted.
-pub fn import<S: AsRef<str>>(out: &mut Source, names: &[S], path: &str) {
-    named(out, "import", names, path);
+pub fn property(name: &str, ty: &str, is_optional: bool) -> String {
+    if is_optional {
+        format!("{name}?: {ty} | undefined")
+    } else {
+        format!("{name}: {ty}")
+    }
 }
 
 /// `word { a, b } from 'path'`, sorted.
-pub fn named<S: AsRef<str>>(out: &mut Source, word: &str, names: &[S], path: &str) {
-    let mut names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
-    names.sort_unstable();
-    names.dedup();
+pub fn named<S: AsRef<str>>(
+    out: &mut Source,
+    word: &str,
+    names: impl IntoIterator<Item = S>,
+    path: &str,
+) {
+    let names: BTreeSet<String> = names.into_iter().map(|it| it.as_ref().to_owned()).collect();
+    let names: Vec<String> = names.into_iter().collect();
     let line = format!("{word} {{ {} }} from '{path}'", join(&names));
     match names.as_slice() {
         [] => {}

@@ -5,7 +5,7 @@ use super::context::{Context, imported, is_large, own};
 use super::group::{Group, has_default};
 use super::layout::Layout;
 use super::operations::typed;
-use super::source::{head, import_types, literal, nothing};
+use super::source::{head, literal, named, nothing};
 use crate::package::about;
 use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
@@ -13,13 +13,11 @@ use crate::package::facts;
 use crate::sample::Samples;
 use fc_spec::model::Value;
 
-/// What `defaults.ts` says of itself.
 pub const DEFAULTS: [&str; 2] = [
     "字段不出现时的含义，用 `withDefaults` 填入。",
     "Defaults of absent fields; `withDefaults` fills them in.",
 ];
 
-/// `tables.ts`.
 pub fn file(context: &Context<'_>) -> String {
     let mut out = head(about::TABLES);
     let tables = &context.package.tables;
@@ -52,9 +50,10 @@ pub fn file(context: &Context<'_>) -> String {
 /// `defaults.ts` of a group: a constant for each struct of which a field may be absent and means something then.
 pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(DEFAULTS);
-    import_types(
+    named(
         &mut out,
-        &[imported(context, "DefaultsOf")],
+        "import type",
+        [imported(context, "DefaultsOf")],
         "../../../src/runtime.ts",
     );
     out.line("import * as messages from '../../messages.ts'");

@@ -1,10 +1,10 @@
 //! `wire.ts`: the envelopes, the result codes, and the numbers of the protocol beneath its messages.
 
 use super::context::{Context, is_64_bit, type_of};
-use super::layout::Layout;
+use super::layout::{Layout, Members};
 use super::operations::ack_policy;
 use super::schemas::type_schema;
-use super::source::{head, import_types};
+use super::source::{head, named, property};
 use crate::package::about;
 use crate::package::docs::Docs;
 use crate::package::items::Spelled;
@@ -18,11 +18,15 @@ use fc_spec::model::{
 /// What the runtime bounds where no protocol says anything of it.
 const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 << 20)];
 
-/// The file.
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
     let mut out = head(about::WIRE);
-    import_types(&mut out, &["Struct", "Wire"], "../src/runtime.ts");
+    named(
+        &mut out,
+        "import type",
+        ["Struct", "Wire"],
+        "../src/runtime.ts",
+    );
     envelope(
         &mut out,
         context,
@@ -59,12 +63,11 @@ fn envelope(
         interface(out, context, name, fields);
     }
     let schemas = fields.iter().map(|field| {
-        let mut schema = vec![
-            ("key", Layout::text(&field.wire)),
-            ("type", type_schema(context, &field.ty)),
-        ];
-        schema.extend(Layout::flag("optional", field.optional));
-        (&*field.name, Layout::object(schema))
+        let schema = Members::default()
+            .with("key", Layout::text(&field.wire))
+            .with("type", type_schema(context, &field.ty))
+            .with("optional", Layout::flag(field.optional));
+        (&*field.name, schema.object())
     });
     let members = [
         ("is", Layout::text("struct")),
@@ -88,11 +91,7 @@ fn interface(
             let ty = type_of(context, &field.ty, is_64_bit(&field.ty));
             out.blank();
             out.docs(&Docs::titled(&field.text));
-            out.line(if field.optional {
-                format!("{}?: {ty} | undefined", field.name)
-            } else {
-                format!("{}: {ty}", field.name)
-            });
+            out.line(property(&field.name, &ty, field.optional));
         }
     });
 }
@@ -201,6 +200,7 @@ fn frame(context: &Context<'_>) -> Layout {
             ("role", Layout::text(role)),
         ])
     };
+    let headers = frame.header.iter().map(|it| Layout::object(header(it)));
     let kinds = frame.kinds.each().into_iter();
     let encodings = frame.encodings.iter();
     Layout::lines([
@@ -209,7 +209,7 @@ fn frame(context: &Context<'_>) -> Layout {
             "headerLength",
             Layout::Number(frame.header_len().to_string()),
         ),
-        ("header", Layout::list(frame.header.iter().map(header))),
+        ("header", Layout::list(headers)),
         ("requestHead", bytes(&frame.request_head)),
         ("responseHead", bytes(&frame.response_head)),
         (
@@ -223,25 +223,26 @@ fn frame(context: &Context<'_>) -> Layout {
     ])
 }
 
-fn header(field: &HeaderField) -> Layout {
-    let or_null = |word: Option<&str>| word.map_or_else(|| Layout::word("null"), Layout::text);
+/// The numbers of a header field.
+pub fn header(field: &HeaderField) -> [(&'static str, Layout); 7] {
     let ty = match field.ty {
         HeaderType::Bytes(_) => "bytes",
         _ => "uint",
     };
-    Layout::object([
+    let zero_when_plain = field.has_quirk(HeaderQuirk::ZeroWhenPlain);
+    [
         ("offset", Layout::Number(field.offset.to_string())),
         ("size", Layout::Number(field.ty.size().to_string())),
         ("type", Layout::text(ty)),
-        ("role", or_null(field.role.map(HeaderRole::name))),
+        (
+            "role",
+            Layout::text_or_null(field.role.map(HeaderRole::name)),
+        ),
         (
             "algorithm",
-            or_null(field.digest().map(DigestAlgorithm::name)),
+            Layout::text_or_null(field.digest().map(DigestAlgorithm::name)),
         ),
         ("value", Layout::number(field.value)),
-        (
-            "zeroWhenPlain",
-            Layout::word(field.has_quirk(HeaderQuirk::ZeroWhenPlain).to_string()),
-        ),
-    ])
+        ("zeroWhenPlain", Layout::word(zero_when_plain.to_string())),
+    ]
 }
