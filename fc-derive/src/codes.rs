@@ -13,7 +13,7 @@ pub fn distinct(
 ) -> TokenStream {
     let checks = spans.enumerate().map(|(index, span)| {
         moved(
-            quote!(const _: () = #runtime::protocol::first_of_its_code(CODES, #index);),
+            quote!(const _: () = #runtime::operation::first_of_its_code(CODES, #index);),
             span,
         )
     });

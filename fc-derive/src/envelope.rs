@@ -201,7 +201,7 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
     };
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::#trait_name for #ident {
+        impl #runtime::#trait_name for #ident {
             #[allow(unused_variables)]
             fn at(#arguments) -> Self {
                 Self {
@@ -254,7 +254,7 @@ fn stub(envelope: &Envelope<'_>) -> TokenStream {
     };
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::#trait_name for #ident {
+        impl #runtime::#trait_name for #ident {
             fn at(#arguments) -> Self { #todo }
             fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
             #results

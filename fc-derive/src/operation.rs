@@ -196,7 +196,7 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
     for States { ty, variants } in operation.accepted_in.get().map_or(&[][..], Vec::as_slice) {
         states.extend(quote! {
             #[automatically_derived]
-            impl #runtime::needs::AcceptedIn<#ty> for #ident {
+            impl #runtime::AcceptedIn<#ty> for #ident {
                 const STATES: &'static [#ty] = &[#(#ty::#variants),*];
             }
         });
@@ -206,12 +206,12 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
             #states
 
             #[automatically_derived]
-            impl #runtime::protocol::Command for #ident {
+            impl #runtime::Command for #ident {
                 type Response = #response;
                 type Error = #error;
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
-                const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
+                const EFFECT: #runtime::Effect = #runtime::Effect::#effect;
             }
 
             #set_off
@@ -277,7 +277,7 @@ fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Toke
             timeout_ms,
             retries,
         }) => quote! {
-            ::core::option::Option::Some(#runtime::protocol::AckPolicy {
+            ::core::option::Option::Some(#runtime::AckPolicy {
                 timeout: ::core::time::Duration::from_millis(#timeout_ms),
                 retries: #retries,
             })
@@ -286,10 +286,10 @@ fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Toke
     let write = |code: TokenStream, name: TokenStream| {
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::Report for #ident {
+            impl #runtime::Report for #ident {
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
-                const ACK: ::core::option::Option<#runtime::protocol::AckPolicy> = #ack;
+                const ACK: ::core::option::Option<#runtime::AckPolicy> = #ack;
 
                 #process
             }

@@ -157,7 +157,7 @@ pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStre
         });
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::SetsOff<#report> for #command {
+            impl #runtime::SetsOff<#report> for #command {
                 #test
             }
         }
@@ -168,7 +168,7 @@ pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStre
 /// What `Report` says of the process.
 pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> TokenStream {
     let ty = state.map_or_else(
-        || quote!(#runtime::protocol::Stateless),
+        || quote!(#runtime::Stateless),
         |StateAt { ty, .. }| quote!(#ty),
     );
     let state = state.map(|StateAt { way, .. }| {
@@ -182,14 +182,14 @@ pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> Token
     let failure = (!failures.is_empty()).then(|| {
         let own = state.as_ref().map(|_| {
             quote! {
-                #runtime::protocol::Report::state(self)
-                    .is_some_and(|state| #runtime::protocol::State::says_failed(&state)) ||
+                #runtime::Report::state(self)
+                    .is_some_and(|state| #runtime::State::says_failed(&state)) ||
             }
         });
         let failures = failures.iter().map(|way| way.within(&quote!(self)));
         quote! {
             fn is_failure(&self) -> ::core::primitive::bool {
-                #own #(#failures.is_some_and(#runtime::protocol::State::says_failed))||*
+                #own #(#failures.is_some_and(#runtime::State::says_failed))||*
             }
         }
     });

@@ -113,7 +113,7 @@ fn code(
     let types: Vec<_> = reports.typed.iter().map(|(_, ty)| ty).collect();
     let codes: Vec<_> = types
         .iter()
-        .map(|ty| quote_spanned!(span_of(ty)=> <#ty as #runtime::protocol::Report>::CODE))
+        .map(|ty| quote_spanned!(span_of(ty)=> <#ty as #runtime::Report>::CODE))
         .collect();
     let distinct = distinct(runtime, &codes, types.iter().map(span_of));
     quote! {

@@ -11,7 +11,8 @@ use crate::client::{
     self, CallError, ClientConfig, ConnectError, FollowError, Followed, RawReports,
 };
 use crate::json::BodyError;
-use crate::protocol::{Command, Protocol, Report, SetsOff};
+use crate::operation::{Command, Report, SetsOff};
+use crate::protocol::Protocol;
 use crate::raw::RawReport;
 use std::fmt;
 use std::io;

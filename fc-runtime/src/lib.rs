@@ -54,12 +54,14 @@ pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
 pub mod needs;
+pub mod operation;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;
 #[cfg(feature = "net")]
 mod rate;
 mod raw;
+mod refusal;
 #[cfg(feature = "server")]
 pub mod server;
 #[cfg(feature = "frames")]
@@ -70,6 +72,7 @@ mod stream;
 mod thin;
 #[cfg(feature = "net")]
 mod trace;
+pub mod wire;
 
 #[cfg(feature = "client")]
 pub use client::{
@@ -92,13 +95,14 @@ pub use json::{
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
-pub use needs::{AcceptedIn, AcceptedStates, Cadence, Preconditions, States};
-pub use protocol::{
-    AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
-    OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
-    SetsOff, State, Stateless, Undeclared,
+pub use needs::{AcceptedStates, Cadence, Preconditions, States};
+pub use operation::{
+    AcceptedIn, AckPolicy, BodyInfo, Command, DeclaredError, Effect, OperationInfo, OperationKind,
+    Report, ResultText, SetsOff, State, Stateless, Undeclared,
 };
-pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
+pub use protocol::{Defaults, Protocol, RequestEnvelope, ResponseEnvelope, Results};
+pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse};
+pub use refusal::Refusal;
 #[cfg(feature = "server")]
 pub use server::{
     AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling,
@@ -109,6 +113,7 @@ pub use server::{
 pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
 pub use stream::StreamFrame;
+pub use wire::{Header, Limits};
 
 /// Its examples compile.
 #[cfg(doctest)]

@@ -1,28 +1,6 @@
 //! What the spec says of when a command is accepted and of when a report is sent.
 
-use crate::protocol::Command;
 use std::time::Duration;
-
-/// A command that a peer accepts in some states only, as an enum of the protocol names them. `#[derive(Command)]` writes it.
-///
-/// A robot refuses with it in one line:
-///
-/// ```ignore
-/// if !CloseDoorRequest::accepted_in(&state) {
-///     return Err(Refusal::new(code, "not now"));
-/// }
-/// ```
-pub trait AcceptedIn<State: PartialEq + 'static>: Command {
-    /// All of them.
-    const STATES: &'static [State];
-
-    /// Whether it is accepted in this state, as far as it depends on states of this enum. One that the spec does not know
-    /// is none of them.
-    #[must_use]
-    fn accepted_in(state: &State) -> bool {
-        Self::STATES.contains(state)
-    }
-}
 
 /// What has to hold before a command is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -39,9 +39,9 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         .collect();
     let codes: Vec<_> = requests
         .iter()
-        .map(|(_, request)| {
-            quote_spanned!(span_of(request)=> <#request as #runtime::protocol::Command>::CODE)
-        })
+        .map(
+            |(_, request)| quote_spanned!(span_of(request)=> <#request as #runtime::Command>::CODE),
+        )
         .collect();
     let distinct = distinct(
         runtime,

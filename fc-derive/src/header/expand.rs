@@ -42,7 +42,7 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     let digest = digest.map_or_else(|| quote!([0; 16]), read_digest);
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::Header for #ident {
+        impl #runtime::Header for #ident {
             type Digest = #runtime::digest::#algorithm;
 
             const LEN: ::core::primitive::usize = #len;
@@ -292,7 +292,7 @@ pub fn stub(header: &Header<'_>) -> TokenStream {
     let todo = quote!(::core::unimplemented!());
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::Header for #ident {
+        impl #runtime::Header for #ident {
             type Digest = #runtime::digest::NoDigest;
             const LEN: ::core::primitive::usize = 0;
             const TOTAL_LENGTH_END: ::core::primitive::usize = 0;

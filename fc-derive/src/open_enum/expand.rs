@@ -63,7 +63,7 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
         let in_order = in_order(choice, &failed);
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::State for #ident {
+            impl #runtime::State for #ident {
                 fn is_end(&self) -> ::core::primitive::bool {
                     #end
                 }

@@ -7,9 +7,12 @@ use crate::digest::{Compute as _, Sum};
 use crate::frame::{Body, Frame, FrameError, FrameId};
 use crate::json::{Allowance, BodyError};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{DigestOf, Header, OperationKind, Protocol, ResponseEnvelope, ResultText};
-use crate::raw::{RawReport, Refusal};
+use crate::operation::{OperationKind, ResultText};
+use crate::protocol::{DigestOf, Protocol, ResponseEnvelope};
+use crate::raw::RawReport;
+use crate::refusal::Refusal;
 use crate::session::Incoming;
+use crate::wire::Header;
 use std::task::Waker;
 use std::time::Instant;
 

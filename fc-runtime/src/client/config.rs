@@ -3,7 +3,8 @@
 use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
 use crate::link::KEEPALIVE;
-use crate::protocol::{Limits, Protocol};
+use crate::protocol::Protocol;
+use crate::wire::Limits;
 use std::time::Duration;
 
 /// How to come back after a connection has been lost.

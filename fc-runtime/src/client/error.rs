@@ -3,8 +3,8 @@
 use super::loss::Loss;
 use crate::frame::FrameError;
 use crate::json::BodyError;
-use crate::protocol::Command;
-use crate::raw::Refusal;
+use crate::operation::Command;
+use crate::refusal::Refusal;
 use crate::session::Busy;
 use std::io;
 

@@ -43,7 +43,8 @@ pub use reports::RawReports;
 pub use state::ClientCounters;
 
 use crate::link::Transport;
-use crate::protocol::{Command, Protocol};
+use crate::operation::Command;
+use crate::protocol::Protocol;
 use crate::raw::RawResponse;
 use connecting::{By, Dial, Tcp};
 use state::{Handle, Inner};

@@ -2,10 +2,11 @@
 
 use super::Frame;
 use super::buffer::Buffer;
-use super::digest::{Digesting, LONG};
+use super::digesting::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
-use crate::protocol::{DigestOf, Header, Limits, Protocol};
+use crate::protocol::{DigestOf, Protocol};
+use crate::wire::{Header, Limits};
 use std::marker::PhantomData;
 use std::ops::Range;
 

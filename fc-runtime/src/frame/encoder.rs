@@ -1,14 +1,15 @@
 //! Messages to bytes.
 
 #[cfg(feature = "server")]
-use super::digest::{Digesting, LONG};
+use super::digesting::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 #[cfg(feature = "server")]
 use super::prepared_response::PreparedBody;
 use crate::digest::{Compute as _, Sum};
 use crate::message::{Message, write_enveloped};
-use crate::protocol::{DigestOf, Header, Protocol};
+use crate::protocol::{DigestOf, Protocol};
+use crate::wire::Header;
 use std::fmt;
 use std::marker::PhantomData;
 #[cfg(feature = "server")]

@@ -1,6 +1,7 @@
 //! What can be wrong with a frame.
 
-use crate::protocol::{Header, Protocol};
+use crate::protocol::Protocol;
+use crate::wire::Header;
 use std::fmt;
 
 /// Which message a frame belongs to: what an answer to it has to echo.

@@ -11,7 +11,7 @@
 
 mod buffer;
 mod decoder;
-mod digest;
+mod digesting;
 mod encoder;
 mod error;
 mod gzip;
@@ -22,9 +22,10 @@ pub use buffer::Body;
 pub use decoder::Decoder;
 #[cfg(feature = "server")]
 pub(crate) use decoder::Work;
-pub(crate) use digest::Compute;
+#[cfg(test)]
+pub(crate) use digesting::Digesting;
 #[cfg(any(feature = "client", feature = "server"))]
-pub(crate) use digest::LONG;
+pub(crate) use digesting::LONG;
 #[cfg(feature = "client")]
 pub(crate) use encoder::Staged;
 #[cfg(feature = "server")]

@@ -2,7 +2,8 @@
 
 use super::Family;
 use crate::clock;
-use crate::protocol::{OperationKind, Protocol};
+use crate::operation::OperationKind;
+use crate::protocol::Protocol;
 use metrics::{Histogram, Unit};
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};

@@ -1,7 +1,7 @@
 //! Who may connect, and who may call what.
 
 use super::network::Network;
-use crate::protocol::Effect;
+use crate::operation::Effect;
 use std::net::IpAddr;
 
 /// A set of effects.

@@ -9,10 +9,9 @@ use crate::frame::{FrameError, FrameId, PreparedBody};
 use crate::json::{BodyError, Json, decode, to_vec};
 use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
-use crate::protocol::{
-    DigestOf, Effect, OperationInfo, OperationKind, Protocol, ResponseEnvelope, ResultText,
-};
-use crate::raw::Refusal;
+use crate::operation::{Effect, OperationInfo, OperationKind, ResultText};
+use crate::protocol::{DigestOf, Protocol, ResponseEnvelope};
+use crate::refusal::Refusal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The envelope of success.

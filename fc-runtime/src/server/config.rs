@@ -5,8 +5,10 @@ use super::network::Network;
 use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip, Work};
 use crate::link::KEEPALIVE;
-use crate::protocol::{Effect, Limits, Protocol};
+use crate::operation::Effect;
+use crate::protocol::Protocol;
 use crate::rate::Least;
+use crate::wire::Limits;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use super::connection_id::ConnectionId;
 use super::peer::Peer;
 use crate::clock;
 use crate::protocol::Protocol;
-use crate::raw::Refusal;
+use crate::refusal::Refusal;
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;

@@ -4,8 +4,8 @@ use super::budget::Charge;
 use super::connection_id::ConnectionId;
 use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
-use crate::protocol::AckPolicy;
-use crate::raw::Refusal;
+use crate::operation::AckPolicy;
+use crate::refusal::Refusal;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
 

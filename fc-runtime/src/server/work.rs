@@ -1,6 +1,6 @@
 //! A handler at work as those see it who go on with it: neither its protocol nor its answer is told.
 
-use crate::protocol::Effect;
+use crate::operation::Effect;
 use std::task::{Context, Poll};
 
 /// What moves must not stop because an app is gone, and what nobody knows may move.

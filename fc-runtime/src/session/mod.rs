@@ -13,7 +13,9 @@ pub(crate) use deadline::after;
 pub use outgoing::{Busy, Due};
 
 use crate::frame::FrameId;
-use crate::protocol::{AckPolicy, Header, Limits, Protocol};
+use crate::operation::AckPolicy;
+use crate::protocol::Protocol;
+use crate::wire::{Header, Limits};
 use outgoing::Outgoing;
 use seen::Seen;
 use std::marker::PhantomData;

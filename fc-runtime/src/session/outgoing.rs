@@ -2,7 +2,7 @@
 
 use super::deadline::after;
 use crate::frame::FrameId;
-use crate::protocol::AckPolicy;
+use crate::operation::AckPolicy;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Instant;

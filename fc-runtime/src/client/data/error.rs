@@ -3,7 +3,7 @@
 use crate::client::loss::Loss;
 use crate::frame::{FrameError, FrameId};
 use crate::json::BodyError;
-use crate::raw::Refusal;
+use crate::refusal::Refusal;
 
 /// Why a frame of raw bytes could not be sent, or what came instead of one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
