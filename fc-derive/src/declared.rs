@@ -2,6 +2,7 @@
 
 use crate::attr::{self, Item, NumberValue, Slot};
 use crate::faults::Faults;
+use crate::item;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::HashSet;
@@ -9,22 +10,9 @@ use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Token, Variant};
 
 /// Writes the implementation, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an enum of errors",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let item = "an enum of errors";
+    let runtime = item::read_attributes(input, &mut faults, item, &mut |_, _| Ok(Item::Unknown));
     let errors = match &input.data {
         Data::Enum(data) => {
             if data.variants.is_empty() {
@@ -44,7 +32,6 @@ pub fn expand(input: TokenStream) -> TokenStream {
         let message = format!("{} is the code of another variant, too", error.code);
         faults.on(error.ident, message);
     }
-    let runtime = attr::runtime(runtime);
     faults.finish(
         || code(&input.ident, &runtime, &errors),
         || stub(&input.ident, &runtime),

@@ -11,12 +11,7 @@ use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Expr, Fields, Ident, Token, Type};
 
 /// Writes a constant and an accessor for each default, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let mut found = Vec::new();
     if let Data::Struct(data) = &input.data
         && let Fields::Named(fields) = &data.fields
@@ -30,7 +25,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
             "`Defaults` is for structs whose fields have names",
         );
     }
-    faults.finish(|| code(&input, &found), TokenStream::new)
+    faults.finish(|| code(input, &found), TokenStream::new)
 }
 
 /// A field whose absence means something.

@@ -2,19 +2,15 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::parse::ParseStream;
-use syn::{Data, DeriveInput, Field, Fields, Ident, LitStr, Path, Type};
+use syn::{DeriveInput, Field, Ident, LitStr, Path, Type};
 
 /// Writes the envelope trait, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let envelope = Envelope::read(&input, &mut faults);
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let envelope = Envelope::read(input, &mut faults);
     faults.finish(|| code(&envelope), || stub(&envelope))
 }
 
@@ -48,37 +44,29 @@ enum Role {
 
 impl<'a> Envelope<'a> {
     fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
         let mut side = Slot::default();
-        attr::read(&input.attrs, faults, "an envelope", &mut |key, input| {
-            match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "envelope" => side.set(key, read_side(input)),
-                // `Message` reads the rest, and refuses what nobody reads.
-                _ => Ok(Item::Foreign),
+        let runtime = item::read_attributes(input, faults, "an envelope", &mut |key, input| {
+            if key == "envelope" {
+                return side.set(key, read_side(input));
             }
+            // `Message` reads all other keys and reports unknown ones.
+            Ok(Item::Foreign)
         });
         let message = "the side is missing: `#[fc(envelope = \"request\")]` or `\"response\"`";
         let side = side.required(faults, &input.ident, message).copied();
         let mut envelope = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             side,
             time: None,
             result_code: None,
             result_text: None,
             rest: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => {
-                if let Fields::Named(fields) = &data.fields {
-                    for field in &fields.named {
-                        envelope.add(field, faults);
-                    }
-                }
+        if let Some(fields) = item::fields(input, faults, "an envelope is a struct", "") {
+            for field in fields {
+                envelope.add(field, faults);
             }
-            Data::Enum(data) => faults.on(&data.enum_token, "an envelope is a struct"),
-            Data::Union(data) => faults.on(&data.union_token, "an envelope is a struct"),
         }
         if envelope.result_text.is_some() && envelope.result_code.is_none() {
             faults.on(

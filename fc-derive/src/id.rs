@@ -1,7 +1,8 @@
 //! `#[derive(Id)]`: an id with a type of its own, which travels as what it holds.
 
-use crate::attr::{self, Item, Slot};
+use crate::attr::Item;
 use crate::faults::Faults;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::quote_spanned;
@@ -11,24 +12,9 @@ use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
 const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
 
 /// Writes the implementations, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an id",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
-    let runtime = attr::runtime(runtime);
-    let held = held(&input, &mut faults);
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let runtime = item::read_attributes(input, &mut faults, "an id", &mut |_, _| Ok(Item::Unknown));
+    let held = held(input, &mut faults);
     faults.finish(
         || held.map_or_else(TokenStream::new, |held| code(&input.ident, &runtime, &held)),
         TokenStream::new,

@@ -18,6 +18,8 @@ mod envelope;
 mod faults;
 mod header;
 mod id;
+mod item;
+mod json;
 mod message;
 mod new;
 mod one_of;
@@ -32,6 +34,10 @@ mod span;
 mod tests;
 
 use proc_macro::TokenStream;
+
+fn derive(input: TokenStream, expand: item::Expand) -> TokenStream {
+    item::derive(input.into(), expand).into()
+}
 
 /// A JSON object with known keys: `FromJson`, `ToJson` and `Message`.
 ///
@@ -75,7 +81,7 @@ use proc_macro::TokenStream;
 /// ```
 #[proc_macro_derive(Message, attributes(fc))]
 pub fn derive_message(input: TokenStream) -> TokenStream {
-    message::expand(input.into()).into()
+    derive(input, message::expand)
 }
 
 /// `new` with the required fields of a struct, in their order, and `with_…` for each that is an
@@ -99,7 +105,7 @@ pub fn derive_message(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(New, attributes(fc))]
 pub fn derive_new(input: TokenStream) -> TokenStream {
-    new::expand(input.into()).into()
+    derive(input, new::expand)
 }
 
 /// What the absence of a field means, beside [`Message`](derive@Message): for each `Option` with
@@ -125,7 +131,7 @@ pub fn derive_new(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(Defaults, attributes(fc))]
 pub fn derive_defaults(input: TokenStream) -> TokenStream {
-    defaults::expand(input.into()).into()
+    derive(input, defaults::expand)
 }
 
 /// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a
@@ -151,7 +157,7 @@ pub fn derive_defaults(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(OpenEnum, attributes(fc))]
 pub fn derive_open_enum(input: TokenStream) -> TokenStream {
-    open_enum::expand(input.into()).into()
+    derive(input, open_enum::expand)
 }
 
 /// An id with a type of its own, so that none is taken for another: `FromJson`, `ToJson`, `Display`, and `From` what it
@@ -180,7 +186,7 @@ pub fn derive_open_enum(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(Id, attributes(fc))]
 pub fn derive_id(input: TokenStream) -> TokenStream {
-    id::expand(input.into()).into()
+    derive(input, id::expand)
 }
 
 /// A choice of messages, told apart by their required keys: `FromJson` and `ToJson`.
@@ -189,7 +195,7 @@ pub fn derive_id(input: TokenStream) -> TokenStream {
 /// [`OpenEnum`](derive@OpenEnum) it is closed: a value that has the required keys of none is refused.
 #[proc_macro_derive(OneOf, attributes(fc))]
 pub fn derive_one_of(input: TokenStream) -> TokenStream {
-    one_of::expand(input.into()).into()
+    derive(input, one_of::expand)
 }
 
 /// A request with a code, beside [`Message`](derive@Message): `Command`.
@@ -205,7 +211,7 @@ pub fn derive_one_of(input: TokenStream) -> TokenStream {
 /// marked with `?`.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
-    operation::expand_command(input.into()).into()
+    derive(input, operation::expand_command)
 }
 
 /// The results besides success with which a command may be refused, by name: `DeclaredError`.
@@ -227,7 +233,7 @@ pub fn derive_command(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(DeclaredError, attributes(fc))]
 pub fn derive_declared_error(input: TokenStream) -> TokenStream {
-    declared::expand(input.into()).into()
+    derive(input, declared::expand)
 }
 
 /// A report with a code, beside [`Message`](derive@Message): `Report`.
@@ -238,7 +244,7 @@ pub fn derive_declared_error(input: TokenStream) -> TokenStream {
 /// failed. A field that is an `Option` is marked with `?`: `state(data?.status: RechargeStatus)`.
 #[proc_macro_derive(Report, attributes(fc))]
 pub fn derive_report(input: TokenStream) -> TokenStream {
-    operation::expand_report(input.into()).into()
+    derive(input, operation::expand_report)
 }
 
 /// The fixed bytes in front of a frame's data: `Header`.
@@ -251,7 +257,7 @@ pub fn derive_report(input: TokenStream) -> TokenStream {
 /// value it is sent with (`role = "status"` may be given as well).
 #[proc_macro_derive(Header, attributes(fc))]
 pub fn derive_header(input: TokenStream) -> TokenStream {
-    header::expand(input.into()).into()
+    derive(input, header::expand)
 }
 
 /// The keys beside a message's own, beside [`Message`](derive@Message): `RequestEnvelope` or
@@ -263,7 +269,7 @@ pub fn derive_header(input: TokenStream) -> TokenStream {
 /// says that all went well, and what did not is not answered. Other fields are sent as their `Default`.
 #[proc_macro_derive(Envelope, attributes(fc))]
 pub fn derive_envelope(input: TokenStream) -> TokenStream {
-    envelope::expand(input.into()).into()
+    derive(input, envelope::expand)
 }
 
 /// A choice of reports, told apart by code: `from_raw`.
@@ -273,13 +279,13 @@ pub fn derive_envelope(input: TokenStream) -> TokenStream {
 #[cfg(feature = "client")]
 #[proc_macro_derive(Dispatch, attributes(fc))]
 pub fn derive_dispatch(input: TokenStream) -> TokenStream {
-    reports::expand(input.into()).into()
+    derive(input, reports::expand)
 }
 
 /// `Debug` that does not print the fields marked `#[fc(sensitive)]`.
 #[proc_macro_derive(RedactedDebug, attributes(fc))]
 pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
-    redacted::expand(input.into()).into()
+    derive(input, redacted::expand)
 }
 
 /// Makes a trait of `async` methods, one per command, into a service.

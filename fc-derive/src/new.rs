@@ -2,36 +2,20 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote, quote_spanned};
 use syn::ext::IdentExt as _;
-use syn::{Data, DeriveInput, Fields, GenericArgument, Ident, PathArguments, Type};
+use syn::{DeriveInput, GenericArgument, Ident, PathArguments, Type};
 
 /// Writes `new`, the setters and, for two or more required fields, the struct that names them; or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut fields = Vec::new();
-    match &input.data {
-        Data::Struct(data) => match &data.fields {
-            Fields::Named(named) => {
-                for field in &named.named {
-                    fields.extend(Field::read(field, &mut faults));
-                }
-            }
-            Fields::Unit => {}
-            Fields::Unnamed(unnamed) => {
-                faults.on(unnamed, "`New` is for structs whose fields have names");
-            }
-        },
-        Data::Enum(data) => faults.on(&data.enum_token, "`New` is for structs"),
-        Data::Union(data) => faults.on(&data.union_token, "`New` is for structs"),
-    }
-    faults.finish(|| code(&input, &fields), TokenStream::new)
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut faults, "New")
+        .into_iter()
+        .filter_map(|field| Field::read(field, &mut faults))
+        .collect();
+    faults.finish(|| code(input, &fields), TokenStream::new)
 }
 
 /// A field and where its value comes from.

@@ -9,29 +9,6 @@ use quote::quote;
 use syn::parse::{Parse as _, ParseStream};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
-/// Writes `Command`, or the faults and a stub.
-pub fn expand_command(input: TokenStream) -> TokenStream {
-    expand(input, command)
-}
-
-/// Writes `Report`, or the faults and a stub.
-pub fn expand_report(input: TokenStream) -> TokenStream {
-    expand(input, report)
-}
-
-fn expand(
-    input: TokenStream,
-    code: fn(&DeriveInput, Operation, Faults) -> TokenStream,
-) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let operation = Operation::read(&input, &mut faults);
-    code(&input, operation, faults)
-}
-
 /// What the attributes say of an operation.
 #[derive(Default)]
 struct Operation {
@@ -162,7 +139,9 @@ fn missing(key: &str, example: &str) -> String {
     format!("`{key}` is missing: `#[fc({key} = {example})]`")
 }
 
-fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+/// Writes `Command`, or the faults and a stub.
+pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let operation = Operation::read(input, &mut faults);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
@@ -236,7 +215,9 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
     )
 }
 
-fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+/// Writes `Report`, or the faults and a stub.
+pub fn expand_report(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let operation = Operation::read(input, &mut faults);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation

@@ -2,41 +2,19 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::item;
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::ext::IdentExt as _;
-use syn::{Data, DeriveInput, Field, Fields, Ident};
+use syn::{DeriveInput, Field, Ident};
 
 /// Writes `Debug`, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut fields = Vec::new();
-    match &input.data {
-        Data::Struct(data) => match &data.fields {
-            Fields::Named(named) => {
-                fields.extend(
-                    named
-                        .named
-                        .iter()
-                        .filter_map(|field| read(field, &mut faults)),
-                );
-            }
-            Fields::Unit => {}
-            Fields::Unnamed(unnamed) => {
-                faults.on(
-                    unnamed,
-                    "`RedactedDebug` is for structs whose fields have names",
-                );
-            }
-        },
-        Data::Enum(data) => faults.on(&data.enum_token, "`RedactedDebug` is for structs"),
-        Data::Union(data) => faults.on(&data.union_token, "`RedactedDebug` is for structs"),
-    }
-    faults.finish(|| code(&input, &fields), || code(&input, &[]))
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut faults, "RedactedDebug")
+        .into_iter()
+        .filter_map(|field| read(field, &mut faults))
+        .collect();
+    faults.finish(|| code(input, &fields), || code(input, &[]))
 }
 
 /// A field and whether it is sensitive.

@@ -3,57 +3,40 @@
 use crate::attr::{self, Item, Slot};
 use crate::codes::distinct;
 use crate::faults::Faults;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
-use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
 /// Writes `from_raw`, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let mut protocol = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an enum of reports",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            "protocol" => protocol.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
+    let item = "an enum of reports";
+    let runtime = item::read_attributes(input, &mut faults, item, &mut |key, input| {
+        if key == "protocol" {
+            protocol.set(key, attr::path(input))
+        } else {
+            Ok(Item::Unknown)
+        }
+    });
     let message = "`protocol` is missing: `#[fc(protocol = Fc)]`";
     protocol.required(&mut faults, &input.ident, message);
     let mut reports = Reports::default();
-    match &input.data {
-        Data::Enum(data) => {
-            for variant in &data.variants {
-                reports.add(variant, &mut faults);
-            }
-            if reports.unknown.is_none() {
-                faults.on(
-                    &input.ident,
-                    "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
-                );
-            }
+    let message = "`Dispatch` is for enums of reports";
+    if let Some(variants) = item::variants(input, &mut faults, message, "") {
+        for variant in variants {
+            reports.add(variant, &mut faults);
         }
-        Data::Struct(data) => faults.on(&data.struct_token, "`Dispatch` is for enums of reports"),
-        Data::Union(data) => faults.on(&data.union_token, "`Dispatch` is for enums of reports"),
+        if reports.unknown.is_none() {
+            faults.on(
+                &input.ident,
+                "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
+            );
+        }
     }
     faults.finish(
-        || {
-            code(
-                &input.ident,
-                &attr::runtime(runtime),
-                protocol.get(),
-                &reports,
-            )
-        },
+        || code(&input.ident, &runtime, protocol.get(), &reports),
         TokenStream::new,
     )
 }

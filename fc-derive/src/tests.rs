@@ -1,11 +1,10 @@
 //! The expansions as tokens, without a compiler.
 
+use crate::item::{Expand, derive};
 use proc_macro2::{TokenStream, TokenTree};
 use std::fs;
 use std::path::Path;
 use std::str::FromStr as _;
-
-type Expand = fn(TokenStream) -> TokenStream;
 
 const DERIVES: [(&str, Expand); 13] = [
     ("Message", crate::message::expand),
@@ -68,7 +67,7 @@ fn expansions(program: &str) -> Vec<TokenStream> {
                 let called = DERIVES
                     .iter()
                     .filter(|(name, _)| names.iter().any(|n| n == name));
-                expansions.extend(called.map(|(_, expand)| expand(rest())));
+                expansions.extend(called.map(|(_, expand)| derive(rest(), *expand)));
             }
             Some("dispatch") => {
                 expansions.push(crate::dispatch::expand(arguments.stream(), rest()));
@@ -169,9 +168,8 @@ fn expansions_stay_small() {
     let size = |tokens: TokenStream| tokens.to_string().split_whitespace().count();
     let message = |fields: &str| {
         let item = format!("struct S {{ {fields} #[fc(extra)] extra: Extra }}");
-        size(crate::message::expand(
-            TokenStream::from_str(&item).unwrap_or_default(),
-        ))
+        let item = TokenStream::from_str(&item).unwrap_or_default();
+        size(derive(item, crate::message::expand))
     };
     let fields = |count: usize| -> String {
         let field = |n| format!("#[fc(key = \"field{n}\", min = 0)] field_{n}: i32,");

@@ -2,8 +2,9 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::item;
 use syn::parse::ParseStream;
-use syn::{Data, DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
+use syn::{DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
 
 /// A struct with `#[derive(Header)]`.
 pub struct Header<'a> {
@@ -133,41 +134,32 @@ pub const ROLES: [(&str, Role); 9] = [
 impl<'a> Header<'a> {
     /// Reads the struct and its attributes.
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
         let mut byte_order = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "a header",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "byte_order" => byte_order.set(key, read_byte_order(input)),
-                _ => Ok(Item::Unknown),
-            },
-        );
+        let runtime = item::read_attributes(input, faults, "a header", &mut |key, input| {
+            if key == "byte_order" {
+                byte_order.set(key, read_byte_order(input))
+            } else {
+                Ok(Item::Unknown)
+            }
+        });
         let message = "the byte order is missing: `#[fc(byte_order = \"big\")]`";
         let byte_order = byte_order.required(faults, &input.ident, message).copied();
-        if !input.generics.params.is_empty() {
-            faults.on(&input.generics.params, "a header has no parameters");
-        }
+        item::forbid_parameters(&input.generics, faults, "a header");
         let mut header = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             byte_order: byte_order.unwrap_or(ByteOrder::Big),
             fields: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => match &data.fields {
-                Fields::Named(fields) => {
-                    for field in &fields.named {
-                        header.add(field, faults);
-                    }
+        match item::fields(input, faults, "a header is a struct", "") {
+            Some(Fields::Named(fields)) => {
+                for field in &fields.named {
+                    header.add(field, faults);
                 }
-                Fields::Unnamed(fields) => faults.on(fields, "the fields of a header have names"),
-                Fields::Unit => faults.on(&input.ident, "a header has fields"),
-            },
-            Data::Enum(data) => faults.on(&data.enum_token, "a header is a struct"),
-            Data::Union(data) => faults.on(&data.union_token, "a header is a struct"),
+            }
+            Some(Fields::Unnamed(fields)) => faults.on(fields, "the fields of a header have names"),
+            Some(Fields::Unit) => faults.on(&input.ident, "a header has fields"),
+            None => {}
         }
         header
     }

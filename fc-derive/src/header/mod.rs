@@ -10,13 +10,8 @@ use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
 /// Writes `Header`, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let header = Header::read(&input, &mut faults);
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let header = Header::read(input, &mut faults);
     let roles = valid::check(&header, &mut faults);
     faults.finish(
         || {

@@ -3,13 +3,12 @@
 use super::condition::{self, Asked};
 use crate::attr::{self, Item, Number, NumberValue, Slot};
 use crate::faults::Faults;
+use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::{Parse, ParseStream};
-use syn::{
-    Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility,
-};
+use syn::{DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
@@ -97,44 +96,37 @@ pub enum Lenient {
 impl<'a> Message<'a> {
     /// Reads the struct and its attributes.
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
         let mut example = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "a message",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
+        let runtime =
+            item::read_attributes(input, faults, "a message", &mut |key, input| match key
+                .to_string()
+                .as_str()
+            {
                 "example" => example.set(key, attr::text(input)),
                 "code" | "name" | "effect" | "response" | "error" | "ack" | "accepted_in"
                 | "envelope" | "sets_off" | "state" | "failure" => Ok(Item::Foreign),
                 _ => Ok(Item::Unknown),
-            },
-        );
+            });
         let mut message = Self {
             ident: &input.ident,
             vis: &input.vis,
             generics: &input.generics,
-            runtime: attr::runtime(runtime),
+            runtime,
             example,
             fields: Vec::new(),
             extra: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => match &data.fields {
-                Fields::Named(fields) => {
-                    for field in &fields.named {
-                        message.add(field, faults);
-                    }
+        let hint = "; a choice of messages is `OneOf`, a choice of values `OpenEnum`";
+        match item::fields(input, faults, "a message is a struct", hint) {
+            Some(Fields::Named(fields)) => {
+                for field in &fields.named {
+                    message.add(field, faults);
                 }
-                Fields::Unit => {}
-                Fields::Unnamed(fields) => faults.on(fields, "the fields of a message have names"),
-            },
-            Data::Enum(data) => faults.on(
-                &data.enum_token,
-                "a message is a struct; a choice of messages is `OneOf`, a choice of values `OpenEnum`",
-            ),
-            Data::Union(data) => faults.on(&data.union_token, "a message is a struct"),
+            }
+            Some(Fields::Unnamed(fields)) => {
+                faults.on(fields, "the fields of a message have names");
+            }
+            Some(Fields::Unit) | None => {}
         }
         message
     }

@@ -12,13 +12,8 @@ use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
 /// Writes the implementations, or the faults and stubs.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let message = Message::read(&input, &mut faults);
+pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+    let message = Message::read(input, &mut faults);
     valid::check(&message, &mut faults);
     faults.finish(|| expand::code(&message), || fallback::stub(&message))
 }

@@ -3,11 +3,12 @@
 use super::ast::{Field, Message};
 use super::condition;
 use crate::faults::Faults;
+use crate::item;
 use std::collections::HashSet;
 
 /// Finds every fault between attributes.
 pub fn check(message: &Message<'_>, faults: &mut Faults) {
-    check_generics(message, faults);
+    item::forbid_parameters(message.generics, faults, "a message");
     check_keys(message, faults);
     for (extra, _) in message.extra.iter().skip(1) {
         faults.on(
@@ -18,12 +19,6 @@ pub fn check(message: &Message<'_>, faults: &mut Faults) {
     for field in &message.fields {
         check_limits(field, faults);
         condition::check(message, field, faults);
-    }
-}
-
-fn check_generics(message: &Message<'_>, faults: &mut Faults) {
-    if !message.generics.params.is_empty() {
-        faults.on(&message.generics.params, "a message has no parameters");
     }
 }
 

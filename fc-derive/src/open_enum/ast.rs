@@ -2,11 +2,12 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
+use crate::item;
 use proc_macro2::TokenStream;
 use quote::ToTokens as _;
 use std::collections::HashSet;
 use syn::parse::{Parse as _, ParseStream};
-use syn::{Data, DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
 
 /// An enum with `#[derive(OpenEnum)]`.
 pub struct OpenEnum<'a> {
@@ -67,50 +68,33 @@ pub struct Value {
 impl<'a> OpenEnum<'a> {
     /// Reads the enum and its attributes.
     pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
         let mut repr = Slot::default();
         let mut order = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "an enum",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "repr" => repr.set(key, read_repr(input)),
-                "order" => order.set(key, read_order(input)),
-                _ => Ok(Item::Unknown),
-            },
-        );
+        let runtime = item::read_attributes(input, faults, "an enum", &mut |key, input| match key
+            .to_string()
+            .as_str()
+        {
+            "repr" => repr.set(key, read_repr(input)),
+            "order" => order.set(key, read_order(input)),
+            _ => Ok(Item::Unknown),
+        });
         let message = "what travels must be given: `#[fc(repr = u8)]` or `#[fc(repr = str)]`";
         let readable = repr.required(faults, &input.ident, message).is_some();
         let mut this = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             repr: repr.into_value().unwrap_or(Repr::Str),
             order: order.into_value(),
             values: Vec::new(),
             states: Vec::new(),
             other: Vec::new(),
         };
-        if !input.generics.params.is_empty() {
-            faults.on(
-                &input.generics.params,
-                "an enum of values has no parameters",
-            );
-        }
-        match &input.data {
-            Data::Enum(data) => {
-                for variant in &data.variants {
-                    this.add(variant, readable, faults);
-                }
+        item::forbid_parameters(&input.generics, faults, "an enum of values");
+        let hint = "; a struct is a `Message`";
+        if let Some(variants) = item::variants(input, faults, "`OpenEnum` is for enums", hint) {
+            for variant in variants {
+                this.add(variant, readable, faults);
             }
-            Data::Struct(data) => {
-                faults.on(
-                    &data.struct_token,
-                    "`OpenEnum` is for enums; a struct is a `Message`",
-                );
-            }
-            Data::Union(data) => faults.on(&data.union_token, "`OpenEnum` is for enums"),
         }
         this
     }
@@ -264,15 +248,8 @@ fn read_repr(input: ParseStream<'_>) -> syn::Result<Repr> {
 
 /// Reads `= "normal"` or `= "complete"`.
 fn read_order(input: ParseStream<'_>) -> syn::Result<Order> {
-    let word = attr::text(input)?;
-    match word.value().as_str() {
-        "normal" => Ok(Order::Normal),
-        "complete" => Ok(Order::Complete),
-        _ => Err(syn::Error::new_spanned(
-            word,
-            "expected \"normal\" or \"complete\"",
-        )),
-    }
+    let words = [("normal", Order::Normal), ("complete", Order::Complete)];
+    attr::word(input, &words).map(|(_, order)| order)
 }
 
 /// Reads `(Ready, Done)`.

@@ -1,6 +1,7 @@
 //! The code of an enum of values.
 
 use super::ast::{OpenEnum, Order, Repr, State};
+use crate::json::{self, Bodies};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -14,7 +15,7 @@ pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
     } else {
         from(choice)
     };
-    let json = json(choice);
+    let json = implement_json(choice);
     let forms = match &choice.repr {
         Repr::Int(int, ..) => number_forms(choice, int),
         Repr::Str => TokenStream::new(),
@@ -285,30 +286,17 @@ fn read(choice: &OpenEnum<'_>, form: &str) -> TokenStream {
 }
 
 /// `FromJson` and `ToJson`.
-fn json(choice: &OpenEnum<'_>) -> TokenStream {
-    let OpenEnum { ident, runtime, .. } = choice;
-    let read = read(choice, "Plain");
+fn implement_json(choice: &OpenEnum<'_>) -> TokenStream {
     let write = match choice.repr {
         Repr::Int(..) => quote!(integer),
         Repr::Str => quote!(string),
     };
-    quote! {
-        #[automatically_derived]
-        impl #runtime::json::FromJson for #ident {
-            fn read(
-                reader: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                #read
-            }
-        }
-
-        #[automatically_derived]
-        impl #runtime::json::ToJson for #ident {
-            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
-                writer.#write(self.wire());
-            }
-        }
-    }
+    let bodies = Bodies {
+        read: read(choice, "Plain"),
+        write: quote!(writer.#write(self.wire());),
+        check_value: None,
+    };
+    json::implement(choice.ident, &choice.runtime, &bodies)
 }
 
 /// What the attribute `only(…)` of a field needs.
@@ -362,28 +350,6 @@ fn number_forms(choice: &OpenEnum<'_>, int: &Ident) -> TokenStream {
                 reader: &mut #runtime::json::Reader<'_>,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
                 #lenient
-            }
-        }
-    }
-}
-
-/// Implementations that do nothing, for an enum with faults.
-pub fn stub(choice: &OpenEnum<'_>) -> TokenStream {
-    let OpenEnum { ident, runtime, .. } = choice;
-    quote! {
-        #[automatically_derived]
-        impl #runtime::json::FromJson for #ident {
-            fn read(
-                _: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                ::core::unimplemented!()
-            }
-        }
-
-        #[automatically_derived]
-        impl #runtime::json::ToJson for #ident {
-            fn write(&self, _: &mut #runtime::json::Writer<'_>) {
-                ::core::unimplemented!()
             }
         }
     }
