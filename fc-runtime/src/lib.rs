@@ -40,6 +40,8 @@ pub mod client;
 mod clock;
 pub mod condition;
 #[cfg(feature = "net")]
+mod connection_settings;
+#[cfg(feature = "net")]
 mod content;
 pub mod digest;
 pub mod envelope;

@@ -35,8 +35,8 @@ impl Tcp {
         Self {
             host: host.to_owned(),
             port,
-            limit: config.connect_timeout_value(),
-            keepalive: config.keepalive_value(),
+            limit: config.connect_timeout,
+            keepalive: config.connection.keepalive,
         }
     }
 }
@@ -71,7 +71,7 @@ impl<D> By<D> {
         Self {
             dial,
             address: format!("{host}:{port}"),
-            limit: config.connect_timeout_value(),
+            limit: config.connect_timeout,
         }
     }
 }

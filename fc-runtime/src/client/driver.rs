@@ -42,7 +42,7 @@ pub(super) fn drive_dialled<P: Protocol, D: Dial>(
 ) -> impl Future<Output = ()> {
     let mut driver = Driver::new(inner, dial.address());
     async move {
-        let mut tries = Tries::new(driver.inner.config.backoff());
+        let mut tries = Tries::new(driver.inner.config.reconnect);
         let mut stream = match stream {
             None => driver.connect(&mut tries, &mut dial).await,
             there => there,
@@ -112,7 +112,7 @@ impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
             diary: Diary::new::<P>(address, "command"),
-            arriving: Arriving::new(inner.config.stall_timeout_value()),
+            arriving: Arriving::new(inner.config.connection.stall_timeout),
             unread_since: None,
             why: Loss::NotYet,
             inner,
@@ -240,7 +240,7 @@ impl<P: Protocol> Driver<P> {
             self.unread_since = None;
         }
         let since = *self.unread_since.get_or_insert(now);
-        Some(after(since, self.inner.config.stall_timeout_value()))
+        Some(after(since, self.inner.config.connection.stall_timeout))
     }
 
     /// Whether to let other callers have their turn before what the first has written is sent: their

@@ -255,7 +255,7 @@ pub(super) struct Inner<P> {
 
 impl<P: Protocol> Inner<P> {
     pub(super) fn new(config: ClientConfig) -> Arc<Self> {
-        let limits = config.limits_or::<P>();
+        let limits = config.connection.limits::<P>();
         Arc::new(Self {
             state: Mutex::new(State {
                 life: Life::new(),
@@ -263,9 +263,9 @@ impl<P: Protocol> Inner<P> {
                 socket: None,
                 armed: None,
                 encoder: config.encoder(),
-                session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
+                session: Session::new(&limits, P::DEFAULTS.ack, config.connection.first_id()),
                 slots: Slots::default(),
-                reports: Queues::new(limits.queued_reports, config.queued_bytes_or::<P>()),
+                reports: Queues::new(limits.queued_reports, config.connection.queued_bytes::<P>()),
                 beats: Beats::of::<P>(),
                 driver: None,
                 spare: Vec::new(),
@@ -280,7 +280,7 @@ impl<P: Protocol> Inner<P> {
                 None,
             ),
             encoder: Mutex::new(config.encoder()),
-            call_timeout: config.call_timeout_or::<P>(),
+            call_timeout: config.call_timeout_or_default::<P>(),
             limits,
             config,
             handles: AtomicUsize::new(0),

@@ -2,9 +2,8 @@
 
 use super::allow::Allowed;
 use super::network::Network;
-use crate::clock;
+use crate::connection_settings::{ConnectionSettings, connection_setters};
 use crate::frame::{Decoder, Encoder, Gzip, Work};
-use crate::link::KEEPALIVE;
 use crate::operation::Effect;
 use crate::protocol::Protocol;
 use crate::rate::Least;
@@ -25,25 +24,16 @@ const MEMORY: usize = 256 << 20;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServerConfig {
     pub(super) address: IpAddr,
-    command_port: Option<u16>,
-    data_port: Option<u16>,
+    pub(super) connection: ConnectionSettings,
     handler_timeout: Option<Duration>,
     max_age: MaxAge,
-    limits: Option<Limits>,
-    queued_bytes: Option<usize>,
     connections_per_address: usize,
     allowed: Allowed,
     abandoned_handlers: usize,
     memory: usize,
-    first_id: Option<u32>,
-    gzip: Option<Gzip>,
-    verify_digest: bool,
-    resync: bool,
     header_timeout: Duration,
-    stall_timeout: Duration,
     least_rate: u32,
     idle_timeout: Option<Duration>,
-    keepalive: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,46 +56,25 @@ impl ServerConfig {
     pub fn new() -> Self {
         Self {
             address: IpAddr::V4(Ipv4Addr::UNSPECIFIED),
-            command_port: None,
-            data_port: None,
+            connection: ConnectionSettings::new(Duration::from_secs(30)),
             handler_timeout: None,
             max_age: MaxAge::Default,
-            limits: None,
-            queued_bytes: None,
             connections_per_address: PER_ADDRESS,
             allowed: Allowed::default(),
             abandoned_handlers: ABANDONED,
             memory: MEMORY,
-            first_id: None,
-            gzip: None,
-            verify_digest: true,
-            resync: false,
             header_timeout: Duration::from_secs(5),
-            stall_timeout: Duration::from_secs(30),
             least_rate: 1024,
             idle_timeout: None,
-            keepalive: Some(KEEPALIVE),
         }
     }
+
+    connection_setters!();
 
     /// Address to listen at.
     #[must_use]
     pub fn address(mut self, address: impl Into<IpAddr>) -> Self {
         self.address = address.into();
-        self
-    }
-
-    /// Port of commands and reports; 0 for any that is free.
-    #[must_use]
-    pub fn command_port(mut self, port: u16) -> Self {
-        self.command_port = Some(port);
-        self
-    }
-
-    /// Port of streams; 0 for any that is free.
-    #[must_use]
-    pub fn data_port(mut self, port: u16) -> Self {
-        self.data_port = Some(port);
         self
     }
 
@@ -124,20 +93,12 @@ impl ServerConfig {
         self
     }
 
-    /// Bounds of everything that grows with what apps send. To change one of them:
-    /// `Limits { connections: 4, ..P::DEFAULTS.limits }`.
-    #[must_use]
-    pub fn limits(mut self, limits: Limits) -> Self {
-        self.limits = Some(limits);
-        self
-    }
-
     /// Most bytes of reports that wait for one app or for its acknowledgement; as many as the longest
     /// body may have, unless set. Where a new report does not fit, the oldest that have not been sent
     /// give way, and if that is not enough the report itself is dropped.
     #[must_use]
     pub fn queued_bytes(mut self, limit: usize) -> Self {
-        self.queued_bytes = Some(limit);
+        self.connection.queued_bytes = Some(limit);
         self
     }
 
@@ -192,37 +153,6 @@ impl ServerConfig {
         self
     }
 
-    /// Message id of the first report on each connection; the local time of day unless set, so that
-    /// a robot that restarts does not use its ids again. Set it where runs have to be the same
-    /// each time.
-    #[must_use]
-    pub fn first_id(mut self, id: u32) -> Self {
-        self.first_id = Some(id);
-        self
-    }
-
-    /// Compresses responses and reports, for apps known to take it.
-    #[must_use]
-    pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
-        self.gzip = gzip.into();
-        self
-    }
-
-    /// Whether to verify the digests of what is received (the default).
-    #[must_use]
-    pub fn verify_digest(mut self, verify: bool) -> Self {
-        self.verify_digest = verify;
-        self
-    }
-
-    /// Whether to search for the next frame where one should begin and does not, instead of
-    /// closing the connection (the default).
-    #[must_use]
-    pub fn resync(mut self, resync: bool) -> Self {
-        self.resync = resync;
-        self
-    }
-
     /// How long a header may take from its first byte to its last before the connection is closed; and
     /// a handshake that [`ServerHandle::serve_after`](super::ServerHandle::serve_after) waits for.
     #[must_use]
@@ -236,7 +166,7 @@ impl ServerConfig {
     /// is no progress.
     #[must_use]
     pub fn stall_timeout(mut self, timeout: Duration) -> Self {
-        self.stall_timeout = timeout;
+        self.connection.stall_timeout = timeout;
         self
     }
 
@@ -258,15 +188,6 @@ impl ServerConfig {
         self
     }
 
-    /// After how much silence TCP asks whether the app is still there (thirty seconds by default),
-    /// or `None` not to ask. Where the system allows it (Linux, Android), a connection whose app is
-    /// gone without a word ends after twice that time, otherwise somewhat later.
-    #[must_use]
-    pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
-        self.keepalive = silence;
-        self
-    }
-
     /// How much memory apps may make the server hold, those of both ports together, in bytes: what has come
     /// of frames and what that is decompressed to, requests in handlers' hands, streams that nobody has
     /// taken yet, answers, reports and streams not sent yet. 256 MiB by default.
@@ -284,43 +205,30 @@ impl ServerConfig {
         self
     }
 
-    pub(super) fn command_port_or<P: Protocol>(&self) -> u16 {
-        self.command_port.unwrap_or(P::COMMAND_PORT)
-    }
-
-    pub(super) fn data_port_or<P: Protocol>(&self) -> u16 {
-        self.data_port.unwrap_or(P::DATA_PORT)
-    }
-
     pub(super) fn settings<P: Protocol>(&self) -> Settings {
         let memory = self.memory - self.memory / 8;
-        let limits = self.limits.unwrap_or(P::DEFAULTS.limits);
+        let limits = self.connection.limits::<P>();
         let limits = Limits {
             frame_bytes: limits.frame_bytes.min(at_most(memory / 16 * 3)),
             json_list_bytes: limits.json_list_bytes.min(memory / 6),
             ..limits
         };
-        let longest = usize::try_from(limits.inflated_bytes).unwrap_or(usize::MAX);
         Settings {
+            connection: self.connection.clone(),
             limits,
-            queued_bytes: self.queued_bytes.unwrap_or(longest),
+            queued_bytes: self.connection.queued_bytes::<P>(),
             connections_per_address: self.connections_per_address,
             allowed: self.allowed.clone(),
             abandoned_handlers: self.abandoned_handlers,
             memory,
-            first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
                 MaxAge::Default => P::DEFAULTS.max_age,
                 MaxAge::Set(age) => age,
             },
-            gzip: self.gzip,
-            verify_digest: self.verify_digest,
-            resync: self.resync,
             header_timeout: self.header_timeout,
-            stall: Least::new(self.least_rate, self.stall_timeout),
+            stall: Least::new(self.least_rate, self.connection.stall_timeout),
             idle_timeout: self.idle_timeout,
-            keepalive: self.keepalive,
         }
     }
 }
@@ -336,6 +244,8 @@ fn at_most(bytes: usize) -> u32 {
 /// A configuration with all defaults filled in.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
+    pub(super) connection: ConnectionSettings,
+    /// Limits that fit into the memory. They are used in place of those of the connection.
     pub(super) limits: Limits,
     pub(super) queued_bytes: usize,
     pub(super) connections_per_address: usize,
@@ -343,24 +253,15 @@ pub(super) struct Settings {
     pub(super) abandoned_handlers: usize,
     /// What may be held, in bytes, but for a reserve.
     pub(super) memory: usize,
-    first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,
-    gzip: Option<Gzip>,
-    verify_digest: bool,
-    resync: bool,
     pub(super) header_timeout: Duration,
     /// What is progress in the middle of a frame, either way.
     pub(super) stall: Least,
     pub(super) idle_timeout: Option<Duration>,
-    pub(super) keepalive: Option<Duration>,
 }
 
 impl Settings {
-    pub(super) fn first_id(&self) -> u32 {
-        self.first_id.unwrap_or_else(clock::first_id)
-    }
-
     /// A decoder for requests, which are read as JSON.
     pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {
         let frame = usize::try_from(self.limits.frame_bytes).unwrap_or(usize::MAX);
@@ -377,10 +278,7 @@ impl Settings {
             inflated_bytes: self.limits.inflated_bytes.min(at_most(inflated)),
             ..self.limits
         };
-        Decoder::new()
-            .limits(&limits)
-            .verify_digest(self.verify_digest)
-            .resync(self.resync)
+        self.connection.decoder(&limits)
     }
 
     /// What it may take to decompress and read a request, in bytes.
@@ -392,8 +290,6 @@ impl Settings {
     }
 
     pub(super) fn encoder<P: Protocol>(&self) -> Encoder<P> {
-        Encoder::new()
-            .gzip(self.gzip)
-            .frame_bytes(self.limits.frame_bytes)
+        self.connection.encoder(&self.limits)
     }
 }

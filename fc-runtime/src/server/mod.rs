@@ -88,8 +88,9 @@ impl<P: Protocol> Server<P> {
     ///
     /// Whatever the network says, such as that a port is taken.
     pub async fn bind(config: ServerConfig, service: impl Service<P>) -> io::Result<Self> {
-        let command = TcpListener::bind((config.address, config.command_port_or::<P>())).await?;
-        let data = TcpListener::bind((config.address, config.data_port_or::<P>())).await?;
+        let command =
+            TcpListener::bind((config.address, config.connection.command_port::<P>())).await?;
+        let data = TcpListener::bind((config.address, config.connection.data_port::<P>())).await?;
         Ok(Self {
             command_address: command.local_addr()?,
             data_address: data.local_addr()?,
@@ -156,7 +157,7 @@ impl<P: Protocol> Server<P> {
     }
 
     fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {
-        if let Err(error) = prepare(&stream, self.shared.settings.keepalive) {
+        if let Err(error) = prepare(&stream, self.shared.settings.connection.keepalive) {
             tracing::debug!(protocol = P::NAME, %error, "the connection was gone at once");
             return;
         }

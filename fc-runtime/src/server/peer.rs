@@ -64,7 +64,11 @@ impl<P: Protocol> Peer<P> {
         abandoned: Arc<Abandoned>,
         account: Account,
     ) -> Self {
-        let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
+        let session = Session::new(
+            &settings.limits,
+            P::DEFAULTS.ack,
+            settings.connection.first_id(),
+        );
         Self {
             id,
             address,

@@ -32,7 +32,7 @@ pub(super) struct Driver<P, D> {
 impl<P: Protocol, D: Dial> Driver<P, D> {
     /// Keeps up a connection as long as it may.
     pub(super) async fn run(mut self) {
-        let mut tries = Tries::new(self.config.backoff());
+        let mut tries = Tries::new(self.config.reconnect);
         while let Some((stream, commands)) = self.connect(&mut tries).await {
             self.serve(stream, commands).await;
             if self.shared.lock().life.now().is_closed() {
@@ -87,7 +87,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: None,
-            stall: Some(Least::new(0, self.config.stall_timeout_value())),
+            stall: Some(Least::new(0, self.config.connection.stall_timeout)),
         };
         let mut receiver = Receiver::new(read, self.config.decoder::<P>(), patience);
         let mut sender = Sender::new(write, patience);
