@@ -2,7 +2,6 @@
 
 use crate::clock;
 use crate::frame::{Decoder, Encoder, Gzip};
-use crate::link::KEEPALIVE;
 use crate::protocol::Protocol;
 use crate::wire::Limits;
 use std::time::Duration;
@@ -35,7 +34,7 @@ impl ConnectionSettings {
             verify_digest: true,
             resync: false,
             stall_timeout,
-            keepalive: Some(KEEPALIVE),
+            keepalive: Some(Duration::from_secs(30)),
         }
     }
 

@@ -71,6 +71,8 @@ pub mod session;
 #[cfg(feature = "net")]
 mod stream;
 #[cfg(feature = "net")]
+mod sync;
+#[cfg(feature = "net")]
 mod thin;
 #[cfg(feature = "net")]
 mod trace;

@@ -12,8 +12,6 @@ use tokio::io::ReadBuf;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
 use tokio::net::TcpStream;
 
-/// After how much silence TCP asks whether the peer is still there, unless told otherwise.
-pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
 /// How long a closing connection tries to send what is left, and waits for the peer's goodbye.
 pub(crate) const CLOSING: Duration = Duration::from_secs(1);
 /// Memory an emptied buffer may keep for what is sent next, in bytes.

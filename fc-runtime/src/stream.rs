@@ -258,12 +258,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             since: now,
         };
         let read = self.read.read_buf(self.decoder.room());
-        let n = match deadline {
-            None => read.await?,
-            Some(deadline) => timeout_at(deadline, read)
-                .await
-                .map_err(|_| StreamError::Stalled)??,
-        };
+        let n = until(deadline, read).await?;
         drop(waiting);
         self.received += n;
         self.gathered = self.gathered.saturating_add(n);
@@ -274,6 +269,20 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         }
         Ok(n)
     }
+}
+
+/// Waits for an operation of a socket, but not beyond `deadline`.
+async fn until(
+    deadline: Option<Instant>,
+    operation: impl Future<Output = io::Result<usize>>,
+) -> Result<usize, StreamError> {
+    let done = match deadline {
+        None => operation.await,
+        Some(deadline) => timeout_at(deadline, operation)
+            .await
+            .map_err(|_| StreamError::Stalled)?,
+    };
+    Ok(done?)
 }
 
 /// Adds up how long is waited, also by a future that is dropped: an app that asks again and again for a
@@ -386,12 +395,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
                 None => write.await?,
                 Some(least) => {
                     let flow = self.flow.get_or_insert(Flow::new(Instant::now()));
-                    let n = match flow.since.checked_add(least.within) {
-                        None => write.await?,
-                        Some(deadline) => timeout_at(deadline, write)
-                            .await
-                            .map_err(|_| StreamError::Stalled)??,
-                    };
+                    let n = until(flow.since.checked_add(least.within), write).await?;
                     flow.add(n, least.bytes, Instant::now());
                     n
                 }

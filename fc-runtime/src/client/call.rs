@@ -1,9 +1,10 @@
 //! One call: a future without a task.
 
 use super::error::CallError;
-use super::following::{Following, Subscription};
+use super::following::Following;
 use super::life::ConnectionState;
 use super::loss::Loss;
+use super::reports::Receiver;
 use super::state::{Handle, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameId, Staged};
@@ -16,6 +17,7 @@ use crate::protocol::{Protocol, RequestEnvelope};
 use crate::raw::RawResponse;
 use crate::refusal::Refusal;
 use crate::session::after;
+use crate::sync::register;
 use crate::trace::is_traced;
 use std::fmt;
 use std::pin::Pin;
@@ -168,7 +170,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let writing = (socket.as_ref()).and_then(|socket| socket.begin(&mut state.out));
         // Also without a connection: the deadline may be nearer than all others.
         let deadline = after(now, self.timeout);
-        let needed = writing.is_none() || state.armed.is_none_or(|at| deadline < at);
+        let needed = writing.is_none() || state.alarm.is_none_or(|at| deadline < at);
         let driver = if needed { state.driver.take() } else { None };
         drop(guard);
         let written = writing.is_none_or(|writing| writing.finish(cx));
@@ -210,10 +212,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 }
             }
             Progress::Unsent | Progress::Again | Progress::Sent => {
-                match &mut place.waker {
-                    Some(waker) => waker.clone_from(cx.waker()),
-                    none => *none = Some(cx.waker().clone()),
-                }
+                register(&mut place.waker, cx);
                 if place.progress.is_to_send() && now.is_connected() {
                     drop(guard);
                     self.inner
@@ -301,9 +300,9 @@ impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
         C: SetsOff<R>,
     {
         let request = self.request;
-        let subscription = Subscription::new(self.flight.inner.clone(), R::CODE);
+        let receiver = Receiver::new(self.flight.inner.clone(), Some(R::CODE));
         let answer = self.await?;
-        Ok(Following::new(subscription, request.clone(), answer))
+        Ok(Following::new(receiver, request.clone(), answer))
     }
 }
 

@@ -35,46 +35,36 @@ impl Diary {
         }
     }
 
-    /// There is a connection, the one of this number.
+    /// Logs connection number `connects`.
     pub(super) fn connected(&mut self, connects: u64) {
         let failed = std::mem::take(&mut self.failed);
         self.told = None;
         let Some(held) = self.connected.line(clock::now()) else {
             return;
         };
-        let (port, protocol, address, held) = (
-            self.port,
-            self.protocol,
-            self.address.as_str(),
-            held.shown(),
-        );
-        if connects > 1 {
-            tracing::info!(
-                protocol,
-                port,
-                address,
-                connects,
-                failed,
-                held,
-                "connected again"
-            );
+        let event = if connects > 1 {
+            "connected again"
         } else {
-            tracing::info!(protocol, port, address, connects, failed, held, "connected");
-        }
+            "connected"
+        };
+        tracing::info!(
+            protocol = self.protocol,
+            port = self.port,
+            address = self.address,
+            connects,
+            failed,
+            held = held.shown(),
+            "{event}"
+        );
     }
 
-    /// The connection has ended.
+    /// Logs the end of the connection.
     pub(super) fn ended(&mut self, why: Loss) {
         let Some(held) = self.ended.line(clock::now()) else {
             return;
         };
-        let (port, protocol, address, held) = (
-            self.port,
-            self.protocol,
-            self.address.as_str(),
-            held.shown(),
-        );
-        let reason = why.name();
+        let (protocol, port, held) = (self.protocol, self.port, held.shown());
+        let (address, reason) = (self.address.as_str(), why.name());
         if why == Loss::Here {
             tracing::info!(protocol, port, address, held, "closed");
         } else {
@@ -82,7 +72,7 @@ impl Diary {
         }
     }
 
-    /// An attempt to connect has failed, and `why` says so. One that fails like the one before is no news.
+    /// Logs a failed attempt to connect, unless it failed like the one before.
     pub(super) fn not_connected(&mut self, why: Loss) {
         self.failed = self.failed.saturating_add(1);
         if self.told.replace(why) == Some(why) {
@@ -91,28 +81,27 @@ impl Diary {
         let Some(held) = self.failing.line(clock::now()) else {
             return;
         };
-        let (port, protocol, address, held) = (
-            self.port,
-            self.protocol,
-            self.address.as_str(),
-            held.shown(),
+        tracing::warn!(
+            protocol = self.protocol,
+            port = self.port,
+            address = self.address,
+            reason = why.name(),
+            held = held.shown(),
+            "{why}"
         );
-        tracing::warn!(protocol, port, address, reason = why.name(), held, "{why}");
     }
 
-    /// There will be no more attempts. Where there were none, the end has been told.
+    /// Logs that there are no more attempts, if there were any. Otherwise the end has been logged already.
     pub(super) fn given_up(&self, why: Loss) {
         if self.failed == 0 {
             return;
         }
-        let (port, protocol, address, failed) =
-            (self.port, self.protocol, self.address.as_str(), self.failed);
         tracing::warn!(
-            protocol,
-            port,
-            address,
+            protocol = self.protocol,
+            port = self.port,
+            address = self.address,
             reason = why.name(),
-            failed,
+            failed = self.failed,
             "given up: {why}"
         );
     }

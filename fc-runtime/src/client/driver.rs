@@ -18,13 +18,14 @@ use crate::link::{CLOSING, Transport};
 use crate::progress::Progress as Arriving;
 use crate::protocol::Protocol;
 use crate::session::{Due, after};
+use crate::sync::{Alarm, register};
 use crate::wire::Header;
-use std::pin::{Pin, pin};
+use std::pin::pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tokio::task::yield_now;
-use tokio::time::{Sleep, sleep, timeout};
+use tokio::time::{sleep, timeout};
 
 /// From this much on, in bytes, requests are sent without waiting for more of them.
 const GATHER_UP_TO: usize = 32 * 1024;
@@ -103,9 +104,7 @@ struct Driver<P: Protocol> {
     /// Why the connection has ended, as soon as it is known.
     why: Loss,
     diary: Diary,
-    timer: Pin<Box<Sleep>>,
-    /// What the timer is set to.
-    armed: Option<Instant>,
+    alarm: Alarm,
 }
 
 impl<P: Protocol> Driver<P> {
@@ -122,8 +121,7 @@ impl<P: Protocol> Driver<P> {
             wakers: Vec::new(),
             spare: Vec::new(),
             gathered: false,
-            timer: Box::pin(sleep(Duration::ZERO)),
-            armed: None,
+            alarm: Alarm::new(),
         }
     }
 
@@ -212,7 +210,9 @@ impl<P: Protocol> Driver<P> {
             return Poll::Ready(Turn::Over(Loss::Unread));
         }
         let stalls = self.arriving.deadline(link.decoder.pending(), now);
-        self.arm(cx, [due, unread, stalls].into_iter().flatten().min());
+        if let Some(due) = [due, unread, stalls].into_iter().flatten().min() {
+            self.alarm.set(cx, due);
+        }
         if turn == 0 {
             return Poll::Ready(Turn::Spent);
         }
@@ -324,39 +324,20 @@ impl<P: Protocol> Driver<P> {
         if self.spare.capacity() == 0 {
             self.spare = std::mem::take(&mut state.spare);
         }
-        // Whatever is due earlier needs the driver to set its timer.
-        self.armed = self.armed.filter(|at| *at > now);
-        state.armed = self.armed;
+        // A caller with an earlier deadline wakes the driver to set its alarm.
+        self.alarm.forget_past(now);
+        state.alarm = self.alarm.at();
         state.tell();
         let closed = state.life.now().is_closed();
         let due = state.session.next_due();
-        if !closed
-            && !state
-                .driver
-                .as_ref()
-                .is_some_and(|waker| waker.will_wake(cx.waker()))
-        {
-            state.driver = Some(cx.waker().clone());
+        if !closed {
+            register(&mut state.driver, cx);
         }
         drop(guard);
         for waker in self.wakers.drain(..) {
             waker.wake();
         }
         (closed, due)
-    }
-
-    /// Sets the timer to `due`, unless it is set to something earlier: then there is time when that comes.
-    fn arm(&mut self, cx: &mut Context<'_>, due: Option<Instant>) {
-        let Some(due) = due else { return };
-        if self.armed.is_none_or(|at| due < at) {
-            self.timer.as_mut().reset(due.into());
-            self.armed = Some(due);
-        }
-        if self.timer.as_mut().poll(cx).is_ready() {
-            // Due while we were at it: come back at once.
-            self.armed = None;
-            cx.waker().wake_by_ref();
-        }
     }
 
     fn up<S: Transport>(&self, socket: &Shared<S>) {
@@ -446,7 +427,9 @@ impl<P: Protocol> Driver<P> {
                 if closed {
                     return Poll::Ready(None);
                 }
-                self.arm(cx, due);
+                if let Some(due) = due {
+                    self.alarm.set(cx, due);
+                }
                 attempt.as_mut().poll(cx).map(Some)
             });
             match connected.await? {

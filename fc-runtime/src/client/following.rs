@@ -1,8 +1,8 @@
 //! What a command has set off, followed to its end: the answer, and then a typed stream of reports.
 
 use super::loss::Loss;
-use super::queues::Event;
-use super::state::Handle;
+use super::queues::{Event, Queue};
+use super::reports::Receiver;
 use crate::clock;
 use crate::json::BodyError;
 use crate::operation::{Report, SetsOff, State};
@@ -80,58 +80,6 @@ impl FollowError {
     }
 }
 
-/// A queue for the reports of one code. It ends when this is dropped.
-pub(super) struct Subscription<P: Protocol> {
-    handle: Handle<P>,
-    id: u64,
-}
-
-impl<P: Protocol> Subscription<P> {
-    pub(super) fn new(handle: Handle<P>, code: u16) -> Self {
-        let id = handle.lock().reports.enter(Some(code));
-        Self { handle, id }
-    }
-
-    /// What comes next, or why nothing will.
-    fn poll_next(&self, cx: &mut Context<'_>) -> Poll<Result<Event, Loss>> {
-        let mut state = self.handle.lock();
-        let now = state.life.now();
-        let Some(queue) = state.reports.of(self.id) else {
-            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
-        };
-        if let Some(event) = queue.next() {
-            return Poll::Ready(Ok(event));
-        }
-        if now.is_closed() {
-            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
-        }
-        match &mut queue.waker {
-            Some(waker) => waker.clone_from(cx.waker()),
-            none => *none = Some(cx.waker().clone()),
-        }
-        Poll::Pending
-    }
-
-    /// Counts a report that came out of order, and logs it.
-    fn out_of_order<R: Report>(&self) {
-        let line = {
-            let mut state = self.handle.lock();
-            state.counters.reports_out_of_order += 1;
-            state.lines.out_of_order.line(clock::now())
-        };
-        if let Some(held) = line {
-            let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
-            tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
-        }
-    }
-}
-
-impl<P: Protocol> Drop for Subscription<P> {
-    fn drop(&mut self) {
-        self.handle.lock().reports.leave(self.id);
-    }
-}
-
 /// A command that has been answered, and the reports `R` that it sets off, as a stream.
 ///
 /// The stream ends after [`Followed::Ended`], [`Followed::Failed`] or a [`FollowError`]. Where the protocol
@@ -148,7 +96,7 @@ impl<P: Protocol> Drop for Subscription<P> {
 /// other, counted as `reports_out_of_order` and logged.
 pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
     /// Until the end: what comes then, nobody would read here.
-    subscription: Option<Subscription<P>>,
+    receiver: Option<Receiver<P>>,
     request: C,
     answer: C::Response,
     /// The last state that was reported.
@@ -157,9 +105,9 @@ pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
 }
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
-    pub(super) fn new(subscription: Subscription<P>, request: C, answer: C::Response) -> Self {
+    pub(super) fn new(receiver: Receiver<P>, request: C, answer: C::Response) -> Self {
         Self {
-            subscription: Some(subscription),
+            receiver: Some(receiver),
             request,
             answer,
             last: None,
@@ -185,11 +133,11 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
         &mut self,
         cx: &mut Context<'_>,
     ) -> Poll<Option<Result<Followed<R>, FollowError>>> {
-        let Some(subscription) = &self.subscription else {
+        let Some(receiver) = &self.receiver else {
             return Poll::Ready(None);
         };
         let next = loop {
-            match ready!(subscription.poll_next(cx)) {
+            match ready!(receiver.poll_next(cx, Queue::next)) {
                 Err(why) => break Err(FollowError::Closed(why)),
                 Ok(Event::Missed(missed)) => break Ok(Followed::Missed(missed)),
                 Ok(Event::Lost(why)) => break Ok(Followed::Interrupted(why)),
@@ -202,7 +150,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
                         if let (Some(last), Some(state)) = (&self.last, &state)
                             && !state.is_in_order(last)
                         {
-                            subscription.out_of_order::<R>();
+                            note_out_of_order::<P, R>(receiver);
                         }
                         let next = place(report, state.as_ref());
                         self.last = state.or(self.last.take());
@@ -212,9 +160,22 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
             }
         };
         if next.as_ref().map_or(true, Followed::is_over) {
-            self.subscription = None;
+            self.receiver = None;
         }
         Poll::Ready(Some(next))
+    }
+}
+
+/// Counts and logs a report that came out of order.
+fn note_out_of_order<P: Protocol, R: Report>(receiver: &Receiver<P>) {
+    let line = {
+        let mut state = receiver.handle.lock();
+        state.counters.reports_out_of_order += 1;
+        state.lines.out_of_order.line(clock::now())
+    };
+    if let Some(held) = line {
+        let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
+        tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
     }
 }
 
@@ -242,7 +203,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Stream for Following<P, C, R> {
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> FusedStream for Following<P, C, R> {
     fn is_terminated(&self) -> bool {
-        self.subscription.is_none()
+        self.receiver.is_none()
     }
 }
 
@@ -251,7 +212,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
         f.debug_struct("Following")
             .field("command", &C::NAME)
             .field("report", &R::NAME)
-            .field("is_over", &self.subscription.is_none())
+            .field("is_over", &self.receiver.is_none())
             .finish_non_exhaustive()
     }
 }

@@ -4,10 +4,11 @@
 use crate::frame::Decoder;
 use crate::link::{Outlet, Transport, poll_read};
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use std::fmt;
 use std::io;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
@@ -25,7 +26,7 @@ pub(super) struct Shared<S>(Arc<Mutex<Socket<S>>>);
 impl<S> Shared<S> {
     /// Held for one read or write. What a panic in there has left behind is the stream's own affair.
     fn lock(&self) -> MutexGuard<'_, Socket<S>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 }
 

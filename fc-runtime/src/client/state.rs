@@ -11,10 +11,11 @@ use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::Protocol;
 use crate::session::Session;
+use crate::sync::lock;
 use crate::thin::Thin;
 use crate::wire::Limits;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::task::Waker;
 use std::time::{Duration, Instant};
 
@@ -100,8 +101,8 @@ pub(super) struct State<P> {
     pub(super) out: Vec<u8>,
     /// What they are written to, while there is a connection.
     pub(super) socket: Option<CallersSocket>,
-    /// When the driver comes back by itself, at the latest.
-    pub(super) armed: Option<Instant>,
+    /// Time at which the timer of the driver wakes it.
+    pub(super) alarm: Option<Instant>,
     /// For acknowledgements.
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
@@ -261,7 +262,7 @@ impl<P: Protocol> Inner<P> {
                 life: Life::new(),
                 out: Vec::new(),
                 socket: None,
-                armed: None,
+                alarm: None,
                 encoder: config.encoder(),
                 session: Session::new(&limits, P::DEFAULTS.ack, config.connection.first_id()),
                 slots: Slots::default(),
@@ -290,7 +291,7 @@ impl<P: Protocol> Inner<P> {
     /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
     /// back what it has begun. So poison means nothing.
     pub(super) fn lock(&self) -> MutexGuard<'_, State<P>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Encodes a body and hands it on. Nobody waits for another's: who finds the encoder in use makes

@@ -4,9 +4,10 @@ use super::Family;
 use crate::clock;
 use crate::operation::OperationKind;
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use metrics::{Histogram, Unit};
 use std::collections::HashMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// The label of every code that the spec does not name: there are as many as a peer likes.
@@ -112,10 +113,7 @@ impl Operations {
     /// Counts a call with its result, which is one of few.
     pub(crate) fn called(&self, code: u16, result: &'static str) {
         let operation = self.get(code);
-        let mut calls = operation
-            .calls
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut calls = lock(&operation.calls);
         if let Some((_, calls)) = calls.iter().find(|(known, _)| *known == result) {
             return calls.increment(1);
         }

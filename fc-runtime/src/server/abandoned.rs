@@ -2,8 +2,9 @@
 
 use super::budget::Charge;
 use super::work::Work;
+use crate::sync::lock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll, ready};
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
@@ -74,7 +75,7 @@ impl Abandoned {
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<JoinSet<()>>> {
-        self.tasks.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.tasks)
     }
 }
 

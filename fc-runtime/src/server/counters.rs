@@ -4,11 +4,12 @@ use super::connection_id::ConnectionId;
 use crate::clock;
 use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use crate::thin::{Held, Thin};
 use std::fmt::Display;
 use std::net::SocketAddr;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// The metric of a counter. Those `by` operation are one together, which [`Counting::call`] counts.
 macro_rules! metric {
@@ -287,8 +288,7 @@ pub(super) struct SharedThin(Mutex<Thin>);
 impl SharedThin {
     /// What [`Thin::line`] says.
     pub(super) fn line(&self) -> Option<Held> {
-        let mut thin = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        thin.line(clock::now())
+        lock(&self.0).line(clock::now())
     }
 }
 

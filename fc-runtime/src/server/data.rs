@@ -14,6 +14,7 @@ use crate::link::{CLOSING, Transport};
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
+use crate::sync::lock;
 use crate::thin::Thin;
 use std::convert::Infallible;
 use std::future::poll_fn;
@@ -21,7 +22,7 @@ use std::marker::PhantomData;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio::task::yield_now;
@@ -284,11 +285,7 @@ impl<P: Protocol> DataPeer<P> {
     /// meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();
-        let inbox = self
-            .inbox
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone();
+        let inbox = lock(&self.inbox).clone();
         let mut charge = self.account.keep(frame.data.memory());
         let taken = match inbox {
             Some(inbox) => match inbox.reserve().await {

@@ -22,6 +22,7 @@ use crate::operation::AckPolicy;
 use crate::protocol::Protocol;
 use crate::refusal::Refusal;
 use crate::session::{Due, Incoming, after};
+use crate::sync::register;
 use crate::thin::Thin;
 use std::future::poll_fn;
 use std::sync::Arc;
@@ -513,13 +514,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         self.peer.note(output);
         let due = state.session.next_due();
-        if !state
-            .driver
-            .as_ref()
-            .is_some_and(|waker| waker.will_wake(cx.waker()))
-        {
-            state.driver = Some(cx.waker().clone());
-        }
+        register(&mut state.driver, cx);
         drop(guard);
         for queued in expired {
             queued.end(AckOutcome::TimedOut);

@@ -10,12 +10,13 @@ use super::output::Output;
 use super::push::{AckOutcome, Queued};
 use crate::protocol::Protocol;
 use crate::session::Session;
+use crate::sync::{lock, register};
 use std::collections::VecDeque;
 use std::future::poll_fn;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::task::{Poll, Waker};
 use tokio::sync::Notify;
 
@@ -164,7 +165,7 @@ impl<P: Protocol> Peer<P> {
             if self.evicted().is_some() || self.is_draining() {
                 return Poll::Ready(());
             }
-            state.driver = Some(cx.waker().clone());
+            register(&mut state.driver, cx);
             Poll::Pending
         })
         .await;
@@ -252,12 +253,12 @@ impl<P: Protocol> Peer<P> {
     /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
     /// back what it has begun. So poison means nothing.
     pub(super) fn output(&self) -> MutexGuard<'_, Output<P>> {
-        self.output.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.output)
     }
 
     /// Poison means nothing here either.
     pub(super) fn lock(&self) -> MutexGuard<'_, PeerState<P>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Wakes the driver.

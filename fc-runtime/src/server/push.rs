@@ -6,7 +6,8 @@ use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
 use crate::operation::AckPolicy;
 use crate::refusal::Refusal;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use crate::sync::{lock, register};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll, Waker};
 
 /// Whom to send to.
@@ -173,11 +174,11 @@ impl Push {
         if state.open == 0 {
             return Poll::Ready(std::mem::take(&mut state.ended));
         }
-        state.waker = Some(cx.waker().clone());
+        register(&mut state.waker, cx);
         Poll::Pending
     }
 
     fn lock(&self) -> MutexGuard<'_, PushState> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }

@@ -16,8 +16,9 @@ use super::service::Service;
 use super::table::Table;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
-use crate::metrics::Held;
+use crate::metrics::{Gauge, Held};
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use std::cell::OnceCell;
 use std::collections::HashSet;
 use std::future::poll_fn;
@@ -25,7 +26,7 @@ use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
@@ -58,10 +59,6 @@ pub(super) struct Shared<P: Protocol> {
 
 /// Why a silent connection has ended, for the log.
 const DISPLACED: &str = "another has taken its place";
-
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
@@ -118,11 +115,7 @@ impl<P: Protocol> Shared<P> {
         }
         self.counters.connections.one();
         let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
-        let registered = Registered {
-            shared: Arc::clone(self),
-            id,
-            _open: self.counters.gauges.connections.hold(),
-        };
+        let registered = self.registered(id, &self.counters.gauges.connections);
         self.spawn(async move {
             let _registered = registered;
             let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
@@ -192,11 +185,7 @@ impl<P: Protocol> Shared<P> {
             }
         }
         self.counters.data_connections.one();
-        let registered = Registered {
-            shared: Arc::clone(self),
-            id,
-            _open: self.counters.gauges.data_connections.hold(),
-        };
+        let registered = self.registered(id, &self.counters.gauges.data_connections);
         self.spawn(async move {
             let _registered = registered;
             let gone = async {
@@ -269,6 +258,14 @@ impl<P: Protocol> Shared<P> {
             tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
         }
         Ok(Some(entry))
+    }
+
+    fn registered(self: &Arc<Self>, id: ConnectionId, open: &Gauge) -> Registered<P> {
+        Registered {
+            shared: Arc::clone(self),
+            id,
+            _open: open.hold(),
+        }
     }
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {

@@ -3,10 +3,9 @@
 use super::config::Settings;
 use crate::rate::Flow;
 use crate::session::after;
-use std::pin::Pin;
+use crate::sync::Alarm;
 use std::task::{Context, Poll};
-use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep};
+use std::time::Instant;
 
 /// Why a connection has ended, for the log.
 pub(super) type Reason = &'static str;
@@ -53,9 +52,7 @@ pub(super) struct Watchdog {
     /// Of what is to be sent.
     written: Flow,
     frame: Instant,
-    timer: Pin<Box<Sleep>>,
-    /// What the timer is set to.
-    armed: Option<Instant>,
+    alarm: Alarm,
 }
 
 impl Watchdog {
@@ -66,8 +63,7 @@ impl Watchdog {
             reads: false,
             written: Flow::new(now),
             frame: now,
-            timer: Box::pin(sleep(Duration::ZERO)),
-            armed: None,
+            alarm: Alarm::new(),
         }
     }
 
@@ -150,20 +146,8 @@ impl Watchdog {
             next = Some(next.map_or(at, |next| next.min(at)));
         }
         if let Some(next) = next {
-            self.arm(cx, next);
+            self.alarm.set(cx, next);
         }
         Poll::Pending
-    }
-
-    /// A timer that rings too early does no harm; most are moved on before they ring.
-    fn arm(&mut self, cx: &mut Context<'_>, next: Instant) {
-        if self.armed.is_none_or(|armed| next < armed) {
-            self.timer.as_mut().reset(next.into());
-            self.armed = Some(next);
-        }
-        if self.timer.as_mut().poll(cx).is_ready() {
-            self.armed = None;
-            cx.waker().wake_by_ref();
-        }
     }
 }

@@ -5,7 +5,8 @@ use super::subscription::Takers;
 use crate::client::life::{ConnectionState, Life};
 use crate::client::loss::Loss;
 use crate::stream::StreamFrame;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use crate::sync::lock;
+use std::sync::{Mutex, MutexGuard};
 use tokio::sync::Notify;
 
 /// The frame that is to be sent.
@@ -79,7 +80,7 @@ impl Shared {
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Tells all that wait to look again.
