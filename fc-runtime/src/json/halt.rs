@@ -1,25 +1,25 @@
-//! What a reader is asked where it has come to a halt; see [`fields`](super::fields).
+//! The state of a reader while fields are named to it; see [`fields`](super::fields).
 
 use super::error::BodyError;
 use std::borrow::Cow;
 
-/// Why a reader is at the end of the text while fields are named to it.
+/// The state of a reader.
 #[derive(Clone, Debug)]
 pub(super) enum Halt<'a> {
-    /// It does not.
+    /// Reads fields at its position.
     No,
-    /// A value could not be read.
+    /// Stopped, because a value could not be read.
     Fault(BodyError),
-    /// Whose is this key, of which a field's name was not found in the text? It may be unknown, or
-    /// spelled in an unusual way.
+    /// Stopped, to find the field of this key. No field name matched the text: the key may be unknown or spelled with
+    /// escapes.
     Key {
         key: Cow<'a, str>,
-        /// Where its value stands.
+        /// Offset of its value.
         value: usize,
-        /// Whether it may be kept as an unknown one.
+        /// `true` if it may be kept as an unknown key.
         keep: bool,
     },
-    /// Which required fields are not among these keys?
+    /// Stopped, to collect the required fields that are not among these keys.
     Lacking {
         present: &'a [Cow<'a, str>],
         lacking: Vec<&'static str>,
