@@ -52,6 +52,8 @@ pub mod json;
 mod keys;
 #[cfg(feature = "net")]
 mod link;
+#[cfg(feature = "net")]
+mod log_limiter;
 pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
@@ -72,8 +74,6 @@ pub mod session;
 mod stream;
 #[cfg(feature = "net")]
 mod sync;
-#[cfg(feature = "net")]
-mod thin;
 #[cfg(feature = "net")]
 mod trace;
 pub mod wire;

@@ -2,8 +2,8 @@
 
 use super::loss::Loss;
 use crate::clock;
+use crate::log_limiter::LogLimiter;
 use crate::protocol::Protocol;
-use crate::thin::Thin;
 
 /// Logs what happens to a connection, one line each.
 #[derive(Debug)]
@@ -16,9 +16,9 @@ pub(super) struct Diary {
     failed: u64,
     /// The reason that was last logged for a failed attempt.
     told: Option<Loss>,
-    connected: Thin,
-    ended: Thin,
-    failing: Thin,
+    connected: LogLimiter,
+    ended: LogLimiter,
+    failing: LogLimiter,
 }
 
 impl Diary {
@@ -29,9 +29,9 @@ impl Diary {
             port,
             failed: 0,
             told: None,
-            connected: Thin::per_second(),
-            ended: Thin::per_second(),
-            failing: Thin::per_second(),
+            connected: LogLimiter::per_second(),
+            ended: LogLimiter::per_second(),
+            failing: LogLimiter::per_second(),
         }
     }
 

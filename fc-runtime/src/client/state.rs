@@ -8,11 +8,11 @@ use super::loss::Loss;
 use super::queues::Queues;
 use super::socket::CallersSocket;
 use crate::frame::{Body, Encoder, FrameError, Staged};
+use crate::log_limiter::LogLimiter;
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::Protocol;
 use crate::session::Session;
 use crate::sync::lock;
-use crate::thin::Thin;
 use crate::wire::Limits;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
@@ -121,12 +121,12 @@ pub(super) struct State<P> {
 /// What is logged of what arrives and of what is asked for.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    pub(super) bad_frame: Thin,
-    pub(super) invalid: Thin,
-    pub(super) untaken: Thin,
-    pub(super) late: Thin,
-    pub(super) busy: Thin,
-    pub(super) out_of_order: Thin,
+    pub(super) bad_frame: LogLimiter,
+    pub(super) invalid: LogLimiter,
+    pub(super) untaken: LogLimiter,
+    pub(super) late: LogLimiter,
+    pub(super) busy: LogLimiter,
+    pub(super) out_of_order: LogLimiter,
 }
 
 macro_rules! counters {

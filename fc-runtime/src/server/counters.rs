@@ -2,10 +2,10 @@
 
 use super::connection_id::ConnectionId;
 use crate::clock;
+use crate::log_limiter::{Held, LogLimiter};
 use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;
 use crate::sync::lock;
-use crate::thin::{Held, Thin};
 use std::fmt::Display;
 use std::net::SocketAddr;
 use std::sync::Mutex;
@@ -52,7 +52,7 @@ macro_rules! counters {
             /// Counts a frame that could not be read.
             pub(super) fn bad_frame<P: Protocol>(
                 &self,
-                lines: &mut Thin,
+                lines: &mut LogLimiter,
                 (connection, peer): (ConnectionId, SocketAddr),
                 name: &'static str,
                 error: &dyn Display,
@@ -255,38 +255,38 @@ impl Gauges {
 /// What is logged of all connections of a server together: they may come and go by the thousand.
 #[derive(Debug)]
 pub(super) struct Lines {
-    pub(super) connected: SharedThin,
-    pub(super) ended: SharedThin,
-    pub(super) refused: SharedThin,
-    pub(super) forbidden: SharedThin,
-    pub(super) handshakes: SharedThin,
-    pub(super) forbidden_calls: SharedThin,
-    pub(super) evicted: SharedThin,
-    pub(super) dropped: SharedThin,
+    pub(super) connected: SharedLogLimiter,
+    pub(super) ended: SharedLogLimiter,
+    pub(super) refused: SharedLogLimiter,
+    pub(super) forbidden: SharedLogLimiter,
+    pub(super) handshakes: SharedLogLimiter,
+    pub(super) forbidden_calls: SharedLogLimiter,
+    pub(super) evicted: SharedLogLimiter,
+    pub(super) dropped: SharedLogLimiter,
 }
 
 impl Default for Lines {
     fn default() -> Self {
-        let each = || SharedThin(Mutex::new(Thin::per_second()));
+        let each = || SharedLogLimiter(Mutex::new(LogLimiter::per_second()));
         Self {
             connected: each(),
             ended: each(),
-            refused: SharedThin::default(),
-            forbidden: SharedThin::default(),
-            handshakes: SharedThin::default(),
-            forbidden_calls: SharedThin::default(),
-            evicted: SharedThin::default(),
-            dropped: SharedThin::default(),
+            refused: SharedLogLimiter::default(),
+            forbidden: SharedLogLimiter::default(),
+            handshakes: SharedLogLimiter::default(),
+            forbidden_calls: SharedLogLimiter::default(),
+            evicted: SharedLogLimiter::default(),
+            dropped: SharedLogLimiter::default(),
         }
     }
 }
 
 /// Lines of one cause that several connections write.
 #[derive(Debug, Default)]
-pub(super) struct SharedThin(Mutex<Thin>);
+pub(super) struct SharedLogLimiter(Mutex<LogLimiter>);
 
-impl SharedThin {
-    /// What [`Thin::line`] says.
+impl SharedLogLimiter {
+    /// What [`LogLimiter::line`] says.
     pub(super) fn line(&self) -> Option<Held> {
         lock(&self.0).line(clock::now())
     }

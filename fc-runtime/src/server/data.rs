@@ -11,11 +11,11 @@ use super::pace::{Pace, inflated};
 use crate::clock;
 use crate::frame::{FrameId, LONG, Prepared};
 use crate::link::{CLOSING, Transport};
+use crate::log_limiter::LogLimiter;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
 use crate::sync::lock;
-use crate::thin::Thin;
 use std::convert::Infallible;
 use std::future::poll_fn;
 use std::marker::PhantomData;
@@ -243,7 +243,7 @@ impl<P: Protocol> DataPeer<P> {
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut pace = Pace::default();
-        let mut lines = Thin::default();
+        let mut lines = LogLimiter::default();
         loop {
             if work >= LONG {
                 work = 0;

@@ -17,13 +17,13 @@ use crate::clock;
 use crate::frame::LONG;
 use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
+use crate::log_limiter::LogLimiter;
 use crate::message::{Empty, read_enveloped};
 use crate::operation::AckPolicy;
 use crate::protocol::Protocol;
 use crate::refusal::Refusal;
 use crate::session::{Due, Incoming, after};
 use crate::sync::register;
-use crate::thin::Thin;
 use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -83,8 +83,8 @@ pub(super) struct Driver<S, P: Protocol> {
     short: bool,
     rests: Rests,
     /// What is logged of frames that could not be read, and of the limit in flight.
-    bad_frames: Thin,
-    in_flight: Thin,
+    bad_frames: LogLimiter,
+    in_flight: LogLimiter,
     /// Why nothing more is read at all. What has been carried out is answered all the same.
     deaf: Option<Reason>,
     watch: Watchdog,
@@ -106,8 +106,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             gate: Place::new(gate),
             short: false,
             rests: Rests::default(),
-            bad_frames: Thin::default(),
-            in_flight: Thin::default(),
+            bad_frames: LogLimiter::default(),
+            in_flight: LogLimiter::default(),
             deaf: None,
             watch: Watchdog::new(clock::now()),
         }

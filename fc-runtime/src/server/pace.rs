@@ -2,8 +2,8 @@
 //! read from it, and the others have the robot to themselves.
 
 use crate::clock;
+use crate::log_limiter::{Held, LogLimiter};
 use crate::session::after;
-use crate::thin::{Held, Thin};
 use std::time::{Duration, Instant};
 
 /// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
@@ -47,7 +47,7 @@ pub(super) fn inflated(surplus: u64) -> Duration {
 pub(super) struct Rests {
     pace: Pace,
     until: Option<Instant>,
-    lines: Thin,
+    lines: LogLimiter,
 }
 
 impl Rests {

@@ -8,7 +8,7 @@ const LINES: u32 = 5;
 /// The lines of one cause, mostly on one connection: a few a minute, for what goes on for hours is no
 /// news. What is held back is counted, and the next line says so.
 #[derive(Debug)]
-pub(crate) struct Thin {
+pub(crate) struct LogLimiter {
     window: Duration,
     /// When the window began.
     since: Option<Instant>,
@@ -16,13 +16,13 @@ pub(crate) struct Thin {
     held: u64,
 }
 
-impl Default for Thin {
+impl Default for LogLimiter {
     fn default() -> Self {
         Self::within(Duration::from_secs(60))
     }
 }
 
-impl Thin {
+impl LogLimiter {
     /// As many lines a second, for what is news each time: that connections come and go. Nobody who
     /// reads the log may take one for up that is down.
     pub(crate) fn per_second() -> Self {
