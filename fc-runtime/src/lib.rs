@@ -57,8 +57,8 @@ mod log_limiter;
 pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
-pub mod needs;
 pub mod operation;
+pub mod preconditions;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;
@@ -99,11 +99,11 @@ pub use json::{
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
-pub use needs::{AcceptedStates, Cadence, Preconditions, States};
 pub use operation::{
     AcceptedIn, AckPolicy, BodyInfo, Command, DeclaredError, Effect, OperationInfo, OperationKind,
     Report, ResultText, SetsOff, State, Stateless, Undeclared,
 };
+pub use preconditions::{AcceptedStates, Cadence, Preconditions, States};
 pub use protocol::{Defaults, Protocol, RequestEnvelope, ResponseEnvelope, Results};
 pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse};
 pub use refusal::Refusal;

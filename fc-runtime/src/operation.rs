@@ -2,7 +2,7 @@
 
 use crate::json::{Allowance, BodyError};
 use crate::message::{Message, check, transcode};
-use crate::needs::{Cadence, Preconditions};
+use crate::preconditions::{Cadence, Preconditions};
 use std::fmt::Debug;
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! Whether reports that come at intervals come in time.
 
-use crate::needs::Cadence;
+use crate::preconditions::Cadence;
 use crate::protocol::Protocol;
 use std::time::{Duration, Instant};
 
