@@ -49,14 +49,14 @@ pub mod envelope;
 pub mod frame;
 pub mod json;
 #[cfg(feature = "net")]
-mod keys;
-#[cfg(feature = "net")]
 mod link;
 #[cfg(feature = "net")]
 mod log_limiter;
 pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
+#[cfg(feature = "net")]
+mod open_message;
 pub mod operation;
 pub mod preconditions;
 #[cfg(feature = "client")]

@@ -9,9 +9,9 @@ use super::state::{Handle, Progress, State};
 use crate::clock;
 use crate::frame::{Body, FrameId, Staged};
 use crate::json::Allowance;
-use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::metrics::{Held, Since};
+use crate::open_message::OpenMessage;
 use crate::operation::{AckPolicy, Command, Effect, Report, SetsOff};
 use crate::protocol::{Protocol, RequestEnvelope};
 use crate::raw::RawResponse;
@@ -364,7 +364,7 @@ pub(super) async fn raw<P: Protocol>(
 ) -> Result<RawResponse<P>, CallError> {
     let allowance = handle.limits.json();
     let request =
-        read_enveloped::<P::Request, Keys>(body, allowance).map_err(CallError::Invalid)?;
+        read_enveloped::<P::Request, OpenMessage>(body, allowance).map_err(CallError::Invalid)?;
     let keys = request.body.map_err(CallError::Invalid)?;
     let envelope = request.envelope;
     let write = |out: &mut Vec<u8>| {
@@ -377,8 +377,8 @@ pub(super) async fn raw<P: Protocol>(
     let mut flight = Flight::new(handle, code, false, options);
     let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await;
     let response: Result<RawResponse<P>, CallError> = body.and_then(|body| {
-        let read =
-            read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
+        let read = read_enveloped::<P::Response, OpenMessage>(&body, allowance)
+            .map_err(CallError::Response)?;
         Ok(RawResponse {
             envelope: read.envelope,
             text: body.into_vec(),

@@ -7,8 +7,8 @@ use super::peer::Peer;
 use crate::clock;
 use crate::frame::{FrameError, FrameId, PreparedBody};
 use crate::json::{BodyError, Json, decode, to_vec};
-use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
+use crate::open_message::OpenMessage;
 use crate::operation::{Effect, OperationInfo, OperationKind, ResultText};
 use crate::protocol::{DigestOf, Protocol, ResponseEnvelope};
 use crate::refusal::Refusal;
@@ -91,11 +91,11 @@ impl<P: Protocol> Peer<P> {
     }
 
     /// What an answer lacks of the envelope, its keys, and whether both together say that all went well.
-    fn completed(&self, text: &Json) -> Result<(Keys, Keys, bool), BodyError> {
+    fn completed(&self, text: &Json) -> Result<(OpenMessage, OpenMessage, bool), BodyError> {
         let allowance = self.settings.limits.json();
-        let keys = decode::<Keys>(text.as_str().as_bytes(), allowance)?;
+        let keys = decode::<OpenMessage>(text.as_str().as_bytes(), allowance)?;
         let success = to_vec(&success::<P>(clock::unix_ms()));
-        let missing = decode::<Keys>(&success, allowance)?.without(&keys);
+        let missing = decode::<OpenMessage>(&success, allowance)?.without(&keys);
         let mut whole = Vec::with_capacity(text.as_str().len());
         write_enveloped(&missing, &keys, &mut whole);
         let read = read_enveloped::<P::Response, Empty>(&whole, allowance)?;

@@ -5,10 +5,10 @@ use crate::message::Message;
 
 /// A message all of whose keys are kept as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Keys(Extra);
+pub(crate) struct OpenMessage(Extra);
 
 #[cfg(feature = "server")]
-impl Keys {
+impl OpenMessage {
     /// Those that are not among `others`.
     pub(crate) fn without(&self, others: &Self) -> Self {
         let mut left = Extra::new();
@@ -20,7 +20,7 @@ impl Keys {
     }
 }
 
-impl Message for Keys {
+impl Message for OpenMessage {
     type Slots = Extra;
 
     fn slots() -> Extra {
