@@ -5,7 +5,7 @@
 //! needs nothing else. Otherwise the reader stops: it moves to the end of the text, where no name matches, and
 //! [`ReaderState`] specifies the purpose of the names.
 
-use super::halt::Halt;
+use super::reader_state::ReaderState;
 use super::{Allowance, BodyError, BodyErrorKind, Extra, Form, FromJson, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
@@ -36,13 +36,13 @@ pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<&'static str> {
 
 fn lacking_of(present: &[Cow<'_, str>], fields: &mut dyn Fields) -> Vec<&'static str> {
     let mut reader = Reader::new("", Allowance::depth(0));
-    reader.halt = Halt::Lacking {
+    reader.state = ReaderState::LackingKeys {
         present,
         lacking: Vec::new(),
     };
     fields.read(&mut reader);
-    match reader.halt {
-        Halt::Lacking { lacking, .. } => lacking,
+    match reader.state {
+        ReaderState::LackingKeys { lacking, .. } => lacking,
         _ => Vec::new(),
     }
 }
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         if self.take(name) {
             self.rest_of_field::<Plain, T>(slot);
         } else if self.rest().is_empty() {
-            self.halted_field::<Plain, T>(&[name], slot);
+            self.stopped_field::<Plain, T>(&[name], slot);
         }
     }
 
@@ -127,7 +127,7 @@ impl<'a> Reader<'a> {
         if names.iter().any(|name| self.take(name)) {
             self.rest_of_field::<F, T>(slot);
         } else if self.rest().is_empty() {
-            self.halted_field::<F, T>(names, slot);
+            self.stopped_field::<F, T>(names, slot);
         }
     }
 
@@ -149,7 +149,7 @@ impl<'a> Reader<'a> {
     }
 
     #[cold]
-    fn halted_field<F: Form<T>, T: FromJson>(
+    fn stopped_field<F: Form<T>, T: FromJson>(
         &mut self,
         names: &[&'static str],
         slot: &mut Option<T>,
@@ -161,13 +161,15 @@ impl<'a> Reader<'a> {
 
     /// Answers for a field the question of the reader's state. Returns `true` if the value must be read now.
     fn claim(&mut self, known: &[&'static str], optional: bool) -> bool {
-        match &mut self.halt {
-            Halt::Key { key, value, .. } if known.iter().any(|name| names(name, key)) => {
+        match &mut self.state {
+            ReaderState::KeySearch { key, value, .. }
+                if known.iter().any(|name| names(name, key)) =>
+            {
                 self.at = *value;
-                self.halt = Halt::No;
+                self.state = ReaderState::Reading;
                 true
             }
-            Halt::Lacking { present, lacking } => {
+            ReaderState::LackingKeys { present, lacking } => {
                 let mut known = known.iter();
                 let is_present = |name: &&str| present.iter().any(|key| names(name, key));
                 if !optional && !known.clone().any(is_present) {
@@ -181,10 +183,11 @@ impl<'a> Reader<'a> {
 
     /// Names the field that keeps unknown keys.
     pub fn extra(&mut self, extra: &mut Extra) {
-        if let Halt::Key {
+        if let ReaderState::KeySearch {
             keep: true, value, ..
-        } = self.halt
-            && let Halt::Key { key, .. } = mem::replace(&mut self.halt, Halt::No)
+        } = self.state
+            && let ReaderState::KeySearch { key, .. } =
+                mem::replace(&mut self.state, ReaderState::Reading)
         {
             self.at = value;
             let kept = self.count(1).and_then(|()| extra.keep(&key, self));
@@ -208,18 +211,18 @@ impl<'a> Reader<'a> {
 
     #[cold]
     fn fail(&mut self, error: BodyError) {
-        self.halt = Halt::Fault(error);
+        self.state = ReaderState::Failed(error);
         self.at = self.text.len();
     }
 
     /// Returns the error of a value after the fields have been named.
     #[inline]
     fn fields_read(&mut self) -> Result<(), BodyError> {
-        if !matches!(self.halt, Halt::Fault(_)) {
+        if !matches!(self.state, ReaderState::Failed(_)) {
             return Ok(());
         }
-        match mem::replace(&mut self.halt, Halt::No) {
-            Halt::Fault(error) => Err(error),
+        match mem::replace(&mut self.state, ReaderState::Reading) {
+            ReaderState::Failed(error) => Err(error),
             _ => Ok(()),
         }
     }
@@ -227,7 +230,7 @@ impl<'a> Reader<'a> {
     /// Reads a key and stops, to find the field with this name.
     fn ask(&mut self, keep: bool) -> Result<(), BodyError> {
         let key = self.key()?;
-        self.halt = Halt::Key {
+        self.state = ReaderState::KeySearch {
             key,
             value: self.at,
             keep,
@@ -238,10 +241,10 @@ impl<'a> Reader<'a> {
 
     /// Skips the value of a key that no field has claimed.
     fn skip_unclaimed(&mut self) -> Result<(), BodyError> {
-        let Halt::Key { value, .. } = self.halt else {
+        let ReaderState::KeySearch { value, .. } = self.state else {
             return Ok(());
         };
-        self.halt = Halt::No;
+        self.state = ReaderState::Reading;
         self.at = value;
         self.count(1)?;
         self.skip_value()?;
@@ -322,7 +325,7 @@ impl<'a> Reader<'a> {
                 self.ask(false).map_err(Envelope)?;
                 envelope.read(self);
                 self.fields_read().map_err(Envelope)?;
-                if let Halt::Key { keep, .. } = &mut self.halt {
+                if let ReaderState::KeySearch { keep, .. } = &mut self.state {
                     *keep = true;
                 }
                 body.read(self);

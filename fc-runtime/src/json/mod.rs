@@ -30,11 +30,11 @@ mod error;
 mod extra;
 mod fields;
 mod form;
-mod halt;
 mod locate;
 mod number;
 mod primitive;
 mod reader;
+mod reader_state;
 mod scan;
 #[cfg(feature = "serde")]
 mod serde;

@@ -1,6 +1,6 @@
 //! Reads JSON text, directed by the wanted type.
 
-use super::halt::Halt;
+use super::reader_state::ReaderState;
 use super::{Allowance, BodyError, BodyErrorKind};
 use std::borrow::Cow;
 
@@ -19,7 +19,7 @@ pub struct Reader<'a> {
     /// Memory left for lists, in bytes.
     pub(super) list_bytes: usize,
     /// Reading, or the reason why no field is read.
-    pub(super) halt: Halt<'a>,
+    pub(super) state: ReaderState<'a>,
 }
 
 impl<'a> Reader<'a> {
@@ -32,7 +32,7 @@ impl<'a> Reader<'a> {
             depth: allowance.depth.min(super::MAX_DEPTH),
             values: allowance.values,
             list_bytes: allowance.list_bytes,
-            halt: Halt::No,
+            state: ReaderState::Reading,
         }
     }
 

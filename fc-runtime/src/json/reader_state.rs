@@ -5,14 +5,14 @@ use std::borrow::Cow;
 
 /// The state of a reader.
 #[derive(Clone, Debug)]
-pub(super) enum Halt<'a> {
+pub(super) enum ReaderState<'a> {
     /// Reads fields at its position.
-    No,
+    Reading,
     /// Stopped, because a value could not be read.
-    Fault(BodyError),
+    Failed(BodyError),
     /// Stopped, to find the field of this key. No field name matched the text: the key may be unknown or spelled with
     /// escapes.
-    Key {
+    KeySearch {
         key: Cow<'a, str>,
         /// Offset of its value.
         value: usize,
@@ -20,7 +20,7 @@ pub(super) enum Halt<'a> {
         keep: bool,
     },
     /// Stopped, to collect the required fields that are not among these keys.
-    Lacking {
+    LackingKeys {
         present: &'a [Cow<'a, str>],
         lacking: Vec<&'static str>,
     },
