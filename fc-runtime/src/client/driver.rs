@@ -5,7 +5,7 @@
 
 use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
-use super::diary::Diary;
+use super::connection_log::ConnectionLog;
 use super::error::CallError;
 use super::life::ConnectionState;
 use super::loss::Loss;
@@ -103,14 +103,14 @@ struct Driver<P: Protocol> {
     unread_since: Option<Instant>,
     /// Why the connection has ended, as soon as it is known.
     why: Loss,
-    diary: Diary,
+    log: ConnectionLog,
     alarm: Alarm,
 }
 
 impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
-            diary: Diary::new::<P>(address, "command"),
+            log: ConnectionLog::new::<P>(address, "command"),
             arriving: Arriving::new(inner.config.connection.stall_timeout),
             unread_since: None,
             why: Loss::NotYet,
@@ -137,8 +137,7 @@ impl<P: Protocol> Driver<P> {
         // Should the task end before the connection does.
         self.why = Loss::Ended;
         self.up(&link.socket);
-        self.diary
-            .connected(self.inner.lock().life.now().connects());
+        self.log.connected(self.inner.lock().life.now().connects());
         self.why = loop {
             let turn = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard));
             match turn.await {
@@ -147,7 +146,7 @@ impl<P: Protocol> Driver<P> {
                 Turn::Spent => yield_now().await,
             }
         };
-        self.diary.ended(self.why);
+        self.log.ended(self.why);
         if self.inner.lock().life.now().is_closed() {
             let out = std::mem::take(&mut self.inner.lock().out);
             // A peer that does not read, or does not stop sending, does not keep us.
@@ -412,7 +411,7 @@ impl<P: Protocol> Driver<P> {
     async fn connect<D: Dial>(&mut self, tries: &mut Tries, dial: &mut D) -> Option<D::Transport> {
         loop {
             let Some(wait) = tries.next() else {
-                self.diary.given_up(self.why);
+                self.log.given_up(self.why);
                 return None;
             };
             self.down(false);
@@ -437,7 +436,7 @@ impl<P: Protocol> Driver<P> {
                 Err(error) => {
                     self.why = Loss::from(&error);
                     tries.failed();
-                    self.diary.not_connected(self.why);
+                    self.log.not_connected(self.why);
                 }
             }
         }

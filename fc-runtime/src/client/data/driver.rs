@@ -4,7 +4,7 @@ use super::error::DataError;
 use super::shared::Shared;
 use crate::client::config::ClientConfig;
 use crate::client::connecting::{Dial, Tries};
-use crate::client::diary::Diary;
+use crate::client::connection_log::ConnectionLog;
 use crate::client::life::{ConnectionState, closed};
 use crate::client::loss::Loss;
 use crate::link::{CLOSING, Transport};
@@ -23,7 +23,7 @@ pub(super) struct Driver<P, D> {
     pub(super) commands: watch::Receiver<ConnectionState>,
     pub(super) config: ClientConfig,
     pub(super) dial: D,
-    pub(super) diary: Diary,
+    pub(super) log: ConnectionLog,
     /// Why there is no connection.
     pub(super) why: Loss,
     pub(super) protocol: std::marker::PhantomData<fn() -> P>,
@@ -49,7 +49,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
     async fn connect(&mut self, tries: &mut Tries) -> Option<(D::Transport, u64)> {
         loop {
             let Some(wait) = tries.next() else {
-                self.diary.given_up(self.why);
+                self.log.given_up(self.why);
                 return None;
             };
             let mut commands = self.commands.clone();
@@ -74,7 +74,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
                     self.why = Loss::from(&error);
                     tries.failed();
                     self.shared.not_connected(self.why);
-                    self.diary.not_connected(self.why);
+                    self.log.not_connected(self.why);
                 }
             }
         }
@@ -91,7 +91,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
         };
         let mut receiver = Receiver::new(read, self.config.decoder::<P>(), patience);
         let mut sender = Sender::new(write, patience);
-        self.diary.connected(self.shared.connected());
+        self.log.connected(self.shared.connected());
         let shared = &*self.shared;
         let mut for_good = false;
         self.why = tokio::select! {
@@ -107,7 +107,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
             why = receive(shared, &mut receiver) => why,
             why = send(shared, &mut sender) => why,
         };
-        self.diary.ended(self.why);
+        self.log.ended(self.why);
         if for_good {
             let goodbye = async {
                 sender.close().await?;

@@ -14,7 +14,7 @@ pub use subscription::{StreamItem, Subscription};
 
 use super::config::ClientConfig;
 use super::connecting::Dial;
-use super::diary::Diary;
+use super::connection_log::ConnectionLog;
 use super::life::{ConnectionState, ConnectionStates, closed};
 use super::loss::Loss;
 use super::state::Handle;
@@ -72,7 +72,7 @@ impl<P: Protocol> DataConnection<P> {
             shared: Arc::clone(&shared),
             commands: commands.lock().life.watch(),
             config: config.clone(),
-            diary: Diary::new::<P>(dial.address(), "data"),
+            log: ConnectionLog::new::<P>(dial.address(), "data"),
             dial,
             why: Loss::NotYet,
             protocol: PhantomData,

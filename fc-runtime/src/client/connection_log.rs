@@ -7,7 +7,7 @@ use crate::protocol::Protocol;
 
 /// Logs what happens to a connection, one line each.
 #[derive(Debug)]
-pub(super) struct Diary {
+pub(super) struct ConnectionLog {
     protocol: &'static str,
     address: String,
     /// The port it is, "command" or "data".
@@ -21,7 +21,7 @@ pub(super) struct Diary {
     failing: LogLimiter,
 }
 
-impl Diary {
+impl ConnectionLog {
     pub(super) fn new<P: Protocol>(address: String, port: &'static str) -> Self {
         Self {
             protocol: P::NAME,
