@@ -170,7 +170,7 @@ fn report<P: Protocol>(
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
-    if let Some(since) = state.beats.came(id.code, now) {
+    if let Some(since) = state.report_watchdog.came(id.code, now) {
         state.counters.reports_late += 1;
         if let Some(held) = state.lines.late.line(now) {
             tracing::warn!(

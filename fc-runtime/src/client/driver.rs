@@ -347,7 +347,7 @@ impl<P: Protocol> Driver<P> {
             state.life.connected();
         }
         state.session.reconnected();
-        state.beats.begin();
+        state.report_watchdog.begin();
         let mut wakers: Vec<_> = state
             .slots
             .iter_mut()

@@ -16,7 +16,6 @@
 //! ```
 
 mod arrivals;
-mod beats;
 mod call;
 mod config;
 mod connecting;
@@ -28,6 +27,7 @@ mod following;
 mod life;
 mod loss;
 mod queues;
+mod report_watchdog;
 mod reports;
 mod socket;
 mod state;

@@ -1,11 +1,11 @@
 //! What the handles of a connection and its driver share.
 
-use super::beats::Beats;
 use super::config::ClientConfig;
 use super::error::CallError;
 use super::life::Life;
 use super::loss::Loss;
 use super::queues::Queues;
+use super::report_watchdog::ReportWatchdog;
 use super::socket::CallersSocket;
 use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::log_limiter::LogLimiter;
@@ -108,7 +108,7 @@ pub(super) struct State<P> {
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
     pub(super) reports: Queues,
-    pub(super) beats: Beats,
+    pub(super) report_watchdog: ReportWatchdog,
     /// The driver's, while it waits for something to do.
     pub(super) driver: Option<Waker>,
     /// Memory for the decoder to go on in when a large body leaves it.
@@ -267,7 +267,7 @@ impl<P: Protocol> Inner<P> {
                 session: Session::new(&limits, P::DEFAULTS.ack, config.connection.first_id()),
                 slots: Slots::default(),
                 reports: Queues::new(limits.queued_reports, config.connection.queued_bytes::<P>()),
-                beats: Beats::of::<P>(),
+                report_watchdog: ReportWatchdog::of::<P>(),
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters::default(),
