@@ -189,7 +189,7 @@ fn report<P: Protocol>(
         text: body.into_vec(),
     };
     // Whoever takes reports may have seen the end already.
-    let room = !state.life.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
+    let room = !state.connection.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
     let missed = if room {
         state.reports.push(report, wakers)
     } else {

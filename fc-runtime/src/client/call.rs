@@ -2,10 +2,10 @@
 
 use super::error::CallError;
 use super::following::Following;
-use super::life::ConnectionState;
 use super::loss::Loss;
 use super::reports::Receiver;
 use super::state::{Handle, Progress, State};
+use super::state_watch::ConnectionState;
 use crate::clock;
 use crate::frame::{Body, FrameId, Staged};
 use crate::json::Allowance;
@@ -133,7 +133,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let now = clock::now();
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        if let ConnectionState::Closed { why, .. } = state.life.now() {
+        if let ConnectionState::Closed { why, .. } = state.connection.now() {
             return Err(CallError::Closed(why));
         }
         let slot = state.slots.take();
@@ -156,7 +156,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             slot.waker = Some(cx.waker().clone());
         }
         let mut socket = None;
-        if state.life.now().is_connected() {
+        if state.connection.now().is_connected() {
             send(state, frame, body);
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
@@ -200,7 +200,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
     ) -> Poll<Result<Body, CallError>> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        let now = state.life.now();
+        let now = state.connection.now();
         let Some(place) = state.slots.get(slot) else {
             return Poll::Ready(Err(CallError::Closed(now.why().unwrap_or(Loss::Ended))));
         };
@@ -228,7 +228,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
     fn send_again(&self, frame: FrameId, slot: usize, body: Staged<'_>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        let connected = state.life.now().is_connected();
+        let connected = state.connection.now().is_connected();
         let Some(place) = state.slots.get(slot) else {
             return;
         };

@@ -7,10 +7,10 @@ use super::arrivals::{Arrival, Fault, Readers, arrive};
 use super::connecting::{Dial, Tries};
 use super::connection_log::ConnectionLog;
 use super::error::CallError;
-use super::life::ConnectionState;
 use super::loss::Loss;
 use super::socket::Shared;
 use super::state::{Inner, Progress};
+use super::state_watch::ConnectionState;
 use crate::clock;
 use crate::digest::Sum;
 use crate::frame::{Decoder, FrameError};
@@ -137,7 +137,8 @@ impl<P: Protocol> Driver<P> {
         // Should the task end before the connection does.
         self.why = Loss::Ended;
         self.up(&link.socket);
-        self.log.connected(self.inner.lock().life.now().connects());
+        self.log
+            .connected(self.inner.lock().connection.now().connects());
         self.why = loop {
             let turn = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard));
             match turn.await {
@@ -147,7 +148,7 @@ impl<P: Protocol> Driver<P> {
             }
         };
         self.log.ended(self.why);
-        if self.inner.lock().life.now().is_closed() {
+        if self.inner.lock().connection.now().is_closed() {
             let out = std::mem::take(&mut self.inner.lock().out);
             // A peer that does not read, or does not stop sending, does not keep us.
             let _ = timeout(CLOSING, link.socket.goodbye(out)).await;
@@ -307,7 +308,7 @@ impl<P: Protocol> Driver<P> {
                     .slots
                     .get(slot)
                     .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
-                let error = match (state.life.now(), unsent) {
+                let error = match (state.connection.now(), unsent) {
                     (ConnectionState::Connected { .. }, _) => CallError::Timeout,
                     (ConnectionState::Connecting { why, .. }, true) => CallError::NotConnected(why),
                     (ConnectionState::Closed { why, .. }, true) => CallError::Closed(why),
@@ -327,7 +328,7 @@ impl<P: Protocol> Driver<P> {
         self.alarm.forget_past(now);
         state.alarm = self.alarm.at();
         state.tell();
-        let closed = state.life.now().is_closed();
+        let closed = state.connection.now().is_closed();
         let due = state.session.next_due();
         if !closed {
             register(&mut state.driver, cx);
@@ -343,8 +344,8 @@ impl<P: Protocol> Driver<P> {
         let mut state = self.inner.lock();
         state.socket = Some(socket.for_callers());
         // The first connection may have been there, and counted, before its driver.
-        if !state.life.now().is_connected() {
-            state.life.connected();
+        if !state.connection.now().is_connected() {
+            state.connection.connected();
         }
         state.session.reconnected();
         state.report_watchdog.begin();
@@ -364,16 +365,16 @@ impl<P: Protocol> Driver<P> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         if for_good {
-            state.life.close(self.why);
+            state.connection.close(self.why);
         } else {
-            if state.life.now().is_connected() {
+            if state.connection.now().is_connected() {
                 state.reports.lost(self.why, &mut self.wakers);
             }
-            state.life.lost(self.why);
+            state.connection.lost(self.why);
         }
         state.tell();
-        let over = state.life.now().is_closed();
-        let why = state.life.now().why().unwrap_or(self.why);
+        let over = state.connection.now().is_closed();
+        let why = state.connection.now().why().unwrap_or(self.why);
         state.out.clear();
         state.socket = None;
         let slots = &mut state.slots;

@@ -24,23 +24,23 @@ mod data;
 mod driver;
 mod error;
 mod following;
-mod life;
 mod loss;
 mod queues;
 mod report_watchdog;
 mod reports;
 mod socket;
 mod state;
+mod state_watch;
 
 pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::{DataConnection, DataError, StreamItem, Subscription};
 pub use error::{CallError, ConnectError};
 pub use following::{FollowError, Followed, Following};
-pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;
 pub use reports::RawReports;
 pub use state::ClientCounters;
+pub use state_watch::{ConnectionState, ConnectionStates};
 
 use crate::link::Transport;
 use crate::operation::Command;
@@ -135,7 +135,7 @@ impl<P: Protocol> Connection<P> {
     fn driven<D: Dial>(stream: Option<D::Transport>, dial: D, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
         if stream.is_some() {
-            inner.lock().life.connected();
+            inner.lock().connection.connected();
         }
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive_dialled(inner, stream, dial));
@@ -147,7 +147,7 @@ impl<P: Protocol> Connection<P> {
     #[must_use]
     pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
-        inner.lock().life.connected();
+        inner.lock().connection.connected();
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive(inner, stream));
         connection
@@ -239,7 +239,7 @@ impl<P: Protocol> Connection<P> {
     /// Whether there is a connection at this moment, and why not.
     #[must_use]
     pub fn state(&self) -> ConnectionState {
-        self.handle.lock().life.now()
+        self.handle.lock().connection.now()
     }
 
     /// The states of the connection: the present one first, and then each that it comes to.
@@ -248,7 +248,7 @@ impl<P: Protocol> Connection<P> {
     /// [`ConnectionState::Connected`] knows it also after the robot has been restarted.
     #[must_use]
     pub fn states(&self) -> ConnectionStates {
-        ConnectionStates::new(self.handle.lock().life.watch())
+        ConnectionStates::new(self.handle.lock().connection.subscribe())
     }
 
     /// Waits until the connection has ended for good, and says why: it was [closed](Self::close), was
@@ -256,8 +256,8 @@ impl<P: Protocol> Connection<P> {
     ///
     /// Cancellation safe.
     pub async fn closed(&self) -> Loss {
-        let states = self.handle.lock().life.watch();
-        life::closed(states).await
+        let states = self.handle.lock().connection.subscribe();
+        state_watch::closed(states).await
     }
 
     /// How many calls are in flight.

@@ -86,7 +86,7 @@ impl<P: Protocol> Receiver<P> {
         take: fn(&mut Queue) -> Option<T>,
     ) -> Poll<Result<T, Loss>> {
         let mut state = self.handle.lock();
-        let now = state.life.now();
+        let now = state.connection.now();
         let ended = || Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
         let Some(queue) = state.reports.of(self.id) else {
             return ended();

@@ -2,11 +2,11 @@
 
 use super::config::ClientConfig;
 use super::error::CallError;
-use super::life::Life;
 use super::loss::Loss;
 use super::queues::Queues;
 use super::report_watchdog::ReportWatchdog;
 use super::socket::CallersSocket;
+use super::state_watch::StateWatch;
 use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::log_limiter::LogLimiter;
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
@@ -96,7 +96,7 @@ impl Slots {
 /// Behind the lock.
 #[derive(Debug)]
 pub(super) struct State<P> {
-    pub(super) life: Life,
+    pub(super) connection: StateWatch,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     /// What they are written to, while there is a connection.
@@ -227,7 +227,7 @@ impl<P> State<P> {
     /// Tells the recorder of metrics what is new.
     pub(super) fn tell(&mut self) {
         self.told.metrics.feed(self.counters);
-        let now = self.life.now();
+        let now = self.connection.now();
         let before = std::mem::replace(&mut self.told.counted, now.connects());
         self.told
             .connects
@@ -259,7 +259,7 @@ impl<P: Protocol> Inner<P> {
         let limits = config.connection.limits::<P>();
         Arc::new(Self {
             state: Mutex::new(State {
-                life: Life::new(),
+                connection: StateWatch::new(),
                 out: Vec::new(),
                 socket: None,
                 alarm: None,
@@ -318,7 +318,7 @@ impl<P: Protocol> Inner<P> {
 
     /// Ends the connection for good, if it has not ended.
     pub(super) fn close(&self) {
-        self.lock().life.close(Loss::Here);
+        self.lock().connection.close(Loss::Here);
         self.wake();
     }
 }

@@ -5,8 +5,8 @@ use super::shared::Shared;
 use crate::client::config::ClientConfig;
 use crate::client::connecting::{Dial, Tries};
 use crate::client::connection_log::ConnectionLog;
-use crate::client::life::{ConnectionState, closed};
 use crate::client::loss::Loss;
+use crate::client::state_watch::{ConnectionState, closed};
 use crate::link::{CLOSING, Transport};
 use crate::protocol::Protocol;
 use crate::rate::Least;
@@ -35,7 +35,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
         let mut tries = Tries::new(self.config.reconnect);
         while let Some((stream, commands)) = self.connect(&mut tries).await {
             self.serve(stream, commands).await;
-            if self.shared.lock().life.now().is_closed() {
+            if self.shared.lock().connection.now().is_closed() {
                 return;
             }
             // A robot may have nothing to send.

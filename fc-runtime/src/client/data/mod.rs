@@ -15,9 +15,9 @@ pub use subscription::{StreamItem, Subscription};
 use super::config::ClientConfig;
 use super::connecting::Dial;
 use super::connection_log::ConnectionLog;
-use super::life::{ConnectionState, ConnectionStates, closed};
 use super::loss::Loss;
 use super::state::Handle;
+use super::state_watch::{ConnectionState, ConnectionStates, closed};
 use crate::clock;
 use crate::content::StreamContent;
 use crate::frame::{Encoder, FrameId};
@@ -70,7 +70,7 @@ impl<P: Protocol> DataConnection<P> {
         let shared = Arc::new(Shared::new());
         let driver = Driver::<P, D> {
             shared: Arc::clone(&shared),
-            commands: commands.lock().life.watch(),
+            commands: commands.lock().connection.subscribe(),
             config: config.clone(),
             log: ConnectionLog::new::<P>(dial.address(), "data"),
             dial,
@@ -95,7 +95,7 @@ impl<P: Protocol> DataConnection<P> {
     ///
     /// [`DataError::NotConnected`] or [`DataError::Closed`].
     pub async fn connected(&self) -> Result<(), DataError> {
-        let mut states = self.shared.lock().life.watch();
+        let mut states = self.shared.lock().connection.subscribe();
         let settled = |state: &ConnectionState| state.is_connected() || state.is_closed();
         // An error means that it was in no time, or that there is nobody left to say it.
         let _ = timeout(self.patience, states.wait_for(settled)).await;
@@ -200,27 +200,27 @@ impl<P: Protocol> DataConnection<P> {
     /// Whether there is a connection at this moment, and why not.
     #[must_use]
     pub fn state(&self) -> ConnectionState {
-        self.shared.lock().life.now()
+        self.shared.lock().connection.now()
     }
 
     /// The states of the connection: the present one first, and then each that it comes to.
     #[must_use]
     pub fn states(&self) -> ConnectionStates {
-        ConnectionStates::new(self.shared.lock().life.watch())
+        ConnectionStates::new(self.shared.lock().connection.subscribe())
     }
 
     /// Waits until the connection has ended for good, and says why.
     ///
     /// Cancellation safe.
     pub async fn closed(&self) -> Loss {
-        let states = self.shared.lock().life.watch();
+        let states = self.shared.lock().connection.subscribe();
         closed(states).await
     }
 
     /// Closes the connection. A frame that is being sent is finished, if the robot takes it within a
     /// second. What has arrived can still be received.
     pub fn close(&self) {
-        self.shared.lock().life.close(Loss::Here);
+        self.shared.lock().connection.close(Loss::Here);
         self.shared.tell();
         self.shared.end.notify_one();
     }
@@ -237,7 +237,7 @@ impl Turn<'_> {
     /// Goes on. What has become of the frame, or else the state in which it waits.
     fn look(&mut self) -> Result<Result<(), DataError>, ConnectionState> {
         let mut state = self.shared.lock();
-        let now = state.life.now();
+        let now = state.connection.now();
         if self.bytes.is_some() {
             if let ConnectionState::Closed { why, .. } = now {
                 return Ok(Err(DataError::Closed(why)));

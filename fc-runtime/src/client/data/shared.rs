@@ -2,8 +2,8 @@
 
 use super::error::DataError;
 use super::subscription::Takers;
-use crate::client::life::{ConnectionState, Life};
 use crate::client::loss::Loss;
+use crate::client::state_watch::{ConnectionState, StateWatch};
 use crate::stream::StreamFrame;
 use crate::sync::lock;
 use std::sync::{Mutex, MutexGuard};
@@ -27,7 +27,7 @@ pub(super) enum Outbox {
 /// Behind the lock.
 #[derive(Debug)]
 pub(super) struct State {
-    pub(super) life: Life,
+    pub(super) connection: StateWatch,
     /// What has arrived and not been taken.
     inbox: Option<Result<StreamFrame, DataError>>,
     /// A loss that the receiver has not been told, after what is in the inbox.
@@ -62,7 +62,7 @@ impl Shared {
     pub(super) fn new() -> Self {
         Self {
             state: Mutex::new(State {
-                life: Life::new(),
+                connection: StateWatch::new(),
                 inbox: None,
                 gap: None,
                 takers: Takers::default(),
@@ -101,7 +101,7 @@ impl Shared {
             self.room.notify_one();
             return taken;
         }
-        match state.life.now() {
+        match state.connection.now() {
             ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
             _ => None,
         }
@@ -137,7 +137,7 @@ impl Shared {
         if taken.is_some() {
             return taken;
         }
-        match state.life.now() {
+        match state.connection.now() {
             ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
             _ => None,
         }
@@ -198,8 +198,8 @@ impl Shared {
         let mut state = self.lock();
         state.heard = false;
         state.sent = false;
-        state.life.connected();
-        let connects = state.life.now().connects();
+        state.connection.connected();
+        let connects = state.connection.now().connects();
         drop(state);
         self.tell();
         connects
@@ -207,7 +207,7 @@ impl Shared {
 
     /// There is none yet.
     pub(super) fn not_connected(&self, why: Loss) {
-        self.lock().life.lost(why);
+        self.lock().connection.lost(why);
         self.tell();
     }
 
@@ -217,7 +217,7 @@ impl Shared {
         state.abandon(why);
         state.gap = Some(why);
         state.takers.lost(why);
-        state.life.lost(why);
+        state.connection.lost(why);
         drop(state);
         self.tell();
     }
@@ -226,7 +226,7 @@ impl Shared {
     pub(super) fn close(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
-        state.life.close(why);
+        state.connection.close(why);
         drop(state);
         self.tell();
     }

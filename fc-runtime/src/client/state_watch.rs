@@ -72,13 +72,13 @@ impl ConnectionState {
 
 /// The state of a connection, and all who watch it.
 #[derive(Debug)]
-pub(super) struct Life {
+pub(super) struct StateWatch {
     /// What the watchers are told. Asked for here, it costs a call nothing.
     now: ConnectionState,
     told: watch::Sender<ConnectionState>,
 }
 
-impl Life {
+impl StateWatch {
     /// Before the first connection.
     pub(super) fn new() -> Self {
         let now = ConnectionState::Connecting {
@@ -120,7 +120,7 @@ impl Life {
         }
     }
 
-    pub(super) fn watch(&self) -> watch::Receiver<ConnectionState> {
+    pub(super) fn subscribe(&self) -> watch::Receiver<ConnectionState> {
         self.told.subscribe()
     }
 }
