@@ -220,7 +220,7 @@ impl<P: Protocol> Waiting<P> {
     fn abandon(&mut self) {
         if let Some(work) = self.work.take()
             && work.outlives()
-            && (self.peer.abandoned).take_over(work, self.peer.account.lend(self.weight))
+            && (self.peer.detached).take_over(work, self.peer.account.lend(self.weight))
         {
             self.peer.counters.handlers_abandoned.one();
         }

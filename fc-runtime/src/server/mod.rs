@@ -19,7 +19,6 @@
 //! }
 //! ```
 
-mod abandoned;
 mod allow;
 mod answer;
 mod bounded;
@@ -29,6 +28,7 @@ mod connection_id;
 mod context;
 mod counters;
 mod data;
+mod detached;
 mod driver;
 mod gate;
 mod handle;

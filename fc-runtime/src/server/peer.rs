@@ -1,11 +1,11 @@
 //! One app's connection, as far as driver, handlers and pushes share it.
 
-use super::abandoned::Abandoned;
 use super::allow::Effects;
 use super::budget::{Account, Holder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
+use super::detached::DetachedHandlers;
 use super::output::Output;
 use super::push::{AckOutcome, Queued};
 use crate::protocol::Protocol;
@@ -37,7 +37,7 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) effects: Effects,
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
-    pub(super) abandoned: Arc<Abandoned>,
+    pub(super) detached: Arc<DetachedHandlers>,
     pub(super) account: Account,
     output: Mutex<Output<P>>,
     state: Mutex<PeerState<P>>,
@@ -62,7 +62,7 @@ impl<P: Protocol> Peer<P> {
         effects: Effects,
         settings: Arc<Settings>,
         counters: Arc<Counting>,
-        abandoned: Arc<Abandoned>,
+        detached: Arc<DetachedHandlers>,
         account: Account,
     ) -> Self {
         let session = Session::new(
@@ -91,7 +91,7 @@ impl<P: Protocol> Peer<P> {
             going: Notify::new(),
             settings,
             counters,
-            abandoned,
+            detached,
         }
     }
 

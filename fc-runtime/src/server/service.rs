@@ -159,7 +159,7 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
-        if self.peer.abandoned.is_full() && outlives(C::EFFECT) {
+        if self.peer.detached.is_full() && outlives(C::EFFECT) {
             return self.refuse_as_full();
         }
         let span = self.span(|| C::NAME);
@@ -185,7 +185,7 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
-        if self.peer.abandoned.is_full() && outlives(effect::<P>(self.frame.code)) {
+        if self.peer.detached.is_full() && outlives(effect::<P>(self.frame.code)) {
             return self.refuse_as_full();
         }
         let span = self.span(|| name::<P>(self.frame.code));

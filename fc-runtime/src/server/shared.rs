@@ -1,12 +1,12 @@
 //! What a server's tasks share: who is connected, who may be, and when all of it ends.
 
-use super::abandoned::Abandoned;
 use super::allow::Effects;
 use super::budget::{Account, Budget, Holder};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::data::{DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
+use super::detached::DetachedHandlers;
 use super::driver::Driver;
 use super::gate::Gate;
 use super::handshake::shake;
@@ -49,7 +49,7 @@ pub(super) struct Shared<P: Protocol> {
     pub(super) peers: Mutex<Table<Arc<Peer<P>>>>,
     data_peers: Mutex<Table<DataEntry>>,
     pub(super) inbox: Arc<Inbox>,
-    abandoned: Arc<Abandoned>,
+    detached: Arc<DetachedHandlers>,
     gate: Gate,
     pub(super) budget: Budget,
     tasks: Mutex<JoinSet<()>>,
@@ -63,7 +63,7 @@ const DISPLACED: &str = "another has taken its place";
 impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
-            abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
+            detached: Arc::new(DetachedHandlers::new(settings.abandoned_handlers)),
             budget: Budget::new(settings.memory),
             settings: Arc::new(settings),
             service,
@@ -100,10 +100,10 @@ impl<P: Protocol> Shared<P> {
         let effects = self.allowed(address)?;
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
-        let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
+        let (counters, detached) = (Arc::clone(&self.counters), Arc::clone(&self.detached));
         let peer = Arc::new_cyclic(|peer: &Weak<Peer<P>>| {
             let account = self.budget.open(id, peer.clone());
-            Peer::new(id, address, effects, settings, counters, abandoned, account)
+            Peer::new(id, address, effects, settings, counters, detached, account)
         });
         let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
         let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
@@ -318,7 +318,7 @@ impl<P: Protocol> Shared<P> {
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
             drop(tasks);
             // Where there are no connections, no more handlers are left behind.
-            self.abandoned.poll_ended(cx)
+            self.detached.poll_ended(cx)
         });
         self.over(all).await;
     }
@@ -351,7 +351,7 @@ impl<P: Protocol> Shared<P> {
         tasks.abort_all();
         self.life.send_replace(Life::Over);
         drop(tasks);
-        self.abandoned.abort();
+        self.detached.abort();
         *lock(&self.inbox) = None;
     }
 

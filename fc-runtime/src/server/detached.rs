@@ -10,14 +10,14 @@ use tokio::runtime::Handle;
 use tokio::task::JoinSet;
 
 /// What all connections of a server share.
-pub(super) struct Abandoned {
+pub(super) struct DetachedHandlers {
     limit: usize,
     running: Arc<AtomicUsize>,
     /// `None` once the server is over.
     tasks: Mutex<Option<JoinSet<()>>>,
 }
 
-impl Abandoned {
+impl DetachedHandlers {
     /// So many may run on before no more of their kind are begun; with 0, none runs on.
     pub(super) fn new(limit: usize) -> Self {
         Self {
@@ -43,10 +43,10 @@ impl Abandoned {
         if self.limit == 0 {
             return false;
         }
-        let place = Place::take(&self.running);
+        let count = RunningHandlerCount::take(&self.running);
         let task = async move {
             std::future::poll_fn(|cx| work.poll(cx, false)).await;
-            drop((work, request, place));
+            drop((work, request, count));
         };
         let mut guard = self.lock();
         let Some(tasks) = guard.as_mut() else {
@@ -80,16 +80,16 @@ impl Abandoned {
 }
 
 /// One of those that run on.
-struct Place(Arc<AtomicUsize>);
+struct RunningHandlerCount(Arc<AtomicUsize>);
 
-impl Place {
+impl RunningHandlerCount {
     fn take(running: &Arc<AtomicUsize>) -> Self {
         running.fetch_add(1, Ordering::Relaxed);
         Self(Arc::clone(running))
     }
 }
 
-impl Drop for Place {
+impl Drop for RunningHandlerCount {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
