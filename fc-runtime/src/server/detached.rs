@@ -1,7 +1,7 @@
 //! Handlers that run on though nobody waits for their answer any more.
 
 use super::budget::Charge;
-use super::work::Work;
+use super::running_handler::RunningHandler;
 use crate::sync::lock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -35,7 +35,7 @@ impl DetachedHandlers {
 
     /// Lets a handler run on in a task of its own, to its end or to that of the server. `false` if
     /// none may, and it has been dropped.
-    pub(super) fn take_over(&self, mut work: Box<dyn Work>, request: Charge) -> bool {
+    pub(super) fn take_over(&self, mut handler: Box<dyn RunningHandler>, request: Charge) -> bool {
         // Without a runtime there is no server any more either.
         let Ok(runtime) = Handle::try_current() else {
             return false;
@@ -45,8 +45,8 @@ impl DetachedHandlers {
         }
         let count = RunningHandlerCount::take(&self.running);
         let task = async move {
-            std::future::poll_fn(|cx| work.poll(cx, false)).await;
-            drop((work, request, count));
+            std::future::poll_fn(|cx| handler.poll(cx, false)).await;
+            drop((handler, request, count));
         };
         let mut guard = self.lock();
         let Some(tasks) = guard.as_mut() else {

@@ -445,9 +445,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     peer.refuse_after_panic(id);
                     return Ok(true);
                 };
-                if let Some(begun) = handling.0 {
+                if let Some(started) = handling.0 {
                     let deadline = after(now, peer.settings.handler_timeout);
-                    self.handlers.push(begun, id, peer, deadline);
+                    self.handlers.push(started, id, peer, deadline);
                 }
             }
             Incoming::Answer(queued) => {

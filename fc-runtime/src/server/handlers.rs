@@ -1,8 +1,8 @@
-//! Handlers at work: each is polled, answered and dropped where its panic harms nobody else, and left to itself when
+//! Handlers at handler: each is polled, answered and dropped where its panic harms nobody else, and left to itself when
 //! nobody waits for it any more.
 
 use super::peer::Peer;
-use super::work::{Begun, Work, outlives};
+use super::running_handler::{RunningHandler, StartedHandler, outlives};
 use crate::frame::FrameId;
 use crate::metrics::{Held, Since};
 use crate::operation::Effect;
@@ -27,7 +27,7 @@ pub(super) fn begin<P: Protocol, F>(
     answer: Answer<P, F::Output>,
     effect: fn(u16) -> Effect,
     waker: &Waker,
-) -> Option<Box<dyn Work>>
+) -> Option<Box<dyn RunningHandler>>
 where
     F: Future<Output: 'static> + Send + 'static,
 {
@@ -73,7 +73,7 @@ impl<P: Protocol, F: Future> Handler<P, F> {
     }
 }
 
-impl<P: Protocol, F: Future + Send> Work for Handler<P, F> {
+impl<P: Protocol, F: Future + Send> RunningHandler for Handler<P, F> {
     fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()> {
         let Some(future) = &mut self.future else {
             return Poll::Ready(());
@@ -146,16 +146,16 @@ impl<P: Protocol> Handlers<P> {
     /// Waits for one more, until the deadline.
     pub(super) fn push(
         &mut self,
-        begun: Begun,
+        started: StartedHandler,
         request: FrameId,
         peer: &Arc<Peer<P>>,
         deadline: Instant,
     ) {
-        self.weight += begun.weight;
+        self.weight += started.weight;
         self.fresh = true;
         self.waiting.push(Waiting {
-            work: Some(begun.work),
-            weight: begun.weight,
+            handler: Some(started.handler),
+            weight: started.weight,
             request,
             peer: Arc::clone(peer),
             deadline: Box::pin(sleep_until(deadline.into())),
@@ -187,10 +187,10 @@ impl<P: Protocol> Handlers<P> {
     }
 }
 
-/// A handler at work that is waited for until its deadline.
+/// A handler at handler that is waited for until its deadline.
 struct Waiting<P: Protocol> {
     /// `None` once it is somebody else's.
-    work: Option<Box<dyn Work>>,
+    handler: Option<Box<dyn RunningHandler>>,
     weight: usize,
     request: FrameId,
     peer: Arc<Peer<P>>,
@@ -202,8 +202,8 @@ impl<P: Protocol> Future for Waiting<P> {
     type Output = usize;
 
     fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<usize> {
-        if let Some(work) = &mut self.work
-            && work.poll(cx, true).is_pending()
+        if let Some(handler) = &mut self.handler
+            && handler.poll(cx, true).is_pending()
         {
             if self.deadline.as_mut().poll(cx).is_pending() {
                 return Poll::Pending;
@@ -218,9 +218,9 @@ impl<P: Protocol> Future for Waiting<P> {
 impl<P: Protocol> Waiting<P> {
     /// Nobody waits for the answer any more.
     fn abandon(&mut self) {
-        if let Some(work) = self.work.take()
-            && work.outlives()
-            && (self.peer.detached).take_over(work, self.peer.account.lend(self.weight))
+        if let Some(handler) = self.handler.take()
+            && handler.outlives()
+            && (self.peer.detached).take_over(handler, self.peer.account.lend(self.weight))
         {
             self.peer.counters.handlers_abandoned.one();
         }

@@ -39,11 +39,11 @@ mod output;
 mod pace;
 mod peer;
 mod push;
+mod running_handler;
 mod service;
 mod shared;
 mod table;
 mod watch;
-mod work;
 
 pub use config::ServerConfig;
 pub use connection_id::ConnectionId;

@@ -5,7 +5,7 @@ use super::context::Context;
 use super::gate::{Pass, through};
 use super::handlers::{Answer, begin};
 use super::peer::Peer;
-use super::work::{Begun, outlives};
+use super::running_handler::{StartedHandler, outlives};
 use crate::clock;
 use crate::frame::{FrameId, PreparedResponse};
 use crate::json::{BodyError, Json, enveloped};
@@ -41,7 +41,7 @@ where
 
 /// What has become of a request: answered, or in the hands of a handler that waits.
 #[must_use = "the server has to be told"]
-pub struct Handling(pub(super) Option<Begun>);
+pub struct Handling(pub(super) Option<StartedHandler>);
 
 impl fmt::Debug for Handling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -273,8 +273,8 @@ impl<P: Protocol> Request<'_, P> {
     {
         drop(self.pass);
         let weight = self.body.len() + lists;
-        let begun = begin(self.peer, self.frame, future, answer, effect, self.waker);
-        Handling(begun.map(|work| Begun { work, weight }))
+        let started = begin(self.peer, self.frame, future, answer, effect, self.waker);
+        Handling(started.map(|handler| StartedHandler { handler, weight }))
     }
 }
 

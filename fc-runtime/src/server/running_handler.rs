@@ -1,4 +1,4 @@
-//! A handler at work as those see it who go on with it: neither its protocol nor its answer is told.
+//! A handler at handler as those see it who go on with it: neither its protocol nor its answer is told.
 
 use crate::operation::Effect;
 use std::task::{Context, Poll};
@@ -9,7 +9,7 @@ pub(super) fn outlives(effect: Effect) -> bool {
 }
 
 /// A handler that was not ready at once.
-pub(super) trait Work: Send {
+pub(super) trait RunningHandler: Send {
     /// Goes on with it; once it has ended, its answer is sent if somebody `waits` for it. Does not
     /// panic.
     fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()>;
@@ -18,8 +18,8 @@ pub(super) trait Work: Send {
     fn outlives(&self) -> bool;
 }
 
-/// A handler at work, and how much memory its request takes, in bytes.
-pub(super) struct Begun {
-    pub(super) work: Box<dyn Work>,
+/// A handler at handler, and how much memory its request takes, in bytes.
+pub(super) struct StartedHandler {
+    pub(super) handler: Box<dyn RunningHandler>,
     pub(super) weight: usize,
 }
