@@ -7,7 +7,7 @@ use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::driver::FRAME;
 use super::gate::Gate;
-use super::pace::{Pace, inflated};
+use super::penalty::{Penalty, inflated};
 use crate::clock;
 use crate::frame::{FrameId, LONG, Prepared};
 use crate::link::{CLOSING, Transport};
@@ -242,7 +242,7 @@ impl<P: Protocol> DataPeer<P> {
         receiver: &mut Bounded<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
-        let mut pace = Pace::default();
+        let mut penalty = Penalty::default();
         let mut lines = LogLimiter::default();
         loop {
             if work >= LONG {
@@ -271,7 +271,7 @@ impl<P: Protocol> DataPeer<P> {
                     if let Some(frame) = error.answerable() {
                         self.refuse(frame);
                     }
-                    rest = rest.max(pace.unusable(1, clock::now()));
+                    rest = rest.max(penalty.unusable(1, clock::now()));
                 }
             }
             if !rest.is_zero() {

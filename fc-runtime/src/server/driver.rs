@@ -8,8 +8,8 @@ use super::connection_id::ConnectionId;
 use super::gate::{Gate, LARGE, Pass, Place, through};
 use super::handlers::Handlers;
 use super::output::Output;
-use super::pace::Rests;
 use super::peer::Peer;
+use super::penalty::ReadPause;
 use super::push::AckOutcome;
 use super::service::{Request, Service};
 use super::watch::{Late, Reading, Reason, Standing, Watchdog};
@@ -81,7 +81,7 @@ pub(super) struct Driver<S, P: Protocol> {
     gate: Place,
     /// There is no memory to read on.
     short: bool,
-    rests: Rests,
+    pause: ReadPause,
     /// What is logged of frames that could not be read, and of the limit in flight.
     bad_frames: LogLimiter,
     in_flight: LogLimiter,
@@ -105,7 +105,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             turn: TURN,
             gate: Place::new(gate),
             short: false,
-            rests: Rests::default(),
+            pause: ReadPause::default(),
             bad_frames: LogLimiter::default(),
             in_flight: LogLimiter::default(),
             deaf: None,
@@ -210,7 +210,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     /// What it is at now that all is done that can be.
     fn standing(&mut self, now: Instant, due: Option<Instant>) -> Standing {
-        let rest = self.rests.until(now);
+        let rest = self.pause.until(now);
         let inside = self.link.decoder.pending() > 0;
         let reads = self.handlers.len() < self.peer.settings.limits.in_flight
             && self.has_room()
@@ -294,7 +294,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     self.full(now);
                     return Ok(false);
                 }
-                if self.turn == 0 || self.rests.until(now).is_some() {
+                if self.turn == 0 || self.pause.until(now).is_some() {
                     return Ok(false);
                 }
                 let before = self.peer.unsent();
@@ -379,7 +379,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Has the connection rest for the useless work that its last frame has made.
     fn owe(&mut self, surplus: u64, now: Instant) {
         let unusable = self.peer.take_unusable();
-        let Some((time, line)) = self.rests.owe(surplus, unusable, now) else {
+        let Some((time, line)) = self.pause.owe(surplus, unusable, now) else {
             return;
         };
         self.peer.counters.connections_paced.one();

@@ -20,13 +20,13 @@ const FREE: u32 = 256;
 
 /// What one connection has to pay for.
 #[derive(Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct Penalty {
     owed: Duration,
     /// When that much was owed.
     at: Option<Instant>,
 }
 
-impl Pace {
+impl Penalty {
     /// How long the connection rests after so many frames that could not be used.
     pub(super) fn unusable(&mut self, frames: u32, now: Instant) -> Duration {
         if let Some(at) = self.at.replace(now) {
@@ -44,13 +44,13 @@ pub(super) fn inflated(surplus: u64) -> Duration {
 
 /// When a connection is not read because of what it owes.
 #[derive(Debug, Default)]
-pub(super) struct Rests {
-    pace: Pace,
+pub(super) struct ReadPause {
+    penalty: Penalty,
     until: Option<Instant>,
     lines: LogLimiter,
 }
 
-impl Rests {
+impl ReadPause {
     /// When it is over, if the connection rests.
     pub(super) fn until(&mut self, now: Instant) -> Option<Instant> {
         self.until = self.until.filter(|until| *until > now);
@@ -67,7 +67,7 @@ impl Rests {
     ) -> Option<(Duration, Option<Held>)> {
         let mut rest = inflated(surplus);
         if unusable > 0 {
-            rest = rest.max(self.pace.unusable(unusable, now));
+            rest = rest.max(self.penalty.unusable(unusable, now));
         }
         if rest.is_zero() {
             return None;
