@@ -1,12 +1,12 @@
 //! The data port: frames of raw bytes to and from apps.
 
-use super::bounded::Bounded;
 use super::budget::{Account, Charge, Holder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
 use super::driver::FRAME;
 use super::gate::Gate;
+use super::metered_receiver::MeteredReceiver;
 use super::penalty::{Penalty, inflated};
 use crate::clock;
 use crate::frame::{FrameId, LONG, Prepared};
@@ -196,7 +196,7 @@ impl<P: Protocol> DataPeer<P> {
             stall: Some(self.settings.stall),
         };
         let receiver = Receiver::new(read, self.settings.stream_decoder(), patience);
-        let receiver = Bounded::new(receiver, self.gate.clone(), Arc::clone(&self.account));
+        let receiver = MeteredReceiver::new(receiver, self.gate.clone(), Arc::clone(&self.account));
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
         let reason = tokio::select! {
@@ -220,7 +220,7 @@ impl<P: Protocol> DataPeer<P> {
     /// sent still.
     async fn converse<S: Transport>(
         &self,
-        receiver: Bounded<ReadHalf<S>, P>,
+        receiver: MeteredReceiver<ReadHalf<S>, P>,
         sender: Sender<WriteHalf<S>>,
         outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
@@ -239,7 +239,7 @@ impl<P: Protocol> DataPeer<P> {
 
     async fn read<S: Transport>(
         &self,
-        receiver: &mut Bounded<ReadHalf<S>, P>,
+        receiver: &mut MeteredReceiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut penalty = Penalty::default();

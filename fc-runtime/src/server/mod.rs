@@ -21,7 +21,6 @@
 
 mod allow;
 mod answer;
-mod bounded;
 mod budget;
 mod config;
 mod connection_id;
@@ -34,6 +33,7 @@ mod gate;
 mod handle;
 mod handlers;
 mod handshake;
+mod metered_receiver;
 mod network;
 mod output;
 mod peer;

@@ -11,13 +11,13 @@ use std::sync::Arc;
 use tokio::io::AsyncRead;
 
 /// A receiver within the bounds of a robot.
-pub(super) struct Bounded<R, P: Protocol> {
+pub(super) struct MeteredReceiver<R, P: Protocol> {
     receiver: Receiver<R, P>,
     gate: Gate,
     account: Arc<Account>,
 }
 
-impl<R: AsyncRead + Unpin, P: Protocol> Bounded<R, P> {
+impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
     pub(super) fn new(receiver: Receiver<R, P>, gate: Gate, account: Arc<Account>) -> Self {
         Self {
             receiver,
