@@ -5,7 +5,7 @@
 //! answers is not read either.
 
 use super::connection_id::ConnectionId;
-use super::gate::{Gate, LARGE, Pass, Place, through};
+use super::gate::{Gate, GateQueue, LARGE, Pass, through};
 use super::handlers::Handlers;
 use super::output::Output;
 use super::peer::Peer;
@@ -78,7 +78,7 @@ pub(super) struct Driver<S, P: Protocol> {
     handlers: Handlers<P>,
     /// What is left of the turn, in bytes.
     turn: usize,
-    gate: Place,
+    gate: GateQueue,
     /// There is no memory to read on.
     short: bool,
     pause: ReadPause,
@@ -103,7 +103,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             service,
             handlers: Handlers::default(),
             turn: TURN,
-            gate: Place::new(gate),
+            gate: GateQueue::new(gate),
             short: false,
             pause: ReadPause::default(),
             bad_frames: LogLimiter::default(),

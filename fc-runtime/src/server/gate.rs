@@ -33,13 +33,13 @@ impl Gate {
 }
 
 /// The place of a connection in the queue before the gate.
-pub(super) struct Place {
+pub(super) struct GateQueue {
     gate: Gate,
     waiting: Option<Pin<Box<dyn Future<Output = Pass> + Send>>>,
     asked: bool,
 }
 
-impl Place {
+impl GateQueue {
     pub(super) fn new(gate: Gate) -> Self {
         Self {
             gate,
