@@ -22,7 +22,7 @@ pub(super) const NO_MEMORY: &str = "memory is short, and it held most";
 const NEEDED: usize = 128 * 1024;
 
 /// One that can be told to give memory back. Called under no lock of the budget.
-pub(super) trait Holder: Send + Sync {
+pub(super) trait MemoryHolder: Send + Sync {
     /// Give back what is not needed at this moment.
     fn tidy(&self);
 
@@ -32,7 +32,7 @@ pub(super) trait Holder: Send + Sync {
 
 /// What all connections of a server share.
 #[derive(Clone)]
-pub(super) struct Budget(Arc<Shared>);
+pub(super) struct MemoryBudget(Arc<Shared>);
 
 struct Shared {
     limit: usize,
@@ -46,33 +46,33 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    accounts: HashMap<ConnectionId, Entry>,
+    connections: HashMap<ConnectionId, Entry>,
     waiting: Vec<Waker>,
 }
 
 struct Entry {
-    own: Arc<Own>,
-    holder: Weak<dyn Holder>,
+    usage: Arc<Usage>,
+    holder: Weak<dyn MemoryHolder>,
     leaving: bool,
 }
 
 /// What the end of a connection gives back, in bytes.
 #[derive(Default)]
-struct Own {
+struct Usage {
     busy: AtomicUsize,
     /// Memory that is kept for what comes next.
     idle: AtomicUsize,
     queued: AtomicUsize,
 }
 
-impl Own {
+impl Usage {
     /// What it needs at this moment.
     fn needed(&self) -> usize {
         self.busy.load(Ordering::Relaxed) + self.queued.load(Ordering::Relaxed)
     }
 }
 
-impl Budget {
+impl MemoryBudget {
     pub(super) fn new(limit: usize) -> Self {
         Self(Arc::new(Shared {
             limit,
@@ -89,17 +89,21 @@ impl Budget {
     }
 
     /// The account of a new connection; it is closed when it is dropped.
-    pub(super) fn open(&self, id: ConnectionId, holder: Weak<dyn Holder>) -> Account {
-        let own = Arc::<Own>::default();
+    pub(super) fn open(
+        &self,
+        id: ConnectionId,
+        holder: Weak<dyn MemoryHolder>,
+    ) -> ConnectionMemory {
+        let usage = Arc::<Usage>::default();
         let entry = Entry {
-            own: Arc::clone(&own),
+            usage: Arc::clone(&usage),
             holder,
             leaving: false,
         };
-        self.0.lock().accounts.insert(id, entry);
-        Account {
+        self.0.lock().connections.insert(id, entry);
+        ConnectionMemory {
             id,
-            own,
+            usage,
             shared: Arc::clone(&self.0),
         }
     }
@@ -184,11 +188,11 @@ impl Shared {
         {
             let mut state = self.lock();
             let mut coming = 0;
-            for entry in state.accounts.values() {
-                let idle = entry.own.idle.load(Ordering::Relaxed);
+            for entry in state.connections.values() {
+                let idle = entry.usage.idle.load(Ordering::Relaxed);
                 coming += idle;
                 if entry.leaving {
-                    coming += entry.own.needed();
+                    coming += entry.usage.needed();
                 } else if idle > 0 {
                     tidy.push(entry.holder.clone());
                 }
@@ -196,11 +200,14 @@ impl Shared {
             let wanted =
                 (self.held.load(Ordering::SeqCst).saturating_add(bytes)).saturating_sub(self.limit);
             while coming < wanted {
-                let staying = state.accounts.values_mut().filter(|entry| !entry.leaving);
-                let Some(greatest) = staying.max_by_key(|entry| entry.own.needed()) else {
+                let staying = state
+                    .connections
+                    .values_mut()
+                    .filter(|entry| !entry.leaving);
+                let Some(greatest) = staying.max_by_key(|entry| entry.usage.needed()) else {
                     break;
                 };
-                let held = greatest.own.needed();
+                let held = greatest.usage.needed();
                 if held < NEEDED {
                     // What is missing is in the hands of handlers; they end by themselves.
                     break;
@@ -222,19 +229,19 @@ impl Shared {
 }
 
 /// What is held for one connection.
-pub(super) struct Account {
+pub(super) struct ConnectionMemory {
     id: ConnectionId,
-    own: Arc<Own>,
+    usage: Arc<Usage>,
     shared: Arc<Shared>,
 }
 
-impl Account {
+impl ConnectionMemory {
     /// Asks for memory that the connection is to hold from now on. Until it is there, the one that
     /// holds most is told to go, and that may be the one that asks.
     pub(super) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.shared.poll_demand(cx, bytes);
         if taken.is_ready() {
-            self.own.busy.fetch_add(bytes, Ordering::Relaxed);
+            self.usage.busy.fetch_add(bytes, Ordering::Relaxed);
         }
         taken
     }
@@ -251,10 +258,11 @@ impl Account {
     /// Says how much the connection holds, beside what is queued: what it needs, and what it keeps
     /// for what comes next.
     pub(super) fn hold(&self, busy: usize, idle: usize) {
-        let before = self.own.busy.load(Ordering::Relaxed) + self.own.idle.load(Ordering::Relaxed);
+        let before =
+            self.usage.busy.load(Ordering::Relaxed) + self.usage.idle.load(Ordering::Relaxed);
         let after = busy + idle;
-        self.own.busy.store(busy, Ordering::Relaxed);
-        self.own.idle.store(idle, Ordering::Relaxed);
+        self.usage.busy.store(busy, Ordering::Relaxed);
+        self.usage.idle.store(idle, Ordering::Relaxed);
         if after > before {
             self.add(after - before);
         } else {
@@ -275,21 +283,21 @@ impl Account {
     }
 
     fn queued_charge(&self, bytes: usize) -> Charge {
-        self.own.queued.fetch_add(bytes, Ordering::Relaxed);
-        self.charge(Some(Arc::clone(&self.own)), bytes)
+        self.usage.queued.fetch_add(bytes, Ordering::Relaxed);
+        self.charge(Some(Arc::clone(&self.usage)), bytes)
     }
 
-    fn charge(&self, own: Option<Arc<Own>>, bytes: usize) -> Charge {
+    fn charge(&self, usage: Option<Arc<Usage>>, bytes: usize) -> Charge {
         Charge {
             shared: Arc::clone(&self.shared),
-            own,
+            usage,
             bytes,
         }
     }
 
     /// How much is queued, in bytes.
     pub(super) fn queued(&self) -> usize {
-        self.own.queued.load(Ordering::Relaxed)
+        self.usage.queued.load(Ordering::Relaxed)
     }
 
     /// Charges what is there already, and goes with the connection.
@@ -315,20 +323,20 @@ impl Account {
 
     /// The connection has ended.
     pub(super) fn close(&self) {
-        self.shared.lock().accounts.remove(&self.id);
+        self.shared.lock().connections.remove(&self.id);
         self.hold(0, 0);
     }
 }
 
-impl Drop for Account {
+impl Drop for ConnectionMemory {
     fn drop(&mut self) {
         self.close();
     }
 }
 
-impl fmt::Debug for Account {
+impl fmt::Debug for ConnectionMemory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Account({})", self.id)
+        write!(f, "ConnectionMemory({})", self.id)
     }
 }
 
@@ -336,7 +344,7 @@ impl fmt::Debug for Account {
 pub(super) struct Charge {
     shared: Arc<Shared>,
     /// Of the connection that it is queued at.
-    own: Option<Arc<Own>>,
+    usage: Option<Arc<Usage>>,
     bytes: usize,
 }
 
@@ -350,14 +358,14 @@ impl Charge {
     /// Lets what is charged to a connection leave it: ready when not too much is out of
     /// reach already.
     pub(super) fn poll_hand_over(&mut self, cx: &mut Context<'_>) -> Poll<()> {
-        if self.own.is_none() {
+        if self.usage.is_none() {
             return Poll::Ready(());
         }
         let handed = self.shared.poll_once(cx, || self.shared.lend(self.bytes));
         if handed.is_ready()
-            && let Some(own) = self.own.take()
+            && let Some(usage) = self.usage.take()
         {
-            own.queued.fetch_sub(self.bytes, Ordering::Relaxed);
+            usage.queued.fetch_sub(self.bytes, Ordering::Relaxed);
         }
         handed
     }
@@ -365,8 +373,8 @@ impl Charge {
 
 impl Drop for Charge {
     fn drop(&mut self) {
-        match &self.own {
-            Some(own) => own.queued.fetch_sub(self.bytes, Ordering::Relaxed),
+        match &self.usage {
+            Some(usage) => usage.queued.fetch_sub(self.bytes, Ordering::Relaxed),
             None => self.shared.lent.fetch_sub(self.bytes, Ordering::SeqCst),
         };
         self.shared.give(self.bytes);

@@ -1,6 +1,6 @@
 //! The data port: frames of raw bytes to and from apps.
 
-use super::budget::{Account, Charge, Holder, NO_MEMORY};
+use super::budget::{Charge, ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
@@ -132,7 +132,7 @@ impl Owner {
 /// What others know of a data connection. It ends once this is gone and all is sent.
 pub(super) struct DataEntry {
     pub(super) sender: mpsc::Sender<Outgoing>,
-    pub(super) account: Arc<Account>,
+    pub(super) memory: Arc<ConnectionMemory>,
     pub(super) heard: Arc<AtomicBool>,
     pub(super) owner: Owner,
     /// Ends the handshake with the entry.
@@ -149,7 +149,7 @@ pub(super) struct DataPeer<P> {
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
-    pub(super) account: Arc<Account>,
+    pub(super) memory: Arc<ConnectionMemory>,
     pub(super) leave: Arc<Leave<P>>,
     /// A frame has been received.
     pub(super) heard: Arc<AtomicBool>,
@@ -176,7 +176,7 @@ impl<P> Leave<P> {
     }
 }
 
-impl<P: Protocol> Holder for Leave<P> {
+impl<P: Protocol> MemoryHolder for Leave<P> {
     /// It keeps no memory that it does not need.
     fn tidy(&self) {}
 
@@ -196,7 +196,7 @@ impl<P: Protocol> DataPeer<P> {
             stall: Some(self.settings.stall),
         };
         let receiver = Receiver::new(read, self.settings.stream_decoder(), patience);
-        let receiver = MeteredReceiver::new(receiver, self.gate.clone(), Arc::clone(&self.account));
+        let receiver = MeteredReceiver::new(receiver, self.gate.clone(), Arc::clone(&self.memory));
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
         let reason = tokio::select! {
@@ -211,7 +211,7 @@ impl<P: Protocol> DataPeer<P> {
             },
             () = self.leave.told.notified() => NO_MEMORY,
         };
-        self.account.close();
+        self.memory.close();
         self.counters
             .ended::<P>(self.id, self.address, "data", reason);
     }
@@ -286,7 +286,7 @@ impl<P: Protocol> DataPeer<P> {
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();
         let inbox = lock(&self.inbox).clone();
-        let mut charge = self.account.keep(frame.data.memory());
+        let mut charge = self.memory.keep(frame.data.memory());
         let taken = match inbox {
             Some(inbox) => match inbox.reserve().await {
                 Ok(place) => {
@@ -320,7 +320,7 @@ impl<P: Protocol> DataPeer<P> {
             .encoder::<P>()
             .prepare(|out| write_enveloped(&envelope, &Empty, out));
         if let (Ok(body), Some(answers)) = (body, self.answers.upgrade())
-            && let Some(charge) = self.account.queue(body.len())
+            && let Some(charge) = self.memory.queue(body.len())
         {
             let id = frame.answer();
             let _ = answers.try_send(Outgoing { id, body, charge });

@@ -122,7 +122,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let turn = poll_fn(|cx| {
                 let turn = self.poll(cx);
                 self.gate.keep_if_asked();
-                self.account();
+                self.memory();
                 turn
             });
             match turn.await {
@@ -231,7 +231,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// Says what is held for the connection.
-    fn account(&self) {
+    fn memory(&self) {
         let (mut busy, mut idle) = (self.handlers.weight(), 0);
         let unsent = {
             let output = self.peer.output();
@@ -243,7 +243,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         let kept = self.link.decoder.idle();
         busy += self.link.decoder.capacity() - kept;
-        self.peer.account.hold(busy, idle + kept);
+        self.peer.memory.hold(busy, idle + kept);
     }
 
     /// Gives back what is not needed at this moment.
@@ -303,7 +303,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                         return Ok(false);
                     };
                     let bytes = self.peer.settings.reading(work);
-                    let Poll::Ready(_read) = self.peer.account.poll_lend(cx, bytes) else {
+                    let Poll::Ready(_read) = self.peer.memory.poll_lend(cx, bytes) else {
                         self.short = true;
                         return Ok(false);
                     };
@@ -336,7 +336,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.link.poll_begin(cx)
             } else {
                 let grows = self.link.decoder.growth();
-                self.short = grows > 0 && self.peer.account.poll_more(cx, grows).is_pending();
+                self.short = grows > 0 && self.peer.memory.poll_more(cx, grows).is_pending();
                 if self.short {
                     return Ok(false);
                 }
@@ -535,7 +535,7 @@ impl<S, P: Protocol> Driver<S, P> {
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.leave();
-        self.peer.account.close();
+        self.peer.memory.close();
     }
 }
 

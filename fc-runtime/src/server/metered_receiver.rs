@@ -1,6 +1,6 @@
 //! The receiving half of a robot's data connection: large frames pass the gate, and memory is asked for.
 
-use super::budget::Account;
+use super::budget::ConnectionMemory;
 use super::gate::{Gate, LARGE, through};
 use crate::frame::LONG;
 use crate::protocol::Protocol;
@@ -14,15 +14,15 @@ use tokio::io::AsyncRead;
 pub(super) struct MeteredReceiver<R, P: Protocol> {
     receiver: Receiver<R, P>,
     gate: Gate,
-    account: Arc<Account>,
+    memory: Arc<ConnectionMemory>,
 }
 
 impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
-    pub(super) fn new(receiver: Receiver<R, P>, gate: Gate, account: Arc<Account>) -> Self {
+    pub(super) fn new(receiver: Receiver<R, P>, gate: Gate, memory: Arc<ConnectionMemory>) -> Self {
         Self {
             receiver,
             gate,
-            account,
+            memory,
         }
     }
 
@@ -43,7 +43,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
     async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let receiver = &mut self.receiver;
         let taken = if let Some(work) = receiver.decoder().work(LARGE) {
-            let _inflated = poll_fn(|cx| self.account.poll_lend(cx, work.inflated)).await;
+            let _inflated = poll_fn(|cx| self.memory.poll_lend(cx, work.inflated)).await;
             let pass = self.gate.clone().pass().await;
             through(Some(&pass), || receiver.take())
         } else {
@@ -53,7 +53,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         if decoder.idle() > LONG {
             decoder.tidy();
         }
-        self.account.hold(decoder.capacity(), 0);
+        self.memory.hold(decoder.capacity(), 0);
         taken
     }
 
@@ -66,7 +66,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         }
         let bytes = decoder.growth();
         if bytes > 0 {
-            poll_fn(|cx| self.account.poll_more(cx, bytes)).await;
+            poll_fn(|cx| self.memory.poll_more(cx, bytes)).await;
         }
         self.receiver.fill().await
     }

@@ -1,7 +1,7 @@
 //! One app's connection, as far as driver, handlers and pushes share it.
 
 use super::allow::Effects;
-use super::budget::{Account, Holder, NO_MEMORY};
+use super::budget::{ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
@@ -38,7 +38,7 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counting>,
     pub(super) detached: Arc<DetachedHandlers>,
-    pub(super) account: Account,
+    pub(super) memory: ConnectionMemory,
     output: Mutex<Output<P>>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
@@ -63,7 +63,7 @@ impl<P: Protocol> Peer<P> {
         settings: Arc<Settings>,
         counters: Arc<Counting>,
         detached: Arc<DetachedHandlers>,
-        account: Account,
+        memory: ConnectionMemory,
     ) -> Self {
         let session = Session::new(
             &settings.limits,
@@ -74,7 +74,7 @@ impl<P: Protocol> Peer<P> {
             id,
             address,
             effects,
-            account,
+            memory,
             output: Mutex::new(Output::new(settings.encoder())),
             state: Mutex::new(PeerState {
                 session,
@@ -215,8 +215,8 @@ impl<P: Protocol> Peer<P> {
     /// Charges a report to the app, if there is room for it.
     fn charge(&self, report: &mut Queued) -> bool {
         let bytes = report.body.len();
-        if self.account.queued().saturating_add(bytes) <= self.settings.queued_bytes {
-            report.charge = self.account.queue(bytes);
+        if self.memory.queued().saturating_add(bytes) <= self.settings.queued_bytes {
+            report.charge = self.memory.queue(bytes);
         }
         report.charge.is_some()
     }
@@ -270,7 +270,7 @@ impl<P: Protocol> Peer<P> {
     }
 }
 
-impl<P: Protocol> Holder for Peer<P> {
+impl<P: Protocol> MemoryHolder for Peer<P> {
     fn tidy(&self) {
         self.untidy.store(true, Ordering::Relaxed);
         self.wake();

@@ -1,7 +1,7 @@
 //! What a server's tasks share: who is connected, who may be, and when all of it ends.
 
 use super::allow::Effects;
-use super::budget::{Account, Budget, Holder};
+use super::budget::{ConnectionMemory, MemoryBudget, MemoryHolder};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counting;
@@ -51,7 +51,7 @@ pub(super) struct Shared<P: Protocol> {
     pub(super) inbox: Arc<Inbox>,
     detached: Arc<DetachedHandlers>,
     gate: Gate,
-    pub(super) budget: Budget,
+    pub(super) budget: MemoryBudget,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
     life: watch::Sender<Life>,
@@ -64,7 +64,7 @@ impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
             detached: Arc::new(DetachedHandlers::new(settings.abandoned_handlers)),
-            budget: Budget::new(settings.memory),
+            budget: MemoryBudget::new(settings.memory),
             settings: Arc::new(settings),
             service,
             counters: Arc::new(Counting::of::<P>()),
@@ -102,8 +102,8 @@ impl<P: Protocol> Shared<P> {
         let settings = Arc::clone(&self.settings);
         let (counters, detached) = (Arc::clone(&self.counters), Arc::clone(&self.detached));
         let peer = Arc::new_cyclic(|peer: &Weak<Peer<P>>| {
-            let account = self.budget.open(id, peer.clone());
-            Peer::new(id, address, effects, settings, counters, detached, account)
+            let memory = self.budget.open(id, peer.clone());
+            Peer::new(id, address, effects, settings, counters, detached, memory)
         });
         let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
         let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
@@ -140,10 +140,10 @@ impl<P: Protocol> Shared<P> {
         let (entered, left) = oneshot::channel();
         let heard = Arc::new(AtomicBool::new(false));
         let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
-        let holder: Weak<dyn Holder> = Arc::<Leave<P>>::downgrade(&leave);
-        let account = Arc::new(self.budget.open(id, holder));
+        let holder: Weak<dyn MemoryHolder> = Arc::<Leave<P>>::downgrade(&leave);
+        let memory = Arc::new(self.budget.open(id, holder));
         let peer = DataPeer {
-            account: Arc::clone(&account),
+            memory: Arc::clone(&memory),
             leave,
             heard: Arc::clone(&heard),
             id,
@@ -163,7 +163,7 @@ impl<P: Protocol> Shared<P> {
         let owner = Owner::Nobody;
         let entry = DataEntry {
             sender,
-            account,
+            memory,
             heard,
             owner,
             _entered: entered,
@@ -399,20 +399,20 @@ impl<P: Protocol> Shared<P> {
 /// Where streams for one data connection go.
 pub(super) struct Outbox {
     sender: mpsc::Sender<Outgoing>,
-    account: Arc<Account>,
+    memory: Arc<ConnectionMemory>,
 }
 
 impl Outbox {
     fn of(data: &DataEntry) -> Self {
         Self {
             sender: data.sender.clone(),
-            account: Arc::clone(&data.account),
+            memory: Arc::clone(&data.memory),
         }
     }
 
     /// Queues a frame as soon as there is room and memory for it; `false` if the connection has ended.
     pub(super) async fn send(&self, id: FrameId, body: Prepared) -> bool {
-        let charge = poll_fn(|cx| self.account.poll_queue(cx, body.len())).await;
+        let charge = poll_fn(|cx| self.memory.poll_queue(cx, body.len())).await;
         let frame = Outgoing { id, body, charge };
         self.sender.send(frame).await.is_ok()
     }
