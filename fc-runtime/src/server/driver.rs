@@ -12,7 +12,7 @@ use super::peer::Peer;
 use super::penalty::ReadPause;
 use super::push::AckOutcome;
 use super::service::{Request, Service};
-use super::watch::{Late, Reading, Reason, Standing, Watchdog};
+use super::watch::{Activity, Expected, Overdue, Reason, Watchdog};
 use crate::clock;
 use crate::frame::LONG;
 use crate::json::Allowance;
@@ -189,17 +189,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             if more {
                 continue;
             }
-            let standing = self.standing(now, due);
-            match self.watch.poll(cx, now, &self.peer.settings, standing) {
+            let activity = self.activity(now, due);
+            match self.watch.poll(cx, now, &self.peer.settings, activity) {
                 Poll::Ready(late) => {
                     // One that has fallen silent before has been counted then.
                     if self.deaf.is_none() {
                         self.peer.counters.connections_timed_out.one();
                     }
                     match late {
-                        Late::All(reason) => return Poll::Ready(Turn::Over(reason)),
+                        Overdue::All(reason) => return Poll::Ready(Turn::Over(reason)),
                         // Requests before it may still be carried out.
-                        Late::Frame(reason) => self.deaf = Some(reason),
+                        Overdue::Frame(reason) => self.deaf = Some(reason),
                     }
                 }
                 Poll::Pending if self.turn == 0 || long => return Poll::Ready(Turn::Spent),
@@ -209,7 +209,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// What it is at now that all is done that can be.
-    fn standing(&mut self, now: Instant, due: Option<Instant>) -> Standing {
+    fn activity(&mut self, now: Instant, due: Option<Instant>) -> Activity {
         let rest = self.pause.until(now);
         let inside = self.link.decoder.pending() > 0;
         let reads = self.handlers.len() < self.peer.settings.limits.in_flight
@@ -218,11 +218,11 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             && !self.short
             && rest.is_none()
             && self.deaf.is_none();
-        Standing {
-            reading: match (reads, inside) {
-                (false, _) => Reading::Nothing,
-                (true, false) => Reading::Frame,
-                (true, true) => Reading::Rest,
+        Activity {
+            expected: match (reads, inside) {
+                (false, _) => Expected::Nothing,
+                (true, false) => Expected::Frame,
+                (true, true) => Expected::Rest,
             },
             unwritten: self.link.unwritten() > 0,
             idle: self.handlers.is_empty() && !inside,

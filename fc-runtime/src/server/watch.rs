@@ -12,7 +12,7 @@ pub(super) type Reason = &'static str;
 
 /// What bytes a connection waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reading {
+pub(super) enum Expected {
     /// For none.
     Nothing,
     /// For a frame.
@@ -23,8 +23,8 @@ pub(super) enum Reading {
 
 /// What a connection is at when it has done all it can for now.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
-    pub(super) reading: Reading,
+pub(super) struct Activity {
+    pub(super) expected: Expected,
     /// Something is to be sent that the app does not take.
     pub(super) unwritten: bool,
     /// Nothing has come that is not answered.
@@ -35,7 +35,7 @@ pub(super) struct Standing {
 
 /// What did not come in time.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Late {
+pub(super) enum Overdue {
     /// The rest of a frame: nothing more can be read, but answered.
     Frame(Reason),
     /// Anything else: the connection is of no more use.
@@ -105,9 +105,9 @@ impl Watchdog {
         cx: &mut Context<'_>,
         now: Instant,
         settings: &Settings,
-        standing: Standing,
-    ) -> Poll<Late> {
-        let reads = standing.reading != Reading::Nothing;
+        activity: Activity,
+    ) -> Poll<Overdue> {
+        let reads = activity.expected != Expected::Nothing;
         if reads && !self.reads {
             // What could not come meanwhile is not missed.
             self.read = Flow::new(now);
@@ -119,25 +119,25 @@ impl Watchdog {
                 self.header
                     .filter(|_| reads)
                     .map(|at| after(at, settings.header_timeout)),
-                Late::Frame("a header did not come in time"),
+                Overdue::Frame("a header did not come in time"),
             ),
             (
-                (standing.reading == Reading::Rest).then(|| stalled(&self.read)),
-                Late::Frame("a frame stalled"),
+                (activity.expected == Expected::Rest).then(|| stalled(&self.read)),
+                Overdue::Frame("a frame stalled"),
             ),
             (
-                standing.unwritten.then(|| stalled(&self.written)),
-                Late::All("the app does not read"),
+                activity.unwritten.then(|| stalled(&self.written)),
+                Overdue::All("the app does not read"),
             ),
             (
                 settings
                     .idle_timeout
-                    .filter(|_| standing.idle)
+                    .filter(|_| activity.idle)
                     .map(|limit| after(self.frame, limit)),
-                Late::All("idle"),
+                Overdue::All("idle"),
             ),
         ];
-        let mut next = standing.due;
+        let mut next = activity.due;
         for (at, late) in limits {
             let Some(at) = at else { continue };
             if at <= now {
