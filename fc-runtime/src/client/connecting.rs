@@ -23,14 +23,14 @@ pub(super) trait Dial: Send + 'static {
 }
 
 /// Connects with TCP.
-pub(super) struct Tcp {
+pub(super) struct TcpDial {
     host: String,
     port: u16,
     limit: Duration,
     keepalive: Option<Duration>,
 }
 
-impl Tcp {
+impl TcpDial {
     pub(super) fn new(host: &str, port: u16, config: &ClientConfig) -> Self {
         Self {
             host: host.to_owned(),
@@ -41,7 +41,7 @@ impl Tcp {
     }
 }
 
-impl Dial for Tcp {
+impl Dial for TcpDial {
     type Transport = TcpStream;
 
     fn address(&self) -> String {
@@ -59,14 +59,14 @@ impl Dial for Tcp {
 }
 
 /// Connects by a function of the user.
-pub(super) struct By<D> {
+pub(super) struct CustomDial<D> {
     pub(super) dial: D,
     /// What errors name.
     pub(super) address: String,
     pub(super) limit: Duration,
 }
 
-impl<D> By<D> {
+impl<D> CustomDial<D> {
     pub(super) fn new(dial: D, (host, port): (&str, u16), config: &ClientConfig) -> Self {
         Self {
             dial,
@@ -76,7 +76,7 @@ impl<D> By<D> {
     }
 }
 
-impl<D, F, S> Dial for By<D>
+impl<D, F, S> Dial for CustomDial<D>
 where
     D: FnMut() -> F + Send + 'static,
     F: Future<Output = io::Result<S>> + Send,
@@ -110,7 +110,7 @@ async fn within<S>(
 }
 
 /// How connecting has gone of late.
-pub(super) struct Tries {
+pub(super) struct Reconnect {
     /// `None` for the first attempt alone.
     backoff: Option<Backoff>,
     /// Nothing has been attempted yet: there is nothing to wait for.
@@ -121,7 +121,7 @@ pub(super) struct Tries {
     waits: u32,
 }
 
-impl Tries {
+impl Reconnect {
     pub(super) fn new(backoff: Option<Backoff>) -> Self {
         Self {
             backoff,

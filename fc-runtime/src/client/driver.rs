@@ -4,7 +4,7 @@
 //! have written meanwhile and sends it with one write.
 
 use super::arrivals::{Arrival, Fault, Readers, arrive};
-use super::connecting::{Dial, Tries};
+use super::connecting::{Dial, Reconnect};
 use super::connection_log::ConnectionLog;
 use super::error::CallError;
 use super::loss::Loss;
@@ -43,15 +43,15 @@ pub(super) fn drive_dialled<P: Protocol, D: Dial>(
 ) -> impl Future<Output = ()> {
     let mut driver = Driver::new(inner, dial.address());
     async move {
-        let mut tries = Tries::new(driver.inner.config.reconnect);
+        let mut reconnect = Reconnect::new(driver.inner.config.reconnect);
         let mut stream = match stream {
-            None => driver.connect(&mut tries, &mut dial).await,
+            None => driver.connect(&mut reconnect, &mut dial).await,
             there => there,
         };
         while let Some(connected) = stream.take() {
             let heard = driver.run(connected).await.heard;
-            tries.connected(heard);
-            stream = driver.connect(&mut tries, &mut dial).await;
+            reconnect.connected(heard);
+            stream = driver.connect(&mut reconnect, &mut dial).await;
         }
     }
 }
@@ -409,9 +409,13 @@ impl<P: Protocol> Driver<P> {
     }
 
     /// A new connection, or `None` once there will be none.
-    async fn connect<D: Dial>(&mut self, tries: &mut Tries, dial: &mut D) -> Option<D::Transport> {
+    async fn connect<D: Dial>(
+        &mut self,
+        reconnect: &mut Reconnect,
+        dial: &mut D,
+    ) -> Option<D::Transport> {
         loop {
-            let Some(wait) = tries.next() else {
+            let Some(wait) = reconnect.next() else {
                 self.log.given_up(self.why);
                 return None;
             };
@@ -436,7 +440,7 @@ impl<P: Protocol> Driver<P> {
                 Ok(stream) => return Some(stream),
                 Err(error) => {
                     self.why = Loss::from(&error);
-                    tries.failed();
+                    reconnect.failed();
                     self.log.not_connected(self.why);
                 }
             }

@@ -46,7 +46,7 @@ use crate::link::Transport;
 use crate::operation::Command;
 use crate::protocol::Protocol;
 use crate::raw::RawResponse;
-use connecting::{By, Dial, Tcp};
+use connecting::{CustomDial, Dial, TcpDial};
 use state::{Handle, Inner};
 use std::fmt;
 use std::io;
@@ -73,7 +73,7 @@ impl<P: Protocol> Connection<P> {
     /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let (host, port) = config.command_address::<P>();
-        let tcp = Tcp::new(host, port, &config);
+        let tcp = TcpDial::new(host, port, &config);
         Self::dialled(tcp, config).await
     }
 
@@ -91,7 +91,7 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         Self::dialled(
-            By::new(dial, config.command_address::<P>(), &config),
+            CustomDial::new(dial, config.command_address::<P>(), &config),
             config,
         )
         .await
@@ -107,7 +107,7 @@ impl<P: Protocol> Connection<P> {
     #[must_use]
     pub fn connect_lazy(config: ClientConfig) -> Self {
         let (host, port) = config.command_address::<P>();
-        let tcp = Tcp::new(host, port, &config);
+        let tcp = TcpDial::new(host, port, &config);
         Self::driven(None, tcp, config)
     }
 
@@ -122,7 +122,7 @@ impl<P: Protocol> Connection<P> {
     {
         Self::driven(
             None,
-            By::new(dial, config.command_address::<P>(), &config),
+            CustomDial::new(dial, config.command_address::<P>(), &config),
             config,
         )
     }
@@ -219,7 +219,7 @@ impl<P: Protocol> Connection<P> {
     pub fn data(&self) -> DataConnection<P> {
         let config = &self.handle.config;
         let (host, port) = config.data_address::<P>();
-        DataConnection::new(self.handle.clone(), Tcp::new(host, port, config))
+        DataConnection::new(self.handle.clone(), TcpDial::new(host, port, config))
     }
 
     /// [`data`](Self::data) over streams that `dial` makes, such as TLS or a tunnel. One attempt may
@@ -232,7 +232,7 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         let config = &self.handle.config;
-        let by = By::new(dial, config.data_address::<P>(), config);
+        let by = CustomDial::new(dial, config.data_address::<P>(), config);
         DataConnection::new(self.handle.clone(), by)
     }
 

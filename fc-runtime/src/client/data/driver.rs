@@ -3,7 +3,7 @@
 use super::error::DataError;
 use super::shared::Shared;
 use crate::client::config::ClientConfig;
-use crate::client::connecting::{Dial, Tries};
+use crate::client::connecting::{Dial, Reconnect};
 use crate::client::connection_log::ConnectionLog;
 use crate::client::loss::Loss;
 use crate::client::state_watch::{ConnectionState, closed};
@@ -32,23 +32,23 @@ pub(super) struct Driver<P, D> {
 impl<P: Protocol, D: Dial> Driver<P, D> {
     /// Keeps up a connection as long as it may.
     pub(super) async fn run(mut self) {
-        let mut tries = Tries::new(self.config.reconnect);
-        while let Some((stream, commands)) = self.connect(&mut tries).await {
+        let mut reconnect = Reconnect::new(self.config.reconnect);
+        while let Some((stream, commands)) = self.connect(&mut reconnect).await {
             self.serve(stream, commands).await;
             if self.shared.lock().connection.now().is_closed() {
                 return;
             }
             // A robot may have nothing to send.
-            tries.connected(self.shared.is_used() || self.why == Loss::Renewed);
+            reconnect.connected(self.shared.is_used() || self.why == Loss::Renewed);
             self.shared.lost(self.why);
         }
     }
 
     /// A connection, and the number of the command connection that it belongs to; `None` once there
     /// will be none.
-    async fn connect(&mut self, tries: &mut Tries) -> Option<(D::Transport, u64)> {
+    async fn connect(&mut self, reconnect: &mut Reconnect) -> Option<(D::Transport, u64)> {
         loop {
-            let Some(wait) = tries.next() else {
+            let Some(wait) = reconnect.next() else {
                 self.log.given_up(self.why);
                 return None;
             };
@@ -72,7 +72,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
                 Ok(stream) => return Some((stream, commands)),
                 Err(error) => {
                     self.why = Loss::from(&error);
-                    tries.failed();
+                    reconnect.failed();
                     self.shared.not_connected(self.why);
                     self.log.not_connected(self.why);
                 }
