@@ -1,6 +1,6 @@
 //! Whether a frame that has begun goes on.
 //!
-//! Not the rule of [`Least`](crate::rate::Least), which counts in windows. An app's danger is a wrong
+//! Not the rule of [`MinimumRate`](crate::rate::MinimumRate), which counts in windows. An app's danger is a wrong
 //! length that swallows the answers while it keeps asking, and they may come at some KiB per second. In
 //! windows, a rate above that would cost a good frame over a slow link its connection; counted over the
 //! whole frame, with the stall timeout ahead, it does not.
@@ -14,13 +14,13 @@ const LEAST: u64 = 16 * 1024;
 
 /// The watch over the frame that is arriving.
 #[derive(Debug)]
-pub(crate) struct Progress {
+pub(crate) struct FrameProgress {
     limit: Duration,
     /// When the frame began, and when bytes of it last came.
     since: Option<(Instant, Instant)>,
 }
 
-impl Progress {
+impl FrameProgress {
     pub(crate) fn new(limit: Duration) -> Self {
         Self { limit, since: None }
     }

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 /// So many bytes in so much time are progress; fewer are none. A byte now and then would otherwise
 /// hold whatever has come before it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Least {
+pub(crate) struct MinimumRate {
     pub(crate) bytes: usize,
     pub(crate) within: Duration,
 }
 
-impl Least {
+impl MinimumRate {
     /// `rate` in bytes per second.
     pub(crate) fn new(rate: u32, within: Duration) -> Self {
         let bytes = within.as_millis().saturating_mul(rate.into()) / 1000;
@@ -23,13 +23,13 @@ impl Least {
 
 /// How far it has come since there was enough of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flow<I = Instant> {
+pub(crate) struct RateMeter<I = Instant> {
     /// When there was, or when it began to matter.
     pub(crate) since: I,
     bytes: usize,
 }
 
-impl<I> Flow<I> {
+impl<I> RateMeter<I> {
     pub(crate) fn new(now: I) -> Self {
         Self {
             since: now,

@@ -14,7 +14,7 @@ use crate::link::FIRST;
 use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
-use crate::rate::{Flow, Least};
+use crate::rate::{MinimumRate, RateMeter};
 use crate::refusal::Refusal;
 use crate::wire::Header;
 use std::fmt;
@@ -122,7 +122,7 @@ pub(crate) struct Patience {
     /// For a header, from its first byte on.
     pub(crate) header: Option<Duration>,
     /// For progress in the middle of a frame, either way.
-    pub(crate) stall: Option<Least>,
+    pub(crate) stall: Option<MinimumRate>,
 }
 
 /// The receiving half.
@@ -328,9 +328,9 @@ pub(crate) struct Sender<W> {
     body: Option<Prepared>,
     /// Of both.
     written: usize,
-    stall: Option<Least>,
+    stall: Option<MinimumRate>,
     /// Of what is to be sent, while it is sent.
-    flow: Option<Flow<Instant>>,
+    flow: Option<RateMeter<Instant>>,
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
@@ -394,7 +394,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             let n = match self.stall {
                 None => write.await?,
                 Some(least) => {
-                    let flow = self.flow.get_or_insert(Flow::new(Instant::now()));
+                    let flow = self.flow.get_or_insert(RateMeter::new(Instant::now()));
                     let n = until(flow.since.checked_add(least.within), write).await?;
                     flow.add(n, least.bytes, Instant::now());
                     n

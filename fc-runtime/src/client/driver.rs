@@ -15,7 +15,7 @@ use crate::clock;
 use crate::digest::Sum;
 use crate::frame::{Decoder, FrameError};
 use crate::link::{CLOSING, Transport};
-use crate::progress::Progress as Arriving;
+use crate::progress::FrameProgress;
 use crate::protocol::Protocol;
 use crate::session::{Due, after};
 use crate::sync::{Alarm, register};
@@ -98,7 +98,7 @@ struct Driver<P: Protocol> {
     /// Callers have had their turn before what is to be sent next.
     gathered: bool,
     /// The frame that is arriving.
-    arriving: Arriving,
+    arriving: FrameProgress,
     /// Since when the robot has taken nothing of what is to be sent.
     unread_since: Option<Instant>,
     /// Why the connection has ended, as soon as it is known.
@@ -111,7 +111,7 @@ impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
             log: ConnectionLog::new::<P>(address, "command"),
-            arriving: Arriving::new(inner.config.connection.stall_timeout),
+            arriving: FrameProgress::new(inner.config.connection.stall_timeout),
             unread_since: None,
             why: Loss::NotYet,
             inner,

@@ -6,7 +6,7 @@ use crate::connection_settings::{ConnectionSettings, connection_setters};
 use crate::frame::{Decoder, Encoder, Gzip, Work};
 use crate::operation::Effect;
 use crate::protocol::Protocol;
-use crate::rate::Least;
+use crate::rate::MinimumRate;
 use crate::wire::Limits;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -227,7 +227,7 @@ impl ServerConfig {
                 MaxAge::Set(age) => age,
             },
             header_timeout: self.header_timeout,
-            stall: Least::new(self.least_rate, self.connection.stall_timeout),
+            stall: MinimumRate::new(self.least_rate, self.connection.stall_timeout),
             idle_timeout: self.idle_timeout,
         }
     }
@@ -257,7 +257,7 @@ pub(super) struct Settings {
     pub(super) max_age: Option<Duration>,
     pub(super) header_timeout: Duration,
     /// What is progress in the middle of a frame, either way.
-    pub(super) stall: Least,
+    pub(super) stall: MinimumRate,
     pub(super) idle_timeout: Option<Duration>,
 }
 

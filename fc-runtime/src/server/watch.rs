@@ -1,7 +1,7 @@
 //! What has to come, or go, in time on a command connection.
 
 use super::config::Settings;
-use crate::rate::Flow;
+use crate::rate::RateMeter;
 use crate::session::after;
 use crate::sync::Alarm;
 use std::task::{Context, Poll};
@@ -47,10 +47,10 @@ pub(super) struct Watchdog {
     /// The first byte of a header that is not whole yet.
     header: Option<Instant>,
     /// Of the frame that has begun to arrive, while it is read.
-    read: Flow,
+    read: RateMeter,
     reads: bool,
     /// Of what is to be sent.
-    written: Flow,
+    written: RateMeter,
     frame: Instant,
     alarm: Alarm,
 }
@@ -59,9 +59,9 @@ impl Watchdog {
     pub(super) fn new(now: Instant) -> Self {
         Self {
             header: None,
-            read: Flow::new(now),
+            read: RateMeter::new(now),
             reads: false,
-            written: Flow::new(now),
+            written: RateMeter::new(now),
             frame: now,
             alarm: Alarm::new(),
         }
@@ -69,7 +69,7 @@ impl Watchdog {
 
     /// The first bytes of a frame have come.
     pub(super) fn begins(&mut self, now: Instant) {
-        self.read = Flow::new(now);
+        self.read = RateMeter::new(now);
     }
 
     /// More bytes of it have come.
@@ -85,13 +85,13 @@ impl Watchdog {
     /// A whole frame has come.
     pub(super) fn frame(&mut self, now: Instant) {
         self.header = None;
-        self.read = Flow::new(now);
+        self.read = RateMeter::new(now);
         self.frame = now;
     }
 
     /// Something new is to be sent.
     pub(super) fn loads(&mut self, now: Instant) {
-        self.written = Flow::new(now);
+        self.written = RateMeter::new(now);
     }
 
     /// So much of it has been taken.
@@ -110,10 +110,10 @@ impl Watchdog {
         let reads = activity.expected != Expected::Nothing;
         if reads && !self.reads {
             // What could not come meanwhile is not missed.
-            self.read = Flow::new(now);
+            self.read = RateMeter::new(now);
         }
         self.reads = reads;
-        let stalled = |flow: &Flow| after(flow.since, settings.stall.within);
+        let stalled = |flow: &RateMeter| after(flow.since, settings.stall.within);
         let limits = [
             (
                 self.header

@@ -9,7 +9,7 @@ use crate::client::loss::Loss;
 use crate::client::state_watch::{ConnectionState, closed};
 use crate::link::{CLOSING, Transport};
 use crate::protocol::Protocol;
-use crate::rate::Least;
+use crate::rate::MinimumRate;
 use crate::stream::{Patience, Receiver, Sender, StreamError};
 use crate::wire::Header;
 use std::sync::Arc;
@@ -87,7 +87,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: None,
-            stall: Some(Least::new(0, self.config.connection.stall_timeout)),
+            stall: Some(MinimumRate::new(0, self.config.connection.stall_timeout)),
         };
         let mut receiver = Receiver::new(read, self.config.decoder::<P>(), patience);
         let mut sender = Sender::new(write, patience);
