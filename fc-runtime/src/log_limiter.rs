@@ -39,7 +39,7 @@ impl LogLimiter {
     }
 
     /// Whether to write a line now; if so, how many were held back before it.
-    pub(crate) fn line(&mut self, now: Instant) -> Option<Held> {
+    pub(crate) fn admit(&mut self, now: Instant) -> Option<Suppressed> {
         let window = self.window;
         let lasts = |since| now.saturating_duration_since(since) < window;
         if !self.since.is_some_and(lasts) {
@@ -51,15 +51,15 @@ impl LogLimiter {
             return None;
         }
         self.lines += 1;
-        Some(Held(std::mem::take(&mut self.held)))
+        Some(Suppressed(std::mem::take(&mut self.held)))
     }
 }
 
 /// Lines held back.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held(u64);
+pub(crate) struct Suppressed(u64);
 
-impl Held {
+impl Suppressed {
     /// What the line says of it: nothing if there were none.
     pub(crate) fn shown(self) -> Option<u64> {
         (self.0 > 0).then_some(self.0)

@@ -26,12 +26,12 @@ pub(super) struct Arrival {
     pub(super) id: FrameId,
     /// As the header has it; zeros where the frame could not be read.
     pub(super) digest: Sum,
-    pub(super) body: Result<Body, Fault>,
+    pub(super) body: Result<Body, ArrivalError>,
 }
 
 /// Why a frame cannot be handed on.
 #[derive(Debug)]
-pub(super) enum Fault {
+pub(super) enum ArrivalError {
     /// The frame could not be read.
     Frame(FrameError),
     /// A report does not read as what its code says, or has no proper envelope.
@@ -40,11 +40,11 @@ pub(super) enum Fault {
 
 /// How reports are read, by code; what is not listed is any JSON object.
 #[derive(Debug)]
-pub(super) struct Readers(Vec<(u16, Check)>);
+pub(super) struct ReportChecks(Vec<(u16, Check)>);
 
 type Check = fn(&[u8], Allowance) -> Result<(), BodyError>;
 
-impl Readers {
+impl ReportChecks {
     pub(super) fn of<P: Protocol>() -> Self {
         let reports = P::operations()
             .iter()
@@ -81,7 +81,7 @@ impl Arrival {
     pub(super) fn of<P: Protocol>(
         frame: Frame<'_, P>,
         spare: &mut Vec<u8>,
-        readers: &Readers,
+        report_checks: &ReportChecks,
         allowance: Allowance,
     ) -> Self {
         let id = frame.id();
@@ -93,13 +93,13 @@ impl Arrival {
             sum
         };
         let checked = if is_report {
-            readers.check::<P>(id.code, frame.body(), allowance)
+            report_checks.check::<P>(id.code, frame.body(), allowance)
         } else {
             Ok(())
         };
         let body = match checked {
             Ok(()) => Ok(frame.into_body_for(spare)),
-            Err(error) => Err(Fault::Report(error)),
+            Err(error) => Err(ArrivalError::Report(error)),
         };
         Self { id, digest, body }
     }
@@ -114,19 +114,19 @@ pub(super) fn arrive<P: Protocol>(
 ) {
     let body = match body {
         Ok(body) => Ok(body),
-        Err(Fault::Report(error)) => {
+        Err(ArrivalError::Report(error)) => {
             state.counters.reports_invalid += 1;
             let (code, msg_id, name) = (id.code, id.id, error.name());
-            if let Some(held) = state.lines.invalid.line(now) {
+            if let Some(held) = state.limiters.invalid.admit(now) {
                 let (protocol, held) = (P::NAME, held.shown());
                 tracing::warn!(protocol, code, msg_id, error = name, held, "report refused");
             }
             let refusal = Refusal::invalid::<P>(error);
             return answer_with(state, id, refusal.code, &refusal.text);
         }
-        Err(Fault::Frame(error)) => {
+        Err(ArrivalError::Frame(error)) => {
             state.counters.bad_frames += 1;
-            if let Some(held) = state.lines.bad_frame.line(now) {
+            if let Some(held) = state.limiters.bad_frame.admit(now) {
                 let (protocol, held) = (P::NAME, held.shown());
                 tracing::warn!(protocol, error = error.name(), held, "{error}");
             }
@@ -172,7 +172,7 @@ fn report<P: Protocol>(
 ) {
     if let Some(since) = state.report_watchdog.came(id.code, now) {
         state.counters.reports_late += 1;
-        if let Some(held) = state.lines.late.line(now) {
+        if let Some(held) = state.limiters.late.admit(now) {
             tracing::warn!(
                 protocol = P::NAME,
                 code = id.code,
@@ -202,7 +202,7 @@ fn report<P: Protocol>(
         answer(state, id, P::RESULTS.success);
     } else {
         state.counters.reports_refused += 1;
-        if let Some(held) = state.lines.untaken.line(now) {
+        if let Some(held) = state.limiters.untaken.admit(now) {
             tracing::warn!(
                 protocol = P::NAME,
                 code = id.code,

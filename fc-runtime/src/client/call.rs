@@ -141,7 +141,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             Ok(frame) => frame,
             Err(busy) => {
                 state.slots.free(slot);
-                if let Some(held) = state.lines.busy.line(now) {
+                if let Some(held) = state.limiters.busy.admit(now) {
                     let (protocol, in_flight, held) = (P::NAME, busy.limit, held.shown());
                     let code = self.code;
                     tracing::warn!(protocol, name, code, in_flight, held, "too many calls");

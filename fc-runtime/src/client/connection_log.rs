@@ -39,7 +39,7 @@ impl ConnectionLog {
     pub(super) fn connected(&mut self, connects: u64) {
         let failed = std::mem::take(&mut self.failed);
         self.told = None;
-        let Some(held) = self.connected.line(clock::now()) else {
+        let Some(held) = self.connected.admit(clock::now()) else {
             return;
         };
         let event = if connects > 1 {
@@ -60,7 +60,7 @@ impl ConnectionLog {
 
     /// Logs the end of the connection.
     pub(super) fn ended(&mut self, why: Loss) {
-        let Some(held) = self.ended.line(clock::now()) else {
+        let Some(held) = self.ended.admit(clock::now()) else {
             return;
         };
         let (protocol, port, held) = (self.protocol, self.port, held.shown());
@@ -78,7 +78,7 @@ impl ConnectionLog {
         if self.told.replace(why) == Some(why) {
             return;
         }
-        let Some(held) = self.failing.line(clock::now()) else {
+        let Some(held) = self.failing.admit(clock::now()) else {
             return;
         };
         tracing::warn!(

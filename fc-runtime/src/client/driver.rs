@@ -3,7 +3,7 @@
 //! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
 //! have written meanwhile and sends it with one write.
 
-use super::arrivals::{Arrival, Fault, Readers, arrive};
+use super::arrivals::{Arrival, ArrivalError, ReportChecks, arrive};
 use super::connecting::{Dial, Reconnect};
 use super::connection_log::ConnectionLog;
 use super::error::CallError;
@@ -90,7 +90,7 @@ struct Link<S, P: Protocol> {
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
-    readers: Readers,
+    report_checks: ReportChecks,
     /// Received and not yet counted.
     bytes_in: u64,
     wakers: Vec<Waker>,
@@ -116,7 +116,7 @@ impl<P: Protocol> Driver<P> {
             why: Loss::NotYet,
             inner,
             arrivals: Vec::new(),
-            readers: Readers::of::<P>(),
+            report_checks: ReportChecks::of::<P>(),
             bytes_in: 0,
             wakers: Vec::new(),
             spare: Vec::new(),
@@ -269,7 +269,7 @@ impl<P: Protocol> Driver<P> {
                     self.arrivals.push(Arrival::of(
                         frame,
                         &mut self.spare,
-                        &self.readers,
+                        &self.report_checks,
                         allowance,
                     ));
                 }
@@ -280,7 +280,7 @@ impl<P: Protocol> Driver<P> {
                         self.inner.lock().counters.bad_frames += 1;
                         return Err(error);
                     };
-                    let body = Err(Fault::Frame(error));
+                    let body = Err(ArrivalError::Frame(error));
                     self.arrivals.push(Arrival {
                         id,
                         digest: Sum::default(),

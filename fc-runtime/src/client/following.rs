@@ -152,7 +152,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
                         {
                             note_out_of_order::<P, R>(receiver);
                         }
-                        let next = place(report, state.as_ref());
+                        let next = classify(report, state.as_ref());
                         self.last = state.or(self.last.take());
                         break Ok(next);
                     }
@@ -171,7 +171,7 @@ fn note_out_of_order<P: Protocol, R: Report>(receiver: &Receiver<P>) {
     let line = {
         let mut state = receiver.handle.lock();
         state.counters.reports_out_of_order += 1;
-        state.lines.out_of_order.line(clock::now())
+        state.limiters.out_of_order.admit(clock::now())
     };
     if let Some(held) = line {
         let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
@@ -180,7 +180,7 @@ fn note_out_of_order<P: Protocol, R: Report>(receiver: &Receiver<P>) {
 }
 
 /// What a report means for the process.
-fn place<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
+fn classify<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
     if report.is_failure() {
         Followed::Failed(report)
     } else if state.is_some_and(State::is_end) {

@@ -114,13 +114,13 @@ pub(super) struct State<P> {
     /// Memory for the decoder to go on in when a large body leaves it.
     pub(super) spare: Vec<u8>,
     pub(super) counters: ClientCounters,
-    pub(super) told: Told,
-    pub(super) lines: Lines,
+    pub(super) metrics: FedMetrics,
+    pub(super) limiters: LogLimiters,
 }
 
 /// What is logged of what arrives and of what is asked for.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct LogLimiters {
     pub(super) bad_frame: LogLimiter,
     pub(super) invalid: LogLimiter,
     pub(super) untaken: LogLimiter,
@@ -140,12 +140,12 @@ macro_rules! counters {
 
         /// The metrics that they feed, with what they have been fed.
         #[derive(Debug)]
-        struct Metrics {
+        struct CounterMetrics {
             $($name: Counter,)*
             fed: ClientCounters,
         }
 
-        impl Metrics {
+        impl CounterMetrics {
             fn new() -> Self {
                 Self {
                     $($name: Counter::new(
@@ -194,20 +194,20 @@ counters! {
     bad_frames,
 }
 
-/// What the recorder of metrics is told of one connection.
+/// What the recorder of metrics is metrics of one connection.
 #[derive(Debug)]
-pub(super) struct Told {
-    metrics: Metrics,
+pub(super) struct FedMetrics {
+    counters: CounterMetrics,
     connects: Counter,
     counted: u64,
     connected: Gauge,
     is_connected: Option<Held>,
 }
 
-impl Told {
+impl FedMetrics {
     fn new() -> Self {
         Self {
-            metrics: Metrics::new(),
+            counters: CounterMetrics::new(),
             connects: Counter::new(
                 "fc_client_connects_total",
                 "Connections made, those after a loss included.",
@@ -226,16 +226,16 @@ impl Told {
 impl<P> State<P> {
     /// Tells the recorder of metrics what is new.
     pub(super) fn tell(&mut self) {
-        self.told.metrics.feed(self.counters);
+        self.metrics.counters.feed(self.counters);
         let now = self.connection.now();
-        let before = std::mem::replace(&mut self.told.counted, now.connects());
-        self.told
+        let before = std::mem::replace(&mut self.metrics.counted, now.connects());
+        self.metrics
             .connects
             .add(now.connects().saturating_sub(before));
         if !now.is_connected() {
-            self.told.is_connected = None;
-        } else if self.told.is_connected.is_none() {
-            self.told.is_connected = Some(self.told.connected.hold());
+            self.metrics.is_connected = None;
+        } else if self.metrics.is_connected.is_none() {
+            self.metrics.is_connected = Some(self.metrics.connected.hold());
         }
     }
 }
@@ -271,8 +271,8 @@ impl<P: Protocol> Inner<P> {
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters::default(),
-                told: Told::new(),
-                lines: Lines::default(),
+                metrics: FedMetrics::new(),
+                limiters: LogLimiters::default(),
             }),
             operations: Operations::of::<P>(&CLIENT),
             flying: Gauge::new(

@@ -214,7 +214,7 @@ impl<P: Protocol> Peer<P> {
     /// Refuses a request that may not be made from the app's address.
     pub(super) fn refuse_as_forbidden(&self, request: FrameId) {
         self.counters.calls_forbidden.one();
-        if let Some(held) = self.counters.lines.forbidden_calls.line() {
+        if let Some(held) = self.counters.limiters.forbidden_calls.admit() {
             let (protocol, connection, peer) = (P::NAME, self.id.0, self.address);
             let (name, code) = (name::<P>(request.code), request.code);
             let (effect, held) = (effect::<P>(code), held.shown());

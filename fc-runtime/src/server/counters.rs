@@ -2,7 +2,7 @@
 
 use super::connection_id::ConnectionId;
 use crate::clock;
-use crate::log_limiter::{Held, LogLimiter};
+use crate::log_limiter::{LogLimiter, Suppressed};
 use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;
 use crate::sync::lock;
@@ -11,7 +11,7 @@ use std::net::SocketAddr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The metric of a counter. Those `by` operation are one together, which [`Counting::call`] counts.
+/// The metric of a counter. Those `by` operation are one together, which [`Counters::call`] counts.
 macro_rules! metric {
     ($name:ident) => {
         Some(concat!("fc_server_", stringify!($name), "_total"))
@@ -32,18 +32,18 @@ macro_rules! counters {
 
         /// The same, being counted.
         #[derive(Debug)]
-        pub(super) struct Counting {
+        pub(super) struct Counters {
             $(pub(super) $name: Count,)*
-            pub(super) lines: Lines,
+            pub(super) limiters: LogLimiters,
             pub(super) gauges: Gauges,
             operations: Operations,
         }
 
-        impl Counting {
+        impl Counters {
             pub(super) fn of<P: Protocol>() -> Self {
                 Self {
                     $($name: Count::new(metric!($name $(by $operation)?), concat!($($doc),*)),)*
-                    lines: Lines::default(),
+                    limiters: LogLimiters::default(),
                     gauges: Gauges::new(),
                     operations: Operations::of::<P>(&SERVER),
                 }
@@ -52,13 +52,13 @@ macro_rules! counters {
             /// Counts a frame that could not be read.
             pub(super) fn bad_frame<P: Protocol>(
                 &self,
-                lines: &mut LogLimiter,
+                limiters: &mut LogLimiter,
                 (connection, peer): (ConnectionId, SocketAddr),
                 name: &'static str,
                 error: &dyn Display,
             ) {
                 self.bad_frames.one();
-                if let Some(held) = lines.line(clock::now()) {
+                if let Some(held) = limiters.admit(clock::now()) {
                     let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
                     tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
                 }
@@ -73,7 +73,7 @@ macro_rules! counters {
                 held: usize,
             ) {
                 self.connections_evicted.one();
-                if let Some(held_back) = self.lines.evicted.line() {
+                if let Some(held_back) = self.limiters.evicted.admit() {
                     let (protocol, connection, bytes) = (P::NAME, connection.0, held);
                     let held = held_back.shown();
                     tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
@@ -87,7 +87,7 @@ macro_rules! counters {
                 peer: SocketAddr,
                 port: &'static str,
             ) {
-                if let Some(held) = self.lines.connected.line() {
+                if let Some(held) = self.limiters.connected.admit() {
                     let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
                     tracing::info!(protocol, connection, %peer, port, held, "connected");
                 }
@@ -101,7 +101,7 @@ macro_rules! counters {
                 port: &'static str,
                 reason: &'static str,
             ) {
-                if let Some(held) = self.lines.ended.line() {
+                if let Some(held) = self.limiters.ended.admit() {
                     let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
                     tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
                 }
@@ -202,7 +202,7 @@ pub(super) enum Answered {
     Refused,
 }
 
-impl Counting {
+impl Counters {
     /// Counts a request with this command code.
     pub(super) fn call(&self, code: u16, answered: Answered) {
         let (count, result) = match answered {
@@ -254,7 +254,7 @@ impl Gauges {
 
 /// What is logged of all connections of a server together: they may come and go by the thousand.
 #[derive(Debug)]
-pub(super) struct Lines {
+pub(super) struct LogLimiters {
     pub(super) connected: SharedLogLimiter,
     pub(super) ended: SharedLogLimiter,
     pub(super) refused: SharedLogLimiter,
@@ -265,7 +265,7 @@ pub(super) struct Lines {
     pub(super) dropped: SharedLogLimiter,
 }
 
-impl Default for Lines {
+impl Default for LogLimiters {
     fn default() -> Self {
         let each = || SharedLogLimiter(Mutex::new(LogLimiter::per_second()));
         Self {
@@ -281,14 +281,14 @@ impl Default for Lines {
     }
 }
 
-/// Lines of one cause that several connections write.
+/// LogLimiters of one cause that several connections write.
 #[derive(Debug, Default)]
 pub(super) struct SharedLogLimiter(Mutex<LogLimiter>);
 
 impl SharedLogLimiter {
     /// What [`LogLimiter::line`] says.
-    pub(super) fn line(&self) -> Option<Held> {
-        lock(&self.0).line(clock::now())
+    pub(super) fn admit(&self) -> Option<Suppressed> {
+        lock(&self.0).admit(clock::now())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::budget::{Charge, ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
 use super::driver::FRAME;
 use super::gate::Gate;
 use super::metered_receiver::MeteredReceiver;
@@ -51,27 +51,27 @@ pub struct AppStream {
     pub peer: SocketAddr,
     /// The frame.
     pub frame: StreamFrame,
-    charge: Lent,
+    charge: MemoryGuard,
 }
 
 /// The memory of a frame, charged to the server as long as nobody has taken the frame apart.
 #[derive(Debug)]
-struct Lent(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
+struct MemoryGuard(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
 
 /// A copy is the robot's own.
-impl Clone for Lent {
+impl Clone for MemoryGuard {
     fn clone(&self) -> Self {
         Self(None)
     }
 }
 
-impl PartialEq for Lent {
+impl PartialEq for MemoryGuard {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for Lent {}
+impl Eq for MemoryGuard {}
 
 /// The frames of raw bytes that apps send, in the order they came on each connection.
 #[derive(Debug)]
@@ -144,28 +144,28 @@ pub(super) struct DataPeer<P> {
     pub(super) id: ConnectionId,
     pub(super) address: SocketAddr,
     pub(super) settings: Arc<Settings>,
-    pub(super) counters: Arc<Counting>,
+    pub(super) counters: Arc<Counters>,
     pub(super) inbox: Arc<Inbox>,
     /// To answer with; weak, so that the connection ends when nobody else sends.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
     pub(super) memory: Arc<ConnectionMemory>,
-    pub(super) leave: Arc<Leave<P>>,
+    pub(super) eviction: Arc<Eviction<P>>,
     /// A frame has been received.
     pub(super) heard: Arc<AtomicBool>,
 }
 
 /// Tells a data connection to end at once.
-pub(super) struct Leave<P> {
+pub(super) struct Eviction<P> {
     id: ConnectionId,
     address: SocketAddr,
-    counters: Arc<Counting>,
+    counters: Arc<Counters>,
     told: Notify,
     protocol: PhantomData<P>,
 }
 
-impl<P> Leave<P> {
-    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counting>) -> Self {
+impl<P> Eviction<P> {
+    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counters>) -> Self {
         Self {
             id,
             address,
@@ -176,7 +176,7 @@ impl<P> Leave<P> {
     }
 }
 
-impl<P: Protocol> MemoryHolder for Leave<P> {
+impl<P: Protocol> MemoryHolder for Eviction<P> {
     /// It keeps no memory that it does not need.
     fn tidy(&self) {}
 
@@ -209,7 +209,7 @@ impl<P: Protocol> DataPeer<P> {
                     error.name()
                 }
             },
-            () = self.leave.told.notified() => NO_MEMORY,
+            () = self.eviction.told.notified() => NO_MEMORY,
         };
         self.memory.close();
         self.counters
@@ -243,7 +243,7 @@ impl<P: Protocol> DataPeer<P> {
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut penalty = Penalty::default();
-        let mut lines = LogLimiter::default();
+        let mut limiters = LogLimiter::default();
         loop {
             if work >= LONG {
                 work = 0;
@@ -264,7 +264,7 @@ impl<P: Protocol> DataPeer<P> {
                 Err(error) => {
                     let counters = &self.counters;
                     let whose = (self.id, self.address);
-                    counters.bad_frame::<P>(&mut lines, whose, error.name(), &error);
+                    counters.bad_frame::<P>(&mut limiters, whose, error.name(), &error);
                     if error.is_fatal() {
                         return Err(error);
                     }
@@ -295,7 +295,7 @@ impl<P: Protocol> DataPeer<P> {
                         connection: self.id,
                         peer: self.address,
                         frame,
-                        charge: Lent(Some(charge)),
+                        charge: MemoryGuard(Some(charge)),
                     });
                     true
                 }

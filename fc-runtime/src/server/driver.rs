@@ -368,7 +368,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     /// Logs that as many handlers are at work as may be.
     fn full(&mut self, now: Instant) {
-        if let Some(held) = self.in_flight.line(now) {
+        if let Some(held) = self.in_flight.admit(now) {
             let (protocol, held) = (P::NAME, held.shown());
             let (connection, peer) = (self.peer.id.0, self.peer.address);
             let in_flight = self.peer.settings.limits.in_flight;

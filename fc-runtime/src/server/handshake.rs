@@ -1,7 +1,7 @@
 //! What comes before the first frame: TLS, or nothing.
 
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
 use crate::protocol::Protocol;
 use std::io;
 use std::net::SocketAddr;
@@ -22,7 +22,7 @@ pub(super) async fn shake<P: Protocol, S>(
     handshake: impl Future<Output = io::Result<S>>,
     gone: impl Future<Output = ()>,
     limit: Duration,
-    counters: &Counting,
+    counters: &Counters,
     (connection, peer): (ConnectionId, SocketAddr),
 ) -> Option<S> {
     let shaken = tokio::select! {
@@ -40,7 +40,7 @@ pub(super) async fn shake<P: Protocol, S>(
         Err(Failed::Broken(error)) => error.to_string(),
     };
     counters.handshakes_failed.one();
-    if let Some(held) = counters.lines.handshakes.line() {
+    if let Some(held) = counters.limiters.handshakes.admit() {
         let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
         tracing::warn!(protocol, connection, %peer, held, "the handshake failed: {why}");
     }

@@ -4,7 +4,7 @@ use super::allow::Effects;
 use super::budget::{ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
 use super::detached::DetachedHandlers;
 use super::output::Output;
 use super::push::{AckOutcome, Queued};
@@ -36,7 +36,7 @@ pub(super) struct Peer<P: Protocol> {
     /// What may be called from there.
     pub(super) effects: Effects,
     pub(super) settings: Arc<Settings>,
-    pub(super) counters: Arc<Counting>,
+    pub(super) counters: Arc<Counters>,
     pub(super) detached: Arc<DetachedHandlers>,
     pub(super) memory: ConnectionMemory,
     output: Mutex<Output<P>>,
@@ -61,7 +61,7 @@ impl<P: Protocol> Peer<P> {
         address: SocketAddr,
         effects: Effects,
         settings: Arc<Settings>,
-        counters: Arc<Counting>,
+        counters: Arc<Counters>,
         detached: Arc<DetachedHandlers>,
         memory: ConnectionMemory,
     ) -> Self {
@@ -200,7 +200,7 @@ impl<P: Protocol> Peer<P> {
         };
         for dropped in dropped {
             self.counters.reports_dropped.one();
-            if let Some(held) = self.counters.lines.dropped.line() {
+            if let Some(held) = self.counters.limiters.dropped.admit() {
                 let (protocol, connection, code) = (P::NAME, self.id.0, dropped.code);
                 let (peer, held) = (self.address, held.shown());
                 tracing::warn!(protocol, connection, %peer, code, held, "report dropped: the app is slow");

@@ -2,7 +2,7 @@
 //! read from it, and the others have the robot to themselves.
 
 use crate::clock;
-use crate::log_limiter::{Held, LogLimiter};
+use crate::log_limiter::{LogLimiter, Suppressed};
 use crate::session::after;
 use std::time::{Duration, Instant};
 
@@ -47,7 +47,7 @@ pub(super) fn inflated(surplus: u64) -> Duration {
 pub(super) struct ReadPause {
     penalty: Penalty,
     until: Option<Instant>,
-    lines: LogLimiter,
+    limiters: LogLimiter,
 }
 
 impl ReadPause {
@@ -64,7 +64,7 @@ impl ReadPause {
         surplus: u64,
         unusable: u32,
         now: Instant,
-    ) -> Option<(Duration, Option<Held>)> {
+    ) -> Option<(Duration, Option<Suppressed>)> {
         let mut rest = inflated(surplus);
         if unusable > 0 {
             rest = rest.max(self.penalty.unusable(unusable, now));
@@ -74,6 +74,6 @@ impl ReadPause {
         }
         let now = clock::now();
         self.until = self.until.max(Some(after(now, rest)));
-        Some((rest, self.lines.line(now)))
+        Some((rest, self.limiters.admit(now)))
     }
 }

@@ -4,8 +4,8 @@ use super::allow::Effects;
 use super::budget::{ConnectionMemory, MemoryBudget, MemoryHolder};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
-use super::data::{DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
+use super::counters::Counters;
+use super::data::{DataEntry, DataPeer, Eviction, Inbox, Outgoing, Owner, QUEUE};
 use super::detached::DetachedHandlers;
 use super::driver::Driver;
 use super::gate::Gate;
@@ -45,7 +45,7 @@ enum Life {
 pub(super) struct Shared<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     service: Arc<dyn Service<P>>,
-    pub(super) counters: Arc<Counting>,
+    pub(super) counters: Arc<Counters>,
     pub(super) peers: Mutex<Table<Arc<Peer<P>>>>,
     data_peers: Mutex<Table<DataEntry>>,
     pub(super) inbox: Arc<Inbox>,
@@ -67,7 +67,7 @@ impl<P: Protocol> Shared<P> {
             budget: MemoryBudget::new(settings.memory),
             settings: Arc::new(settings),
             service,
-            counters: Arc::new(Counting::of::<P>()),
+            counters: Arc::new(Counters::of::<P>()),
             peers: Mutex::default(),
             data_peers: Mutex::default(),
             inbox: Arc::default(),
@@ -83,7 +83,7 @@ impl<P: Protocol> Shared<P> {
         let effects = self.settings.allowed.effects(address.ip());
         if effects.is_none() {
             self.counters.connections_forbidden.one();
-            if let Some(held) = self.counters.lines.forbidden.line() {
+            if let Some(held) = self.counters.limiters.forbidden.admit() {
                 let (protocol, peer, held) = (P::NAME, address.ip(), held.shown());
                 tracing::warn!(protocol, %peer, held, "refused: the address is not allowed");
             }
@@ -139,12 +139,12 @@ impl<P: Protocol> Shared<P> {
         let (sender, outbox) = mpsc::channel(QUEUE);
         let (entered, left) = oneshot::channel();
         let heard = Arc::new(AtomicBool::new(false));
-        let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
-        let holder: Weak<dyn MemoryHolder> = Arc::<Leave<P>>::downgrade(&leave);
+        let eviction = Arc::new(Eviction::new(id, address, Arc::clone(&self.counters)));
+        let holder: Weak<dyn MemoryHolder> = Arc::<Eviction<P>>::downgrade(&eviction);
         let memory = Arc::new(self.budget.open(id, holder));
         let peer = DataPeer {
             memory: Arc::clone(&memory),
-            leave,
+            eviction,
             heard: Arc::clone(&heard),
             id,
             address,
@@ -247,7 +247,7 @@ impl<P: Protocol> Shared<P> {
         let protocol = P::NAME;
         let Some((gone, from, entry)) = displaced else {
             self.counters.connections_refused.one();
-            if let Some(held) = self.counters.lines.refused.line() {
+            if let Some(held) = self.counters.limiters.refused.admit() {
                 let held = held.shown();
                 tracing::warn!(protocol, peer = %address, limit, held, "refused: {why}");
             }

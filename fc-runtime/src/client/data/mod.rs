@@ -177,13 +177,13 @@ impl<P: Protocol> DataConnection<P> {
         let mut bytes = Vec::new();
         encoder.bytes(&mut bytes, frame, data)?;
         give_way(data.len()).await;
-        let mut turn = Turn {
+        let mut pending = PendingFrame {
             shared: &self.shared,
             bytes: Some(bytes),
         };
         loop {
             let went = self.shared.went.notified();
-            let state = match turn.look() {
+            let state = match pending.look() {
                 Ok(result) => return result,
                 Err(state) => state,
             };
@@ -191,7 +191,7 @@ impl<P: Protocol> DataConnection<P> {
                 went.await;
                 continue;
             };
-            if timeout_at(deadline.into(), went).await.is_err() && turn.take_back() {
+            if timeout_at(deadline.into(), went).await.is_err() && pending.take_back() {
                 return Err(DataError::NotConnected(why));
             }
         }
@@ -226,14 +226,14 @@ impl<P: Protocol> DataConnection<P> {
     }
 }
 
-/// One frame's turn to be sent.
-struct Turn<'a> {
+/// One frame's pending to be sent.
+struct PendingFrame<'a> {
     shared: &'a Shared,
     /// Until it is in the outbox.
     bytes: Option<Vec<u8>>,
 }
 
-impl Turn<'_> {
+impl PendingFrame<'_> {
     /// Goes on. What has become of the frame, or else the state in which it waits.
     fn look(&mut self) -> Result<Result<(), DataError>, ConnectionState> {
         let mut state = self.shared.lock();
@@ -282,7 +282,7 @@ impl Turn<'_> {
 }
 
 /// When nobody waits for it any more.
-impl Drop for Turn<'_> {
+impl Drop for PendingFrame<'_> {
     fn drop(&mut self) {
         if self.bytes.is_some() {
             return;
