@@ -1,25 +1,25 @@
 //! Frame codec, session, TCP client and server for FC protocol stubs.
 //!
-//! A generated crate supplies structs with the derives of `fc-derive` and one [`Protocol`]
-//! implementation; everything that moves, times or checks bytes is here. From the inside out:
+//! A generated crate supplies structs with the derives of `fc-derive` and one [`Protocol`] implementation. All handling
+//! of bytes, timing and checks is in this crate. The layers from the inside out:
 //!
-//! | layer | what it does | what it knows nothing of |
+//! | Layer | Task | Independent of |
 //! |---|---|---|
-//! | [`json`], [`message`] | typed messages from and to text, in one pass | frames |
-//! | [`frame`] | frames from and to bytes, within limits | I/O, who waits for what |
-//! | [`session`] | which answer belongs to which request, what is due, what came before | I/O, clocks |
-//! | [`client`] | an app's connection: calls, reports, streams | |
-//! | [`server`] | a robot's port: handlers, pushed reports, streams | |
+//! | [`json`], [`message`] | Read and write typed messages in one pass | Frames |
+//! | [`frame`] | Decode and encode frames within limits | I/O, sessions |
+//! | [`session`] | Match responses, track deadlines, detect repetitions | I/O, clocks |
+//! | [`client`] | Connection of an app: calls, reports, streams | |
+//! | [`server`] | Ports of a robot: handlers, pushed reports, streams | |
 //!
-//! Features: `client` and `server` (both by default) bring the upper two layers and tokio; `frames`
-//! alone the two in the middle, which do no I/O. Without any there are messages and their JSON.
-//! `blocking` is the client without `async`. `serde` lets serde types be values of messages, `metrics`
-//! hands counters and times to a recorder of the `metrics` crate.
+//! Features: `client` and `server` (both by default) add the two upper layers and tokio. `frames` alone adds the two
+//! layers in the middle, which do no I/O. Without features there are messages and their JSON. `blocking` is the client
+//! without `async`. `serde` allows serde types as values of messages. `metrics` passes counters and times to a recorder
+//! of the `metrics` crate.
 //!
 //! ```
 //! use fc_runtime::{Decoder, FrameError, Protocol};
 //!
-//! /// Codes of all frames in a capture.
+//! /// Returns the codes of all frames in a capture.
 //! fn codes<P: Protocol>(capture: &[u8]) -> Result<Vec<u16>, FrameError> {
 //!     let mut decoder = Decoder::<P>::new();
 //!     decoder.push(capture);
@@ -119,7 +119,7 @@ pub use session::{Busy, Due, Incoming, Session};
 pub use stream::StreamFrame;
 pub use wire::{Header, Limits};
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,16 +1,16 @@
-//! A log that a flood does not flood.
+//! Limits of log lines.
 
 use std::time::{Duration, Instant};
 
-/// Lines that one cause may write in a minute.
+/// Lines of one cause in a time window.
 const LINES: u32 = 5;
 
-/// The lines of one cause, mostly on one connection: a few a minute, for what goes on for hours is no
-/// news. What is held back is counted, and the next line says so.
+/// Limits the lines of one cause, usually on one connection, to a few per minute. Suppressed lines are counted, and the
+/// next line contains their number.
 #[derive(Debug)]
 pub(crate) struct LogLimiter {
     window: Duration,
-    /// When the window began.
+    /// Start of the window.
     since: Option<Instant>,
     lines: u32,
     held: u64,
@@ -23,8 +23,8 @@ impl Default for LogLimiter {
 }
 
 impl LogLimiter {
-    /// As many lines a second, for what is news each time: that connections come and go. Nobody who
-    /// reads the log may take one for up that is down.
+    /// Allows as many lines per second, for lines that are always new: connections that begin and end. A reader of the
+    /// log must not take a lost connection for an open one.
     pub(crate) fn per_second() -> Self {
         Self::within(Duration::from_secs(1))
     }
@@ -38,7 +38,7 @@ impl LogLimiter {
         }
     }
 
-    /// Whether to write a line now; if so, how many were held back before it.
+    /// Returns the number of lines suppressed before if a line may be written now, or `None`.
     pub(crate) fn admit(&mut self, now: Instant) -> Option<Suppressed> {
         let window = self.window;
         let lasts = |since| now.saturating_duration_since(since) < window;
@@ -55,12 +55,12 @@ impl LogLimiter {
     }
 }
 
-/// Lines held back.
+/// Number of suppressed lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Suppressed(u64);
 
 impl Suppressed {
-    /// What the line says of it: nothing if there were none.
+    /// Returns the number for the line, or `None` if no lines were suppressed.
     pub(crate) fn shown(self) -> Option<u64> {
         (self.0 > 0).then_some(self.0)
     }

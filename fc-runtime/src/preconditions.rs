@@ -1,24 +1,24 @@
-//! What the spec says of when a command is accepted and of when a report is sent.
+//! The states in which a command is accepted, and the times at which a report is sent.
 
 use std::time::Duration;
 
-/// What has to hold before a command is accepted.
+/// The preconditions of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preconditions {
-    /// In which states it is accepted.
+    /// States in which it is accepted.
     pub states: AcceptedStates,
-    /// Names of the commands that come first.
+    /// Names of the commands that must come first.
     pub after: &'static [&'static str],
 }
 
-/// In which states a command is accepted.
+/// The states in which a command is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AcceptedStates {
-    /// The spec does not say.
+    /// The spec does not specify the states.
     Unsaid,
-    /// In any state.
+    /// Any state.
     Any,
-    /// In those in which each of these enums has one of these values.
+    /// States in which each of these enums has one of these values.
     Only(&'static [States]),
 }
 
@@ -27,12 +27,12 @@ pub enum AcceptedStates {
 pub struct States {
     /// Name of the enum in the spec.
     pub of: &'static str,
-    /// Its values as JSON.
+    /// Values as JSON.
     pub values: &'static [&'static str],
 }
 
-/// When a report is sent. A path is that of wire keys from the report's body on, joined by dots; it leads through lists
-/// into their items.
+/// The time at which a report is sent. A path consists of wire keys in the report's body, joined by dots. It leads
+/// through lists into their items.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cadence {
     /// At each change of the field at this path.
@@ -41,29 +41,29 @@ pub enum Cadence {
     Step {
         /// Path of the number.
         field: &'static str,
-        /// How far it moves from one report to the next.
+        /// Change of the number between two reports.
         by: f64,
     },
     /// At intervals.
     Every(Duration),
-    /// At the latest so long after a command that sets it off.
+    /// At most this time after a command that sets it off.
     Within(Duration),
 }
 
 impl Cadence {
-    /// At each step of the number at this path.
+    /// Creates a cadence for each step of the number at this path.
     #[must_use]
     pub const fn step(field: &'static str, by: f64) -> Self {
         Self::Step { field, by }
     }
 
-    /// At intervals of so many milliseconds.
+    /// Creates a cadence with this interval in milliseconds.
     #[must_use]
     pub const fn every_ms(milliseconds: u64) -> Self {
         Self::Every(Duration::from_millis(milliseconds))
     }
 
-    /// At the latest so many milliseconds after a command that sets it off.
+    /// Creates a cadence of at most this many milliseconds after a command that sets it off.
     #[must_use]
     pub const fn within_ms(milliseconds: u64) -> Self {
         Self::Within(Duration::from_millis(milliseconds))

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// A report as received.
 ///
-/// Shows no text in its `Debug` form: bodies may hold what must not be logged.
+/// Its `Debug` form contains no text, because bodies may contain data that must not be logged.
 #[derive(Clone, PartialEq, Eq)]
 pub struct RawReport {
     /// Command code.
@@ -19,17 +19,18 @@ pub struct RawReport {
 }
 
 impl RawReport {
-    /// Reads it as a typed report. What a connection hands over has been checked before, to the
-    /// depth of nesting that is configured there, and reads as what its code says.
+    /// Reads the report as a typed report. A report from a connection has been checked before, within the limits of the
+    /// connection, so it can be read as the type of its code.
     ///
     /// # Errors
     ///
-    /// What is wrong with the text, or with an own key of `R`.
+    /// The error of the text or of a key of `R`.
     pub fn read<P: Protocol, R: Message>(&self) -> Result<R, BodyError> {
         read_enveloped::<P::Request, R>(&self.text, Self::allowance::<P>())?.body
     }
 
-    /// What reading it may cost: the protocol's default, and any depth that its connection allowed.
+    /// Returns the limits of one report: the protocol's default, but any depth, because the connection has checked the
+    /// depth.
     pub(crate) fn allowance<P: Protocol>() -> Allowance {
         Allowance {
             depth: MAX_DEPTH,
@@ -37,11 +38,11 @@ impl RawReport {
         }
     }
 
-    /// Reads its envelope alone.
+    /// Reads only the envelope.
     ///
     /// # Errors
     ///
-    /// What is wrong with the text, or with a key of the envelope.
+    /// The error of the text or of a key of the envelope.
     pub fn envelope<P: Protocol>(&self) -> Result<P::Request, BodyError> {
         let enveloped = read_enveloped::<P::Request, Empty>(&self.text, Self::allowance::<P>())?;
         Ok(enveloped.envelope)
@@ -76,7 +77,7 @@ impl<P: Protocol> fmt::Debug for RawResponse<P> {
     }
 }
 
-/// A request as received, but known to be a JSON object.
+/// A request as received. Its text is a JSON object.
 #[derive(Clone, PartialEq)]
 pub struct RawRequest {
     /// Command code.
@@ -94,11 +95,10 @@ impl fmt::Debug for RawRequest {
     }
 }
 
-/// The answer to a [`RawRequest`]: a JSON object of the response's own keys.
+/// The answer to a [`RawRequest`]: a JSON object with the keys of the response.
 ///
-/// A key of the envelope in it, such as the result code that it was given elsewhere, is sent as it is;
-/// the envelope of success supplies those that it lacks. What is then no response is answered with the
-/// protocol's own refusal, and logged.
+/// Envelope keys in it, such as a result code from elsewhere, are sent unchanged. The envelope of success supplies the
+/// missing ones. If the result is not a response, the server logs it and sends the protocol's error result.
 #[derive(Clone, PartialEq)]
 pub struct RawAnswer(pub Json);
 
