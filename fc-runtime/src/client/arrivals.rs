@@ -1,4 +1,4 @@
-//! What each frame from the robot means.
+//! Handling of frames from the robot.
 
 use super::error::CallError;
 use super::state::State;
@@ -16,29 +16,29 @@ use crate::wire::Header;
 use std::task::Waker;
 use std::time::Instant;
 
-/// Beyond this much unsent, reports are not acknowledged: a robot that does not read must not make
-/// the app collect acknowledgements for it.
+/// Unsent bytes beyond which reports are not acknowledged. A robot that does not read must not make the app collect
+/// acknowledgements.
 const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 
-/// A frame that has arrived, out of the decoder.
+/// A received frame, taken out of the decoder.
 #[derive(Debug)]
 pub(super) struct Arrival {
     pub(super) id: FrameId,
-    /// As the header has it; zeros where the frame could not be read.
+    /// Digest in the header; zeros if the frame could not be read.
     pub(super) digest: Sum,
     pub(super) body: Result<Body, ArrivalError>,
 }
 
-/// Why a frame cannot be handed on.
+/// The reason why a frame cannot be delivered.
 #[derive(Debug)]
 pub(super) enum ArrivalError {
     /// The frame could not be read.
     Frame(FrameError),
-    /// A report does not read as what its code says, or has no proper envelope.
+    /// The report cannot be read as the type of its code, or has no valid envelope.
     Report(BodyError),
 }
 
-/// How reports are read, by code; what is not listed is any JSON object.
+/// Checks of reports by code. Reports with other codes may be any JSON object.
 #[derive(Debug)]
 pub(super) struct ReportChecks(Vec<(u16, Check)>);
 
@@ -62,7 +62,7 @@ impl ReportChecks {
         text: &[u8],
         allowance: Allowance,
     ) -> Result<(), BodyError> {
-        // Not more than the app itself may read of it later.
+        // At most the limits within which the app reads the report later.
         let most = RawReport::allowance::<P>();
         let allowance = Allowance {
             depth: allowance.depth,
@@ -76,8 +76,8 @@ impl ReportChecks {
 }
 
 impl Arrival {
-    /// Takes a frame out of the decoder, and looks at reports: what the app could not read is
-    /// refused here, and not acknowledged to be found out later.
+    /// Takes a frame out of the decoder and checks reports. A report that the app cannot read is refused here instead
+    /// of acknowledged.
     pub(super) fn of<P: Protocol>(
         frame: Frame<'_, P>,
         spare: &mut Vec<u8>,
@@ -105,7 +105,7 @@ impl Arrival {
     }
 }
 
-/// Deals with one frame.
+/// Handles one frame.
 pub(super) fn arrive<P: Protocol>(
     state: &mut State<P>,
     Arrival { id, digest, body }: Arrival,
@@ -155,7 +155,7 @@ pub(super) fn arrive<P: Protocol>(
             state.counters.repeated_reports += 1;
             answer(state, id, P::RESULTS.success);
         }
-        // Apps serve no commands, and streams have a port of their own.
+        // Apps serve no commands, and streams have their own port.
         (Incoming::Command | Incoming::Stream | Incoming::Report, _) => {
             answer(state, id, P::RESULTS.protocol);
         }
@@ -188,7 +188,7 @@ fn report<P: Protocol>(
         id: id.id,
         text: body.into_vec(),
     };
-    // Whoever takes reports may have seen the end already.
+    // Receivers may already have seen the end of the connection.
     let room = !state.connection.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
     let missed = if room {
         state.reports.push(report, wakers)
@@ -214,7 +214,7 @@ fn report<P: Protocol>(
     }
 }
 
-/// Replies to a request of the robot with nothing but a result; not at all where no response can carry it.
+/// Responds to a request of the robot with only a result, or not at all if responses have no result.
 fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
     answer_with(state, id, result.code, result.text);
 }
@@ -226,7 +226,7 @@ fn answer_with<P: Protocol>(state: &mut State<P>, id: FrameId, code: i64, text: 
     }
     let envelope = P::Response::at(clock::unix_ms(), code, text);
     let before = state.out.len();
-    // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
+    // An envelope alone fits into any sensible frame limit. Otherwise the robot repeats its report.
     let _ = state
         .encoder
         .message(&mut state.out, id.answer(), &envelope, &Empty);

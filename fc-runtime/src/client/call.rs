@@ -1,4 +1,4 @@
-//! One call: a future without a task.
+//! A call: a future without a task.
 
 use super::error::CallError;
 use super::following::Following;
@@ -25,21 +25,21 @@ use std::task::{Context, Poll};
 use std::time::Duration;
 use tracing::Span;
 
-/// So much at most, in bytes, a caller writes to the socket itself.
+/// Maximum amount that a caller writes to the socket itself, in bytes.
 const WRITTEN_AT_ONCE: usize = 32 * 1024;
 
-/// What one call can be told.
+/// Options of one call.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CallOptions {
-    /// How long to wait for the response; `None` for the connection's default.
+    /// Longest wait for the response; `None` for the connection's default.
     pub timeout: Option<Duration>,
-    /// Whether to send the call once more when the connection was lost before its answer came; if the
-    /// connection is lost again, the call ends with [`CallError::Lost`].
-    /// `None`: only what has [`Effect::Read`]. `Some(true)` on anything else may do it twice.
+    /// `true` to send the call once more if the connection is lost before its response. After a second loss, the call
+    /// ends with [`CallError::Lost`]. `None` repeats only commands with [`Effect::Read`]. `Some(true)` may execute
+    /// other commands twice.
     pub repeat: Option<bool>,
 }
 
-/// Where a call stands.
+/// The stage of a call.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
     Start,
@@ -55,7 +55,7 @@ struct Flight<'a, P: Protocol> {
     repeat: bool,
     stage: Stage,
     span: Span,
-    /// When it was first polled; `None` before that, and once its end has been noted.
+    /// Start time, from the first poll until the end has been recorded.
     since: Option<(Since, Held)>,
 }
 
@@ -74,7 +74,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         }
     }
 
-    /// Notes how it has ended and how long it has taken.
+    /// Records result and duration.
     fn note(&mut self, result: &'static str) {
         if let Some((since, _held)) = self.since.take() {
             let operations = &self.inner.operations;
@@ -83,8 +83,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         }
     }
 
-    /// Goes on with the call; `write` appends the body, and is asked again if the call has to be
-    /// sent again.
+    /// Continues the call. `write` appends the body, and is called again if the call is sent again.
     fn poll(
         &mut self,
         cx: &mut Context<'_>,
@@ -110,7 +109,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         polled
     }
 
-    /// Gives back what a call in flight holds.
+    /// Frees the resources of a call in flight.
     fn release(&mut self) {
         if let Stage::InFlight { frame, slot } = self.stage {
             let mut state = self.inner.lock();
@@ -149,7 +148,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 return Err(busy.into());
             }
         };
-        // From here on, dropping the call gives everything back.
+        // From here on, dropping the call frees its resources.
         self.stage = Stage::InFlight { frame, slot };
         if let Some(slot) = state.slots.get(slot) {
             slot.repeat = self.repeat;
@@ -161,14 +160,14 @@ impl<'a, P: Protocol> Flight<'a, P> {
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
             }
-            // Where there are several, the driver sends them with one write; and who has got his answer
-            // will soon ask for more.
+            // With several callers, the driver sends all requests with one write. A caller whose response has just
+            // arrived counts, because it will probably call again.
             if state.slots.used() == 1 && state.out.len() <= WRITTEN_AT_ONCE {
                 socket.clone_from(&state.socket);
             }
         }
         let writing = (socket.as_ref()).and_then(|socket| socket.begin(&mut state.out));
-        // Also without a connection: the deadline may be nearer than all others.
+        // Needed also without a connection, because the deadline may be earlier than all others.
         let deadline = after(now, self.timeout);
         let needed = writing.is_none() || state.alarm.is_none_or(|at| deadline < at);
         let driver = if needed { state.driver.take() } else { None };
@@ -223,8 +222,8 @@ impl<'a, P: Protocol> Flight<'a, P> {
         Poll::Pending
     }
 
-    /// Sends a request that has waited for a connection, unless that has been lost again meanwhile: then
-    /// it waits for the next one.
+    /// Sends a request that has waited for a connection. If the connection is lost again, the request waits for the
+    /// next one.
     fn send_again(&self, frame: FrameId, slot: usize, body: Staged<'_>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
@@ -235,7 +234,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         if !connected || !place.progress.is_to_send() {
             return;
         }
-        // Once more, and not as often as the connection is lost.
+        // Only one repetition, however often the connection is lost.
         place.repeat &= matches!(place.progress, Progress::Unsent);
         place.progress = Progress::Sent;
         send(state, frame, body);
@@ -243,7 +242,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         self.inner.wake();
     }
 
-    /// Gives the memory of a large body back for the next one.
+    /// Returns the memory of a large body for the next one.
     fn recycle(&self, body: Body) {
         if let Some(spare) = body.into_spare() {
             self.inner.lock().spare = spare;
@@ -266,10 +265,10 @@ impl<P: Protocol> Drop for Flight<'_, P> {
 
 /// A call of a typed command. Resolves to the response.
 ///
-/// The request is written when the future is first polled, straight into the connection's buffer.
+/// The request is encoded when the future is first polled, directly into the connection's buffer.
 ///
-/// Cancellation safe: dropping the future frees its place among the calls in flight, and an answer
-/// that comes later is ignored. The robot acts all the same once the request is on its way.
+/// Cancellation safe: dropping the future frees the call's resources, and a later response is ignored. A sent command
+/// is executed nevertheless.
 #[must_use = "a call is sent when it is awaited"]
 pub struct Call<'a, P: Protocol, C: Command> {
     flight: Flight<'a, P>,
@@ -285,16 +284,16 @@ impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
         }
     }
 
-    /// Waits for the response, and then follows what the command has set off: the reports `R`, until one of
-    /// them says that the process has ended or failed.
+    /// Waits for the response, and then follows the reports `R` that the command sets off, until a report with a final
+    /// state or a failure.
     ///
-    /// What arrives from the moment on in which the request is sent is followed, also before the response.
+    /// Reports are followed from the moment the request is sent, also before the response.
     ///
-    /// Cancellation safe, as the call itself is.
+    /// Cancellation safe, like the call.
     ///
     /// # Errors
     ///
-    /// Those of the call; nothing is followed then.
+    /// The errors of the call. In that case no reports are followed.
     pub async fn follow<R: Report>(self) -> Result<Following<P, C, R>, CallError>
     where
         C: SetsOff<R>,
@@ -336,7 +335,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
     }
 }
 
-/// Makes a typed response of a body, in one pass.
+/// Reads a body as a typed response in one pass.
 fn response<P: Protocol, M: Message>(body: &[u8], allowance: Allowance) -> Result<M, CallError> {
     let read = read_enveloped::<P::Response, M>(body, allowance).map_err(CallError::Response)?;
     match Refusal::of::<P>(&read.envelope) {
@@ -354,8 +353,7 @@ impl<P: Protocol, C: Command> fmt::Debug for Call<'_, P, C> {
     }
 }
 
-/// Calls `code` with a JSON object of the request's own keys; the envelope is added where `body`
-/// has none.
+/// Calls `code` with a JSON object of the request's keys. The envelope is added if `body` has none.
 pub(super) async fn raw<P: Protocol>(
     handle: &Handle<P>,
     code: u16,
@@ -391,7 +389,7 @@ pub(super) async fn raw<P: Protocol>(
     response
 }
 
-/// What a call has ended with, for metrics.
+/// Returns the result of a call, for metrics.
 fn ended<T>(result: &Result<T, CallError>) -> &'static str {
     match result {
         Ok(_) => "success",

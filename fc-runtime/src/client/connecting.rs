@@ -1,4 +1,4 @@
-//! Making connections, and making them again.
+//! Connecting and reconnecting.
 
 use super::config::{Backoff, ClientConfig};
 use super::error::ConnectError;
@@ -8,15 +8,15 @@ use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// No wait between two attempts to connect is longer, whatever is configured.
+/// Longest wait between two attempts, whatever the configuration.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Makes a connection, each time it is asked to.
+/// Creates connections.
 pub(super) trait Dial: Send + 'static {
-    /// What the connection runs over.
+    /// Transport of the connection.
     type Transport: Transport;
 
-    /// Whom it connects to, for logs.
+    /// Returns the address of the robot, for logs.
     fn address(&self) -> String;
 
     fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
@@ -58,10 +58,10 @@ impl Dial for TcpDial {
     }
 }
 
-/// Connects by a function of the user.
+/// Connects with a function of the user.
 pub(super) struct CustomDial<D> {
     pub(super) dial: D,
-    /// What errors name.
+    /// Address for errors.
     pub(super) address: String,
     pub(super) limit: Duration,
 }
@@ -94,7 +94,7 @@ where
     }
 }
 
-/// One attempt, of which an error names the `address`.
+/// Limits the time of one attempt. Its error contains the `address`.
 async fn within<S>(
     limit: Duration,
     attempt: impl Future<Output = io::Result<S>>,
@@ -109,15 +109,15 @@ async fn within<S>(
     }
 }
 
-/// How connecting has gone of late.
+/// The state of reconnecting: past attempts and the next wait.
 pub(super) struct Reconnect {
-    /// `None` for the first attempt alone.
+    /// `None` for a single attempt.
     backoff: Option<Backoff>,
-    /// Nothing has been attempted yet: there is nothing to wait for.
+    /// `true` before the first attempt, which needs no wait.
     first: bool,
-    /// Attempts in a row that did not connect.
+    /// Consecutive attempts that did not connect.
     failed: u32,
-    /// Waits since the robot was last heard.
+    /// Waits since the last received frame.
     waits: u32,
 }
 
@@ -131,13 +131,13 @@ impl Reconnect {
         }
     }
 
-    /// An attempt has failed.
+    /// Notes a failed attempt.
     pub(super) fn failed(&mut self) {
         self.failed = self.failed.saturating_add(1);
     }
 
-    /// An attempt has connected, and the connection has ended. A robot that was `heard` on it is
-    /// tried at once; one that only accepts and closes is waited for longer and longer.
+    /// Notes the end of a connection. If a frame was `heard` on it, the next attempt follows soon. A robot that accepts
+    /// and closes connections is tried at growing intervals.
     pub(super) fn connected(&mut self, heard: bool) {
         self.first = false;
         self.failed = 0;
@@ -146,7 +146,7 @@ impl Reconnect {
         }
     }
 
-    /// How long to wait before the next attempt; `None` to give up.
+    /// Returns the wait before the next attempt, or `None` to give up.
     pub(super) fn next(&mut self) -> Option<Duration> {
         if std::mem::take(&mut self.first) {
             return Some(Duration::ZERO);
@@ -165,7 +165,7 @@ impl Reconnect {
     }
 }
 
-/// A number from 0 to 1 by chance, good enough to keep apps apart.
+/// Returns a random number from 0 to 1, good enough to spread the attempts of many apps.
 fn chance() -> f64 {
     use std::hash::{BuildHasher, RandomState};
     let bits = RandomState::new().hash_one(0_u8) >> 32;

@@ -1,20 +1,20 @@
-//! What a person finds in the log about an app's connection.
+//! Log lines about a connection of an app.
 
 use super::loss::Loss;
 use crate::clock;
 use crate::log_limiter::LogLimiter;
 use crate::protocol::Protocol;
 
-/// Logs what happens to a connection, one line each.
+/// Logs the events of a connection, one line each.
 #[derive(Debug)]
 pub(super) struct ConnectionLog {
     protocol: &'static str,
     address: String,
-    /// The port it is, "command" or "data".
+    /// Name of the port, "command" or "data".
     port: &'static str,
-    /// Attempts that have failed since there was a connection.
+    /// Failed attempts since the last connection.
     failed: u64,
-    /// The reason that was last logged for a failed attempt.
+    /// Last logged reason of a failed attempt.
     told: Option<Loss>,
     connected: LogLimiter,
     ended: LogLimiter,

@@ -1,7 +1,7 @@
-//! The one task of a connection: it reads the socket, and writes to it what callers do not write themselves.
+//! The task of a connection: it reads the socket, and writes everything that callers do not write themselves.
 //!
-//! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
-//! have written meanwhile and sends it with one write.
+//! When it wakes, it reads everything, handles it under one lock, takes the requests of callers and sends them with one
+//! write.
 
 use super::arrivals::{Arrival, ArrivalError, ReportChecks, arrive};
 use super::connecting::{Dial, Reconnect};
@@ -27,15 +27,15 @@ use std::time::Instant;
 use tokio::task::yield_now;
 use tokio::time::{sleep, timeout};
 
-/// From this much on, in bytes, requests are sent without waiting for more of them.
+/// Amount of requests that is sent without waiting for more, in bytes.
 const GATHER_UP_TO: usize = 32 * 1024;
-/// How much may arrive before it is dealt with and others have their turn, in bytes.
+/// Amount that may be received before other tasks run, in bytes.
 const TURN: usize = 256 * 1024;
-/// What the work on a frame counts beside its bytes.
+/// Work per frame in addition to its bytes.
 const FRAME: usize = 1024;
 
-/// Drives a connection until it is closed, reconnecting as configured: the one that there is, or else
-/// the first that can be made. There is a driver from now on, also if the task never has a turn.
+/// Drives a connection until it is closed, and reconnects as configured. It starts with `stream`, or connects first.
+/// The driver exists from the call on, even if the task is never polled.
 pub(super) fn drive_dialled<P: Protocol, D: Dial>(
     inner: Arc<Inner<P>>,
     stream: Option<D::Transport>,
@@ -67,21 +67,21 @@ pub(super) fn drive<P: Protocol, S: Transport>(
     }
 }
 
-/// How a turn of the connection has ended.
+/// The end of a turn of the connection.
 enum Turn {
-    /// As much has arrived as may be dealt with at once.
+    /// The turn has used up its bytes.
     Spent,
-    /// And the connection with it.
+    /// The connection has ended.
     Over(Loss),
 }
 
-/// What a connection that has ended was like.
+/// The result of a connection that has ended.
 struct Ended {
-    /// It gave at least one frame.
+    /// `true` if at least one frame was received.
     heard: bool,
 }
 
-/// One connection's bytes.
+/// The socket and decoder of a connection.
 struct Link<S, P: Protocol> {
     socket: Shared<S>,
     decoder: Decoder<P>,
@@ -91,17 +91,17 @@ struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
     report_checks: ReportChecks,
-    /// Received and not yet counted.
+    /// Received bytes that are not counted yet.
     bytes_in: u64,
     wakers: Vec<Waker>,
     spare: Vec<u8>,
-    /// Callers have had their turn before what is to be sent next.
+    /// `true` if other callers have had a chance to add requests to the next write.
     gathered: bool,
-    /// The frame that is arriving.
+    /// Progress of the arriving frame.
     arriving: FrameProgress,
-    /// Since when the robot has taken nothing of what is to be sent.
+    /// Time since which the robot has read nothing.
     unread_since: Option<Instant>,
-    /// Why the connection has ended, as soon as it is known.
+    /// Reason for the end of the connection, once known.
     why: Loss,
     log: ConnectionLog,
     alarm: Alarm,
@@ -134,7 +134,7 @@ impl<P: Protocol> Driver<P> {
         let mut heard = false;
         self.arriving.whole();
         self.unread_since = None;
-        // Should the task end before the connection does.
+        // The reason if the task ends before the connection.
         self.why = Loss::Ended;
         self.up(&link.socket);
         self.log
@@ -143,14 +143,14 @@ impl<P: Protocol> Driver<P> {
             let turn = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard));
             match turn.await {
                 Turn::Over(why) => break why,
-                // There may be more; first it is the others' turn.
+                // More data may be available, but other tasks run first.
                 Turn::Spent => yield_now().await,
             }
         };
         self.log.ended(self.why);
         if self.inner.lock().connection.now().is_closed() {
             let out = std::mem::take(&mut self.inner.lock().out);
-            // A peer that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the peer may neither read nor stop sending.
             let _ = timeout(CLOSING, link.socket.goodbye(out)).await;
         }
         Ended { heard }
@@ -219,7 +219,7 @@ impl<P: Protocol> Driver<P> {
         Poll::Pending
     }
 
-    /// Whether the frame that is arriving has stalled, now that nothing more of it is there.
+    /// Returns the loss if the arriving frame has stalled. All available bytes have been read.
     fn stalled<S>(&mut self, link: &Link<S, P>, now: Instant) -> Option<Loss> {
         let received = link.decoder.pending();
         let deadline = self.arriving.deadline(received, now)?;
@@ -229,8 +229,8 @@ impl<P: Protocol> Driver<P> {
         })
     }
 
-    /// When the robot has read nothing for too long, if something is left for it to read: `unwritten`
-    /// bytes of `before`.
+    /// Returns the time at which the robot has read nothing for too long, or `None` if it has nothing to read. `before`
+    /// bytes were unwritten before the last write, `unwritten` bytes are now.
     fn unread(&mut self, before: usize, unwritten: usize, now: Instant) -> Option<Instant> {
         if unwritten == 0 {
             self.unread_since = None;
@@ -243,8 +243,7 @@ impl<P: Protocol> Driver<P> {
         Some(after(since, self.inner.config.connection.stall_timeout))
     }
 
-    /// Whether to let other callers have their turn before what the first has written is sent: their
-    /// requests then go out with the same write. Costs a lone caller nothing.
+    /// Returns `true` to let other callers add requests before the next write. This costs nothing with a single caller.
     fn gather<S: Transport>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
         let waits = !self.gathered && self.arrivals.is_empty() && link.socket.unwritten() == 0 && {
             let state = self.inner.lock();
@@ -257,7 +256,7 @@ impl<P: Protocol> Driver<P> {
         waits
     }
 
-    /// Takes whole frames out of the decoder, as many as the turn allows.
+    /// Takes complete frames out of the decoder, as many as the turn allows.
     fn decode<S>(&mut self, link: &mut Link<S, P>, turn: &mut usize) -> Result<(), FrameError> {
         while *turn > 0 {
             match link.decoder.next() {
@@ -292,8 +291,8 @@ impl<P: Protocol> Driver<P> {
         Ok(())
     }
 
-    /// What happens under the lock: arrivals and deadlines. Says whether the connection has been closed,
-    /// and when the next call is due.
+    /// Handles arrivals and deadlines under the lock. Returns `true` if the connection is closed, and the deadline of
+    /// the next call.
     fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
@@ -343,7 +342,7 @@ impl<P: Protocol> Driver<P> {
     fn up<S: Transport>(&self, socket: &Shared<S>) {
         let mut state = self.inner.lock();
         state.socket = Some(socket.for_callers());
-        // The first connection may have been there, and counted, before its driver.
+        // The first connection may have been counted before the driver was created.
         if !state.connection.now().is_connected() {
             state.connection.connected();
         }
@@ -408,7 +407,7 @@ impl<P: Protocol> Driver<P> {
         }
     }
 
-    /// A new connection, or `None` once there will be none.
+    /// Returns a new connection, or `None` if there will be none.
     async fn connect<D: Dial>(
         &mut self,
         reconnect: &mut Reconnect,
@@ -448,7 +447,7 @@ impl<P: Protocol> Driver<P> {
     }
 }
 
-/// However it ends, even with the runtime, no call waits for ever.
+/// Ends all calls, even if the runtime ends.
 impl<P: Protocol> Drop for Driver<P> {
     fn drop(&mut self) {
         if self.why == Loss::NotYet {

@@ -1,9 +1,8 @@
-//! The tokio client: an app's connection to a robot.
+//! The tokio client: a connection of an app to a robot.
 //!
-//! A connection is one task that owns the socket and a state behind a short lock. Callers write
-//! their requests into the shared buffer themselves; the task sends all that has gathered with one
-//! write, and wakes the callers whose answers have come. No call has a task, a channel or a timer of
-//! its own.
+//! A connection is one task with the socket, and a state behind a lock that is held briefly. Callers write their
+//! requests into the shared buffer. The task sends all gathered requests with one write, and wakes the callers whose
+//! responses have arrived. A call has no task, channel or timer.
 //!
 //! ```no_run
 //! use fc_runtime::{ClientConfig, Command, Connection, Protocol};
@@ -54,13 +53,12 @@ use std::sync::Arc;
 
 /// A connection to a robot's command port.
 ///
-/// Clones are handles of the same connection. It is closed when the last of them, and the last
-/// [`RawReports`] and [`Following`], is dropped.
+/// Clones are handles of the same connection. It is closed when the last handle, [`RawReports`] and [`Following`] is
+/// dropped.
 ///
-/// After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within their
-/// timeout. Of the calls that were on their way, those with [`Effect::Read`](crate::Effect::Read)
-/// are sent again with the same id; the others end with [`CallError::Lost`], because nobody knows
-/// whether the robot has acted.
+/// After a loss the connection is made again, unless configured otherwise. Calls in the meantime wait within their
+/// timeout. Calls in flight with [`Effect::Read`](crate::Effect::Read) are sent again with the same id. Other calls in
+/// flight end with [`CallError::Lost`], because the robot may have acted.
 pub struct Connection<P: Protocol> {
     handle: Handle<P>,
 }
@@ -70,20 +68,19 @@ impl<P: Protocol> Connection<P> {
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
+    /// [`ConnectError`] if the first attempt fails. Later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let (host, port) = config.command_address::<P>();
         let tcp = TcpDial::new(host, port, &config);
         Self::dialled(tcp, config).await
     }
 
-    /// Connects over streams that `dial` makes, such as TLS or a tunnel, and reconnects with it
-    /// after a loss, as configured. One attempt may take the connect timeout. Needs a tokio runtime
-    /// with time.
+    /// Connects over streams that `dial` creates, such as TLS or a tunnel. `dial` is called again after a loss, as
+    /// configured. One attempt may take the connect timeout. Needs a tokio runtime with time.
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
+    /// [`ConnectError`] if the first attempt fails. Later losses are handled in the background.
     pub async fn connect_by<D, F, S>(dial: D, config: ClientConfig) -> Result<Self, ConnectError>
     where
         D: FnMut() -> F + Send + 'static,
@@ -97,12 +94,11 @@ impl<P: Protocol> Connection<P> {
         .await
     }
 
-    /// Connects over TCP in the background, and returns at once: the first connection is waited for
-    /// like another one after a loss, with the same [`Backoff`]. Calls made meanwhile wait within their
-    /// timeout, and their error says why there was no connection. Needs a tokio runtime with I/O and
-    /// time.
+    /// Connects over TCP in the background and returns at once. The first connection is attempted like one after a
+    /// loss, with the same [`Backoff`]. Calls in the meantime wait within their timeout, and their error contains the
+    /// reason. Needs a tokio runtime with I/O and time.
     ///
-    /// The first attempt begins at once. It counts among `Backoff::attempts`, and is the only one where
+    /// The first attempt starts at once and counts for `Backoff::attempts`. It is the only one if
     /// [`ClientConfig::reconnect`] is `None`.
     #[must_use]
     pub fn connect_lazy(config: ClientConfig) -> Self {
@@ -111,7 +107,7 @@ impl<P: Protocol> Connection<P> {
         Self::driven(None, tcp, config)
     }
 
-    /// [`connect_lazy`](Self::connect_lazy) over streams that `dial` makes. Needs a tokio runtime with
+    /// Connects like [`connect_lazy`](Self::connect_lazy), over streams that `dial` creates. Needs a tokio runtime with
     /// time.
     #[must_use]
     pub fn connect_lazy_by<D, F, S>(dial: D, config: ClientConfig) -> Self
@@ -142,8 +138,8 @@ impl<P: Protocol> Connection<P> {
         connection
     }
 
-    /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
-    /// made again after a loss. Needs a tokio runtime with time.
+    /// Creates a connection over an existing stream, such as TLS or a pipe in a test. It is not made again after a
+    /// loss. Needs a tokio runtime with time.
     #[must_use]
     pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
@@ -166,7 +162,7 @@ impl<P: Protocol> Connection<P> {
         self.call_with(request, CallOptions::default())
     }
 
-    /// Calls a command with options of its own.
+    /// Calls a command with these options.
     ///
     /// The future resolves to a [`CallError`] if there is no such response in time.
     pub fn call_with<'a, C: Command>(
@@ -177,23 +173,23 @@ impl<P: Protocol> Connection<P> {
         Call::new(&self.handle, request, options)
     }
 
-    /// Calls `code` with a JSON object of the request's own keys. The envelope is added, unless
-    /// `body` has one. It is not sent again after a loss.
+    /// Calls `code` with a JSON object of the request's keys. The envelope is added, unless `body` contains one. The
+    /// call is not sent again after a loss.
     ///
-    /// The result is not judged: a refusal is a response, too.
+    /// The result is not checked: a refusal is a response as well.
     ///
     /// # Errors
     ///
-    /// Any [`CallError`] but [`CallError::Refused`].
+    /// Any [`CallError`] except [`CallError::Refused`].
     pub async fn call_raw(&self, code: u16, body: &[u8]) -> Result<RawResponse<P>, CallError> {
         call::raw(&self.handle, code, body, CallOptions::default()).await
     }
 
-    /// [`call_raw`](Self::call_raw) with options of its own.
+    /// Calls like [`call_raw`](Self::call_raw), with these options.
     ///
     /// # Errors
     ///
-    /// Any [`CallError`] but [`CallError::Refused`].
+    /// Any [`CallError`] except [`CallError::Refused`].
     pub async fn call_raw_with(
         &self,
         code: u16,
@@ -203,18 +199,17 @@ impl<P: Protocol> Connection<P> {
         call::raw(&self.handle, code, body, options).await
     }
 
-    /// The robot's reports from here on. Each receiver gets all of them, and has a queue of its own.
+    /// Returns a receiver of all reports from now on. Each receiver has its own queue.
     ///
-    /// Reports are acknowledged only when a receiver has them: without one, the robot sends each
-    /// again until it gives up.
+    /// A report is acknowledged only when a receiver has it. Without a receiver, the robot sends each report again
+    /// until it gives up.
     #[must_use]
     pub fn reports(&self) -> RawReports<P> {
         RawReports::new(self.handle.clone())
     }
 
-    /// A connection to the robot's data port, of this command connection and as long as it. Returns at
-    /// once; the connection is made in the background, over TCP. Each call makes another one. Needs a
-    /// tokio runtime with I/O and time.
+    /// Returns a connection to the robot's data port, which ends with this command connection. It is made in the
+    /// background over TCP. Each call creates another one. Needs a tokio runtime with I/O and time.
     #[must_use]
     pub fn data(&self) -> DataConnection<P> {
         let config = &self.handle.config;
@@ -222,7 +217,7 @@ impl<P: Protocol> Connection<P> {
         DataConnection::new(self.handle.clone(), TcpDial::new(host, port, config))
     }
 
-    /// [`data`](Self::data) over streams that `dial` makes, such as TLS or a tunnel. One attempt may
+    /// Connects like [`data`](Self::data), over streams that `dial` creates, such as TLS or a tunnel. One attempt may
     /// take the connect timeout. Needs a tokio runtime with time.
     #[must_use]
     pub fn data_by<D, F, S>(&self, dial: D) -> DataConnection<P>
@@ -236,23 +231,23 @@ impl<P: Protocol> Connection<P> {
         DataConnection::new(self.handle.clone(), by)
     }
 
-    /// Whether there is a connection at this moment, and why not.
+    /// Returns the state of the connection, with the reason if there is none.
     #[must_use]
     pub fn state(&self) -> ConnectionState {
         self.handle.lock().connection.now()
     }
 
-    /// The states of the connection: the present one first, and then each that it comes to.
+    /// Returns the states of the connection: the present one, then each new one.
     ///
-    /// An app that asks the robot for its state each time that this says
-    /// [`ConnectionState::Connected`] knows it also after the robot has been restarted.
+    /// An app that queries the robot's state after each [`ConnectionState::Connected`] has the right state even after a
+    /// restart of the robot.
     #[must_use]
     pub fn states(&self) -> ConnectionStates {
         ConnectionStates::new(self.handle.lock().connection.subscribe())
     }
 
-    /// Waits until the connection has ended for good, and says why: it was [closed](Self::close), was
-    /// given up as [`ClientConfig::reconnect`] says, or its runtime has ended.
+    /// Waits until the connection has ended for good, and returns the reason: it was [closed](Self::close), given up as
+    /// configured by [`ClientConfig::reconnect`], or its runtime has ended.
     ///
     /// Cancellation safe.
     pub async fn closed(&self) -> Loss {
@@ -260,20 +255,20 @@ impl<P: Protocol> Connection<P> {
         state_watch::closed(states).await
     }
 
-    /// How many calls are in flight.
+    /// Returns the number of calls in flight.
     #[must_use]
     pub fn in_flight(&self) -> usize {
         self.handle.lock().session.in_flight()
     }
 
-    /// What the connection has seen so far.
+    /// Returns the counters of the connection.
     #[must_use]
     pub fn counters(&self) -> ClientCounters {
         self.handle.lock().counters
     }
 
-    /// Closes the connection for all its handles. Calls in flight end with [`CallError::Lost`], and
-    /// reports end once the queue is empty.
+    /// Closes the connection for all handles. Calls in flight end with [`CallError::Lost`], and report receivers end
+    /// when their queue is empty.
     pub fn close(&self) {
         self.handle.close();
     }

@@ -1,17 +1,17 @@
-//! Whether reports that come at intervals come in time.
+//! Detection of late periodic reports.
 
 use crate::preconditions::Cadence;
 use crate::protocol::Protocol;
 use std::time::{Duration, Instant};
 
-/// What the spec says of intervals, and when the last report of each kind came. Other reports are not here.
+/// The intervals of the spec, and the last arrival of each periodic report. Other reports are not included.
 #[derive(Debug)]
 pub(super) struct ReportWatchdog(Vec<ReportInterval>);
 
 #[derive(Debug)]
 struct ReportInterval {
     code: u16,
-    /// From one report to the next, with what networks and robots add.
+    /// Longest time between two reports, with a margin for networks and robots.
     at_most: Duration,
     last: Option<Instant>,
 }
@@ -31,14 +31,14 @@ impl ReportWatchdog {
         Self(intervals.collect())
     }
 
-    /// A connection begins; what came over another says nothing about it.
+    /// Starts a connection. Arrivals on earlier ones do not count.
     pub(super) fn begin(&mut self) {
         for interval in &mut self.0 {
             interval.last = None;
         }
     }
 
-    /// A report has come, and was not there before. How long after the last one, if that is too long.
+    /// Notes a new report. Returns the time since the last one if that is too long.
     pub(super) fn came(&mut self, code: u16, now: Instant) -> Option<Duration> {
         let interval = self.0.iter_mut().find(|interval| interval.code == code)?;
         let last = interval.last.replace(now)?;

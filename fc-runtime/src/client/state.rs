@@ -1,4 +1,4 @@
-//! What the handles of a connection and its driver share.
+//! The state that the handles of a connection share with its driver.
 
 use super::config::ClientConfig;
 use super::error::CallError;
@@ -19,37 +19,37 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::task::Waker;
 use std::time::{Duration, Instant};
 
-/// What has become of a call.
+/// The progress of a call.
 #[derive(Debug, Default)]
 pub(super) enum Progress {
-    /// Not on its way: the caller has to encode it as soon as the connection is up.
+    /// Not sent. The caller encodes it when the connection is up.
     #[default]
     Unsent,
-    /// On its way.
+    /// Sent.
     Sent,
-    /// Was on its way when the connection was lost, and may be sent once more.
+    /// Sent over a lost connection, and may be sent once more.
     Again,
-    /// Ended, and not yet fetched by the caller.
+    /// Ended. The caller has not fetched the result yet.
     Done(Result<Body, CallError>),
 }
 
 impl Progress {
-    /// Whether it is the caller's turn to encode the request.
+    /// Returns `true` if the caller must encode the request.
     pub(super) fn is_to_send(&self) -> bool {
         matches!(self, Self::Unsent | Self::Again)
     }
 }
 
-/// The meeting place of one caller and the driver.
+/// The data shared by one caller and the driver.
 #[derive(Debug, Default)]
 pub(super) struct Slot {
     pub(super) progress: Progress,
     pub(super) waker: Option<Waker>,
-    /// Whether the call may be sent once more after the connection was lost.
+    /// `true` if the call may be sent once more after a loss.
     pub(super) repeat: bool,
 }
 
-/// Slots with reuse. A slot belongs to its caller until the caller frees it.
+/// Reusable slots. A slot belongs to its caller until the caller frees it.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
     slots: Vec<Slot>,
@@ -76,7 +76,7 @@ impl Slots {
             .progress
     }
 
-    /// How many callers have one: also those that have not fetched yet what their calls have come to.
+    /// Returns the number of used slots, including those of ended calls whose result has not been fetched.
     pub(super) fn used(&self) -> usize {
         self.slots.len() - self.free.len()
     }
@@ -85,7 +85,7 @@ impl Slots {
         self.slots.iter_mut()
     }
 
-    /// Ends the call in `slot` and gives its waker.
+    /// Ends the call in `slot` and returns its waker.
     pub(super) fn finish(&mut self, slot: usize, result: Result<Body, CallError>) -> Option<Waker> {
         let slot = self.slots.get_mut(slot)?;
         slot.progress = Progress::Done(result);
@@ -93,32 +93,32 @@ impl Slots {
     }
 }
 
-/// Behind the lock.
+/// The state behind the lock.
 #[derive(Debug)]
 pub(super) struct State<P> {
     pub(super) connection: StateWatch,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
-    /// What they are written to, while there is a connection.
+    /// The socket, while there is a connection.
     pub(super) socket: Option<CallersSocket>,
     /// Time at which the timer of the driver wakes it.
     pub(super) alarm: Option<Instant>,
-    /// For acknowledgements.
+    /// Encoder of acknowledgements.
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
     pub(super) reports: Queues,
     pub(super) report_watchdog: ReportWatchdog,
-    /// The driver's, while it waits for something to do.
+    /// Waker of the driver while it waits.
     pub(super) driver: Option<Waker>,
-    /// Memory for the decoder to go on in when a large body leaves it.
+    /// Memory with which the decoder continues after giving away a large body.
     pub(super) spare: Vec<u8>,
     pub(super) counters: ClientCounters,
     pub(super) metrics: FedMetrics,
     pub(super) limiters: LogLimiters,
 }
 
-/// What is logged of what arrives and of what is asked for.
+/// Limits of log lines about arrivals and calls.
 #[derive(Debug, Default)]
 pub(super) struct LogLimiters {
     pub(super) bad_frame: LogLimiter,
@@ -131,14 +131,14 @@ pub(super) struct LogLimiters {
 
 macro_rules! counters {
     ($($(#[doc = $doc:literal])* $name:ident,)*) => {
-        /// What a connection has seen since it was made, reconnecting included.
+        /// Counters of a connection since its creation, reconnections included.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub struct ClientCounters {
             $($(#[doc = $doc])* pub $name: u64,)*
         }
 
-        /// The metrics that they feed, with what they have been fed.
+        /// Metrics of the counters, with the values recorded so far.
         #[derive(Debug)]
         struct CounterMetrics {
             $($name: Counter,)*
@@ -156,7 +156,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Hands on what has been counted since it was last called.
+            /// Records the changes since the last call.
             fn feed(&mut self, counters: ClientCounters) {
                 $(self.$name.add(counters.$name.saturating_sub(self.fed.$name));)*
                 self.fed = counters;
@@ -194,7 +194,7 @@ counters! {
     bad_frames,
 }
 
-/// What the recorder of metrics is metrics of one connection.
+/// Metrics of one connection.
 #[derive(Debug)]
 pub(super) struct FedMetrics {
     counters: CounterMetrics,
@@ -224,7 +224,7 @@ impl FedMetrics {
 }
 
 impl<P> State<P> {
-    /// Tells the recorder of metrics what is new.
+    /// Records the changes since the last call.
     pub(super) fn tell(&mut self) {
         self.metrics.counters.feed(self.counters);
         let now = self.connection.now();
@@ -243,13 +243,13 @@ impl<P> State<P> {
 #[derive(Debug)]
 pub(super) struct Inner<P> {
     state: Mutex<State<P>>,
-    /// What requests are encoded with, outside the lock of the state.
+    /// Encoder of requests, used outside the lock of the state.
     encoder: Mutex<Encoder<P>>,
     pub(super) call_timeout: Duration,
     pub(super) limits: Limits,
     pub(super) config: ClientConfig,
     pub(super) operations: Operations,
-    /// Of calls in flight.
+    /// Number of calls in flight.
     pub(super) flying: Gauge,
     handles: AtomicUsize,
 }
@@ -288,14 +288,13 @@ impl<P: Protocol> Inner<P> {
         })
     }
 
-    /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
-    /// back what it has begun. So poison means nothing.
+    /// Every holder leaves a consistent state, even after a panic: the encoder removes an unfinished frame.
     pub(super) fn lock(&self) -> MutexGuard<'_, State<P>> {
         lock(&self.state)
     }
 
-    /// Encodes a body and hands it on. Nobody waits for another's: who finds the encoder in use makes
-    /// one for himself.
+    /// Encodes a body and passes it to `then`. A caller that finds the encoder in use creates another one instead of
+    /// waiting.
     pub(super) fn staged<T>(
         &self,
         write: &dyn Fn(&mut Vec<u8>),
@@ -316,14 +315,14 @@ impl<P: Protocol> Inner<P> {
         }
     }
 
-    /// Ends the connection for good, if it has not ended.
+    /// Closes the connection, if it has not ended.
     pub(super) fn close(&self) {
         self.lock().connection.close(Loss::Here);
         self.wake();
     }
 }
 
-/// Keeps the connection open as long as one of its kind exists.
+/// Keeps the connection open while at least one handle exists.
 #[derive(Debug)]
 pub(super) struct Handle<P: Protocol>(Arc<Inner<P>>);
 

@@ -80,7 +80,7 @@ impl Buffer {
         (unread + room(missing, unread)).saturating_sub(kept)
     }
 
-    /// Begins with these bytes and takes no more memory than they do. Nothing unread must be there.
+    /// Starts with these bytes and takes only as much memory. The buffer must have no unread bytes.
     #[cfg(feature = "server")]
     pub(super) fn begin(&mut self, bytes: &[u8]) {
         *self = Self {

@@ -1,4 +1,4 @@
-//! The one task of a data connection: it connects, reads and writes.
+//! The task of a data connection: it connects, reads and writes.
 
 use super::error::DataError;
 use super::shared::Shared;
@@ -24,13 +24,13 @@ pub(super) struct Driver<P, D> {
     pub(super) config: ClientConfig,
     pub(super) dial: D,
     pub(super) log: ConnectionLog,
-    /// Why there is no connection.
+    /// Reason why there is no connection.
     pub(super) why: Loss,
     pub(super) protocol: std::marker::PhantomData<fn() -> P>,
 }
 
 impl<P: Protocol, D: Dial> Driver<P, D> {
-    /// Keeps up a connection as long as it may.
+    /// Keeps a connection up until it is closed.
     pub(super) async fn run(mut self) {
         let mut reconnect = Reconnect::new(self.config.reconnect);
         while let Some((stream, commands)) = self.connect(&mut reconnect).await {
@@ -38,14 +38,13 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
             if self.shared.lock().connection.now().is_closed() {
                 return;
             }
-            // A robot may have nothing to send.
+            // A sent frame counts as well, because a robot may have nothing to send.
             reconnect.connected(self.shared.is_used() || self.why == Loss::Renewed);
             self.shared.lost(self.why);
         }
     }
 
-    /// A connection, and the number of the command connection that it belongs to; `None` once there
-    /// will be none.
+    /// Returns a connection and the number of its command connection, or `None` if there will be none.
     async fn connect(&mut self, reconnect: &mut Reconnect) -> Option<(D::Transport, u64)> {
         loop {
             let Some(wait) = reconnect.next() else {
@@ -82,7 +81,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
 
     /// Serves a connection until it ends.
     async fn serve<S: Transport>(&mut self, stream: S, commands: u64) {
-        // Should the task end before the connection does.
+        // The reason if the task ends before the connection.
         self.why = Loss::Ended;
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
@@ -115,14 +114,14 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
                 receiver.skip_to_end().await?;
                 Ok::<(), StreamError>(())
             };
-            // A robot that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the robot may neither read nor stop sending.
             let _ = timeout(CLOSING, goodbye).await;
             shared.close(self.why);
         }
     }
 }
 
-/// Waits for the command connection and gives its number. Its end is for others to see.
+/// Waits for the command connection and returns its number. The caller handles its end.
 async fn up(commands: &mut watch::Receiver<ConnectionState>, shared: &Shared) -> u64 {
     loop {
         let state = *commands.borrow_and_update();
@@ -138,7 +137,7 @@ async fn up(commands: &mut watch::Receiver<ConnectionState>, shared: &Shared) ->
     }
 }
 
-/// Waits until the command connection of this number is no longer the last one.
+/// Waits until the command connection with this number is no longer the latest one.
 async fn parted(mut commands: watch::Receiver<ConnectionState>, number: u64) -> Loss {
     let parted = |state: &ConnectionState| state.is_closed() || state.connects() != number;
     match commands.wait_for(parted).await {
@@ -148,7 +147,7 @@ async fn parted(mut commands: watch::Receiver<ConnectionState>, number: u64) -> 
     }
 }
 
-/// Hands on what arrives, until the connection ends.
+/// Delivers received frames until the connection ends.
 async fn receive<R: AsyncRead + Unpin, P: Protocol>(
     shared: &Shared,
     receiver: &mut Receiver<R, P>,
@@ -178,7 +177,7 @@ async fn receive<R: AsyncRead + Unpin, P: Protocol>(
     }
 }
 
-/// Sends what is to be sent, until the connection ends.
+/// Sends frames until the connection ends.
 async fn send<W: AsyncWrite + Unpin>(shared: &Shared, sender: &mut Sender<W>) -> Loss {
     loop {
         let frame = shared.next().await;
@@ -190,7 +189,7 @@ async fn send<W: AsyncWrite + Unpin>(shared: &Shared, sender: &mut Sender<W>) ->
     }
 }
 
-/// However it ends, even with the runtime, nobody waits for ever.
+/// Ends all waits, even if the runtime ends.
 impl<P, D> Drop for Driver<P, D> {
     fn drop(&mut self) {
         if self.why == Loss::NotYet {

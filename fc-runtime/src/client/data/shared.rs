@@ -1,4 +1,4 @@
-//! What the handle of a data connection and its driver share: room for one frame either way.
+//! The state that the handle of a data connection shares with its driver: room for one frame in each direction.
 
 use super::error::DataError;
 use super::subscription::Takers;
@@ -9,50 +9,50 @@ use crate::sync::lock;
 use std::sync::{Mutex, MutexGuard};
 use tokio::sync::Notify;
 
-/// The frame that is to be sent.
+/// The frame to be sent.
 #[derive(Debug)]
 pub(super) enum Outbox {
     Empty,
-    /// Not begun: it can be taken back.
+    /// Not started, so it can be taken back.
     Waiting(Vec<u8>),
-    /// Begun, and the driver's.
+    /// Taken by the driver.
     Sending {
-        /// Nobody waits for it any more.
+        /// `true` if the sender has given up.
         orphan: bool,
     },
-    /// For its sender to know.
+    /// Result for the sender.
     Done(Result<(), Loss>),
 }
 
-/// Behind the lock.
+/// The state behind the lock.
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) connection: StateWatch,
-    /// What has arrived and not been taken.
+    /// The received frame that has not been taken.
     inbox: Option<Result<StreamFrame, DataError>>,
-    /// A loss that the receiver has not been told, after what is in the inbox.
+    /// A loss to be reported to the receiver after the frame in the inbox.
     gap: Option<Loss>,
-    /// Those who have subscribed to a stream.
+    /// Receivers of subscriptions.
     pub(super) takers: Takers,
     pub(super) outbox: Outbox,
-    /// A loss that the sender has not been told, after frames were sent.
+    /// A loss to be reported to the sender, after frames were sent.
     pub(super) unsure: Option<Loss>,
-    /// Something has been sent over this connection.
+    /// `true` if something was sent over this connection.
     sent: bool,
-    /// Something has been received over it.
+    /// `true` if something was received over this connection.
     heard: bool,
 }
 
 #[derive(Debug)]
 pub(super) struct Shared {
     state: Mutex<State>,
-    /// Something has arrived, or the connection has another state.
+    /// A frame has arrived, or the state of the connection has changed.
     pub(super) came: Notify,
-    /// The outbox, or the state of the connection, has changed.
+    /// The outbox or the state of the connection has changed.
     pub(super) went: Notify,
     /// For the driver: the inbox is empty.
     room: Notify,
-    /// For the driver: there is something to be sent.
+    /// For the driver: there is a frame to be sent.
     work: Notify,
     /// For the driver: this side closes the connection.
     pub(super) end: Notify,
@@ -83,13 +83,13 @@ impl Shared {
         lock(&self.state)
     }
 
-    /// Tells all that wait to look again.
+    /// Wakes all waiting tasks.
     pub(super) fn tell(&self) {
         self.came.notify_waiters();
         self.went.notify_waiters();
     }
 
-    /// What comes next for the receiver, if it is there.
+    /// Takes the next result for the receiver, if there is one.
     pub(super) fn take(&self) -> Option<Result<StreamFrame, DataError>> {
         let mut state = self.lock();
         let taken = match state.inbox.take() {
@@ -107,11 +107,11 @@ impl Shared {
         }
     }
 
-    /// Leaves what has arrived for those who have subscribed to it, or for the receiver as soon as there is room.
+    /// Delivers a frame to its subscriptions, or waits until the receiver has room for it.
     pub(super) async fn put(&self, mut arrived: Result<StreamFrame, DataError>) {
         loop {
             let room = self.room.notified();
-            // Apart, for the lock must not be held while waiting.
+            // A separate statement, because the lock must not be held while waiting.
             let placed = self.lock().place(arrived);
             match placed {
                 Ok(()) => break,
@@ -122,15 +122,15 @@ impl Shared {
         self.came.notify_waiters();
     }
 
-    /// Subscribes to the frames of a code. Says who is to ask for them.
+    /// Adds a subscription to a code and returns its id.
     pub(super) fn enter(&self, code: u16) -> u64 {
         let id = self.lock().takers.enter(code);
-        // What waits for room need not wait any more.
+        // A frame that waits for room can be dropped now.
         self.room.notify_one();
         id
     }
 
-    /// What comes next for a subscriber, if it is there.
+    /// Takes the next result for a subscription, if there is one.
     pub(super) fn take_of(&self, id: u64) -> Option<Result<StreamFrame, DataError>> {
         let mut state = self.lock();
         let taken = state.takers.take(id);
@@ -143,7 +143,7 @@ impl Shared {
         }
     }
 
-    /// Something has been received.
+    /// Notes that a frame has been received.
     pub(super) fn hear(&self) {
         self.lock().heard = true;
     }
@@ -152,19 +152,19 @@ impl Shared {
         self.lock().heard
     }
 
-    /// Whether the connection has been of use.
+    /// Returns `true` if a frame has been sent or received.
     pub(super) fn is_used(&self) -> bool {
         let state = self.lock();
         state.heard || state.sent
     }
 
-    /// Takes a frame to be sent into the empty outbox.
+    /// Puts a frame into the empty outbox.
     pub(super) fn begin(&self, state: &mut State, bytes: Vec<u8>) {
         state.outbox = Outbox::Waiting(bytes);
         self.work.notify_one();
     }
 
-    /// The next frame to be sent.
+    /// Waits for the next frame to be sent.
     pub(super) async fn next(&self) -> Vec<u8> {
         loop {
             let work = self.work.notified();
@@ -181,7 +181,7 @@ impl Shared {
         }
     }
 
-    /// The frame that was being sent has been.
+    /// Notes that the frame has been sent.
     pub(super) fn sent(&self) {
         let mut state = self.lock();
         match state.outbox {
@@ -193,7 +193,7 @@ impl Shared {
         self.went.notify_waiters();
     }
 
-    /// There is a connection. Says which.
+    /// Notes a new connection and returns its number.
     pub(super) fn connected(&self) -> u64 {
         let mut state = self.lock();
         state.heard = false;
@@ -205,13 +205,13 @@ impl Shared {
         connects
     }
 
-    /// There is none yet.
+    /// Notes that there is no connection yet.
     pub(super) fn not_connected(&self, why: Loss) {
         self.lock().connection.lost(why);
         self.tell();
     }
 
-    /// The connection that there was is lost, and what was on its way with it.
+    /// Notes a loss of the connection and of the frames in flight.
     pub(super) fn lost(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
@@ -222,7 +222,7 @@ impl Shared {
         self.tell();
     }
 
-    /// There will be none any more.
+    /// Notes the end of the connection.
     pub(super) fn close(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
@@ -233,7 +233,7 @@ impl Shared {
 }
 
 impl State {
-    /// Puts what has arrived where it is asked for; gives it back if there is no room.
+    /// Delivers a frame, or returns it if there is no room.
     fn place(
         &mut self,
         arrived: Result<StreamFrame, DataError>,
@@ -248,12 +248,12 @@ impl State {
         if self.takers.is_empty() {
             return Err(arrived);
         }
-        // Subscribers do not wait for a receiver that there may not be.
+        // Subscriptions do not wait for a receiver that may not exist.
         self.takers.skipped += 1;
         Ok(())
     }
 
-    /// Notes that nobody knows what has become of the frames that were sent.
+    /// Notes that sent frames may be lost.
     fn abandon(&mut self, why: Loss) {
         let sent = std::mem::take(&mut self.sent);
         match self.outbox {
@@ -262,7 +262,7 @@ impl State {
                 self.outbox = Outbox::Empty;
                 self.unsure = Some(why);
             }
-            // It must not go on where the one before it may be missing.
+            // The next frame must not follow one that may be missing.
             Outbox::Waiting(_) if sent => self.outbox = Outbox::Done(Err(why)),
             Outbox::Empty | Outbox::Done(Ok(())) if sent => self.unsure = Some(why),
             Outbox::Empty | Outbox::Waiting(_) | Outbox::Done(_) => {}

@@ -1,4 +1,4 @@
-//! Receivers of one stream each, with a queue of their own.
+//! Receivers of one stream each, with their own queues.
 
 use super::error::DataError;
 use super::shared::Shared;
@@ -11,17 +11,17 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// Frames waiting for one receiver.
+/// Frames in the queue of one receiver.
 const QUEUE: usize = 4;
 
-/// The frames of one stream from the receiver's creation on, in the order they came, each read as a `T`.
+/// The frames of one stream from the creation of the receiver on, in the order received, each read as a `T`.
 ///
-/// Each receiver has a queue of four frames. While it is full, the oldest frame in it makes way for the one that
-/// arrives, and [`missed`](Self::missed) counts it: of a picture of what is now, the last one counts, and an app that
-/// is slow delays neither the robot nor other receivers. What must not be missed is received with
-/// [`DataConnection::recv`](super::DataConnection::recv), which makes the robot wait.
+/// Each receiver has a queue of four frames. When it is full, a new frame replaces the oldest one, and
+/// [`missed`](Self::missed) counts that. This suits live data: only the latest frame matters, and a slow app delays
+/// neither the robot nor other receivers. Use [`DataConnection::recv`](super::DataConnection::recv) to get every frame;
+/// it makes the robot wait.
 ///
-/// It goes on over reconnecting, and ends with its [`DataConnection`](super::DataConnection).
+/// It continues after reconnections, and ends with its [`DataConnection`](super::DataConnection).
 pub struct Subscription<T> {
     shared: Arc<Shared>,
     id: u64,
@@ -29,12 +29,12 @@ pub struct Subscription<T> {
     content: PhantomData<fn() -> T>,
 }
 
-/// A frame of a stream, read.
+/// A frame of a stream with its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamItem<T> {
-    /// Message id, that of the request which it belongs to.
+    /// Message id of the request that it belongs to.
     pub id: u32,
-    /// What it carries.
+    /// Content.
     pub content: T,
 }
 
@@ -49,15 +49,15 @@ impl<T: StreamContent> Subscription<T> {
         }
     }
 
-    /// The next frame.
+    /// Returns the next frame.
     ///
     /// Cancellation safe: a frame is taken from the queue only when it is returned.
     ///
     /// # Errors
     ///
-    /// [`DataError::Lost`] where frames may be missing because the connection was lost; [`DataError::Frame`] and
-    /// [`DataError::Invalid`] for a frame that cannot be read. Unless it is [`DataError::Closed`], the next call goes
-    /// on with the next frame.
+    /// [`DataError::Lost`] if frames may be missing because the connection was lost; [`DataError::Frame`] and
+    /// [`DataError::Invalid`] for a frame that cannot be read. After any error except [`DataError::Closed`], the next
+    /// call continues with the next frame.
     pub async fn recv(&mut self) -> Result<StreamItem<T>, DataError> {
         let frame = loop {
             let came = self.shared.came.notified();
@@ -75,7 +75,7 @@ impl<T: StreamContent> Subscription<T> {
 }
 
 impl<T> Subscription<T> {
-    /// How many frames have made way for later ones since this was last asked.
+    /// Returns the number of replaced frames since the last call.
     pub fn missed(&mut self) -> u64 {
         self.shared.lock().takers.missed_of(self.id)
     }
@@ -98,7 +98,7 @@ impl<T> fmt::Debug for Subscription<T> {
 pub(super) struct Takers {
     last: u64,
     all: Vec<Taker>,
-    /// Frames of other streams, which were dropped.
+    /// Dropped frames of other streams.
     pub(super) skipped: u64,
 }
 
@@ -141,7 +141,7 @@ impl Takers {
         self.all.is_empty()
     }
 
-    /// Hands out what has arrived; gives it back if nobody takes such frames.
+    /// Delivers a frame to its receivers, or returns it if there are none.
     pub(super) fn offer(
         &mut self,
         arrived: Result<StreamFrame, DataError>,
@@ -162,7 +162,7 @@ impl Takers {
         Ok(())
     }
 
-    /// Notes for everybody that frames may be missing here.
+    /// Adds a loss to all queues, because frames may be missing.
     pub(super) fn lost(&mut self, why: Loss) {
         for taker in &mut self.all {
             if !matches!(taker.waiting.back(), Some(Err(DataError::Lost(_)))) {
