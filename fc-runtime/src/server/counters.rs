@@ -1,4 +1,4 @@
-//! What a server has seen, in numbers.
+//! Counters of a server.
 
 use super::connection_id::ConnectionId;
 use crate::clock;
@@ -11,7 +11,7 @@ use std::net::SocketAddr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The metric of a counter. Those `by` operation are one together, which [`Counters::call`] counts.
+/// The metric of a counter. The counters `by` operation share one metric, which [`Counters::call`] counts.
 macro_rules! metric {
     ($name:ident) => {
         Some(concat!("fc_server_", stringify!($name), "_total"))
@@ -23,14 +23,14 @@ macro_rules! metric {
 
 macro_rules! counters {
     ($($(#[doc = $doc:literal])* $name:ident $(by $operation:ident)?,)*) => {
-        /// What a server has seen since it was bound.
+        /// Counters of a server since it was bound.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub struct ServerCounters {
             $($(#[doc = $doc])* pub $name: u64,)*
         }
 
-        /// The same, being counted.
+        /// The counters while the server runs.
         #[derive(Debug)]
         pub(super) struct Counters {
             $(pub(super) $name: Count,)*
@@ -49,7 +49,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Counts a frame that could not be read.
+            /// Counts and logs an unreadable frame.
             pub(super) fn bad_frame<P: Protocol>(
                 &self,
                 limiters: &mut LogLimiter,
@@ -64,7 +64,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Counts a connection that has to go because memory is short, and logs what it held.
+            /// Counts and logs a connection that is closed because memory is short, with its memory.
             pub(super) fn evicted<P: Protocol>(
                 &self,
                 connection: ConnectionId,
@@ -80,7 +80,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Logs that a connection has begun at the `port` of this name.
+            /// Logs a new connection at a port.
             pub(super) fn connected<P: Protocol>(
                 &self,
                 connection: ConnectionId,
@@ -93,7 +93,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Logs that it has ended.
+            /// Logs the end of a connection.
             pub(super) fn ended<P: Protocol>(
                 &self,
                 connection: ConnectionId,
@@ -191,7 +191,7 @@ counters! {
     bytes_out,
 }
 
-/// How a request was answered.
+/// The kind of answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Answered {
     Success,
@@ -217,13 +217,13 @@ impl Counters {
         self.operations.called(code, result);
     }
 
-    /// Notes the time of a handler that has ended.
+    /// Records the time of a handler.
     pub(super) fn handled(&self, code: u16, since: Since) {
         self.operations.took(code, since.elapsed());
     }
 }
 
-/// What there is at this moment. Not counters: nothing but metrics shows it.
+/// Current numbers. Only metrics contain them.
 #[derive(Debug)]
 pub(super) struct Gauges {
     pub(super) connections: Gauge,
@@ -252,7 +252,7 @@ impl Gauges {
     }
 }
 
-/// What is logged of all connections of a server together: they may come and go by the thousand.
+/// Limits of log lines about all connections of a server together. There may be thousands of connections.
 #[derive(Debug)]
 pub(super) struct LogLimiters {
     pub(super) connected: SharedLogLimiter,
@@ -286,13 +286,13 @@ impl Default for LogLimiters {
 pub(super) struct SharedLogLimiter(Mutex<LogLimiter>);
 
 impl SharedLogLimiter {
-    /// What [`LogLimiter::line`] says.
+    /// Calls [`LogLimiter::admit`].
     pub(super) fn admit(&self) -> Option<Suppressed> {
         lock(&self.0).admit(clock::now())
     }
 }
 
-/// One number, and the metric that it feeds.
+/// A counter and its metric.
 #[derive(Debug)]
 pub(super) struct Count(AtomicU64, Option<Counter>);
 
@@ -306,7 +306,7 @@ impl Count {
         self.add(1);
     }
 
-    /// Counts one more, and says whether to log it: a flood must not become a flood in the log.
+    /// Counts one. Returns `true` if it should be logged: only powers of two are, so that the log stays short.
     pub(super) fn one_to_log(&self) -> bool {
         self.count(1).wrapping_add(1).is_power_of_two()
     }
@@ -315,7 +315,7 @@ impl Count {
         self.count(n as u64);
     }
 
-    /// Counts, and gives what it was before.
+    /// Counts, and returns the number before.
     fn count(&self, n: u64) -> u64 {
         if let Some(metric) = &self.1 {
             metric.add(n);

@@ -1,4 +1,4 @@
-//! The data port: frames of raw bytes to and from apps.
+//! The data port: frames of raw bytes from and to apps.
 
 use super::budget::{Charge, ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
@@ -28,24 +28,24 @@ use tokio::sync::{Notify, mpsc, oneshot};
 use tokio::task::yield_now;
 use tokio::time::{sleep, timeout};
 
-/// Frames waiting for one app, or for the robot, besides the one on its way.
+/// Frames in the queue to one app or to the robot, besides the frame in flight.
 pub(super) const QUEUE: usize = 4;
 
 /// A frame to be sent.
 pub(super) struct Outgoing {
     pub(super) id: FrameId,
     pub(super) body: Prepared,
-    /// The memory of the body, as if nobody shared it.
+    /// Memory of the body, as if it were not shared.
     pub(super) charge: Charge,
 }
 
-/// Where frames of apps go.
+/// The receiver of frames from apps.
 pub(super) type Inbox = Mutex<Option<mpsc::Sender<AppStream>>>;
 
-/// A frame of raw bytes that an app has sent.
+/// A frame of raw bytes from an app.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppStream {
-    /// Data connection that brought it.
+    /// Data connection of the frame.
     pub connection: ConnectionId,
     /// Address of the app.
     pub peer: SocketAddr,
@@ -54,11 +54,11 @@ pub struct AppStream {
     charge: MemoryGuard,
 }
 
-/// The memory of a frame, charged to the server as long as nobody has taken the frame apart.
+/// The memory of a frame, charged to the server until the frame is taken apart.
 #[derive(Debug)]
 struct MemoryGuard(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
 
-/// A copy is the robot's own.
+/// A copy is not charged; it belongs to the robot.
 impl Clone for MemoryGuard {
     fn clone(&self) -> Self {
         Self(None)
@@ -73,12 +73,12 @@ impl PartialEq for MemoryGuard {
 
 impl Eq for MemoryGuard {}
 
-/// The frames of raw bytes that apps send, in the order they came on each connection.
+/// Frames of raw bytes from apps, in the order received on each connection.
 #[derive(Debug)]
 pub struct AppStreams(pub(super) mpsc::Receiver<AppStream>);
 
 impl AppStreams {
-    /// The next frame; `None` once the server has ended or another receiver has taken over.
+    /// Returns the next frame, or `None` if the server has ended or another receiver has replaced this one.
     ///
     /// Cancellation safe.
     pub async fn recv(&mut self) -> Option<AppStream> {
@@ -105,16 +105,16 @@ impl futures_core::Stream for AppStreams {
     }
 }
 
-/// Whose a data connection is. The protocol does not say; an address does, as long as there is one app
-/// behind it.
+/// The app of a data connection. The protocol does not specify it. Its address identifies it as long as only one app
+/// has that address.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// Nobody has had a command connection from the same address meanwhile.
+    /// No command connection from the same address so far.
     #[default]
     Nobody,
-    /// There has been this one alone.
+    /// Only this command connection so far.
     One(ConnectionId),
-    /// There have been several, and it may be anybody's.
+    /// Several command connections so far, so the owner is unknown.
     Several,
 }
 
@@ -129,13 +129,13 @@ impl Owner {
     }
 }
 
-/// What others know of a data connection. It ends once this is gone and all is sent.
+/// The shared part of a data connection. The connection ends when this is dropped and everything is sent.
 pub(super) struct DataEntry {
     pub(super) sender: mpsc::Sender<Outgoing>,
     pub(super) memory: Arc<ConnectionMemory>,
     pub(super) heard: Arc<AtomicBool>,
     pub(super) owner: Owner,
-    /// Ends the handshake with the entry.
+    /// Ends the handshake when the entry is dropped.
     pub(super) _entered: oneshot::Sender<Infallible>,
 }
 
@@ -146,12 +146,12 @@ pub(super) struct DataPeer<P> {
     pub(super) settings: Arc<Settings>,
     pub(super) counters: Arc<Counters>,
     pub(super) inbox: Arc<Inbox>,
-    /// To answer with; weak, so that the connection ends when nobody else sends.
+    /// Queue for responses. It is weak, so that the connection ends when there are no other senders.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
     pub(super) memory: Arc<ConnectionMemory>,
     pub(super) eviction: Arc<Eviction<P>>,
-    /// A frame has been received.
+    /// `true` if a frame has been received.
     pub(super) heard: Arc<AtomicBool>,
 }
 
@@ -177,7 +177,7 @@ impl<P> Eviction<P> {
 }
 
 impl<P: Protocol> MemoryHolder for Eviction<P> {
-    /// It keeps no memory that it does not need.
+    /// Does nothing, because it keeps no unused memory.
     fn tidy(&self) {}
 
     fn evict(&self, held: usize) {
@@ -188,7 +188,7 @@ impl<P: Protocol> MemoryHolder for Eviction<P> {
 }
 
 impl<P: Protocol> DataPeer<P> {
-    /// Serves the connection until it ends, or until `outbox` does.
+    /// Serves the connection until it or `outbox` ends.
     pub(super) async fn run<S: Transport>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
@@ -216,8 +216,7 @@ impl<P: Protocol> DataPeer<P> {
             .ended::<P>(self.id, self.address, "data", reason);
     }
 
-    /// Reads and writes until one of them ends. What waits to be sent when the app sends no more is
-    /// sent still.
+    /// Reads and writes until one of them ends. If the app sends no more, the queued frames are still sent.
     async fn converse<S: Transport>(
         &self,
         receiver: MeteredReceiver<ReadHalf<S>, P>,
@@ -281,8 +280,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    /// Gives a frame to the receiver of streams, and waits while it is busy: the app is not read
-    /// meanwhile.
+    /// Passes a frame to the receiver of streams, and waits while it is busy. The app is not read meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();
         let inbox = lock(&self.inbox).clone();
@@ -308,7 +306,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    /// Replies to a frame that cannot be used; nothing is lost if there is no room for that.
+    /// Answers an unusable frame. The answer is dropped if there is no room for it.
     fn refuse(&self, frame: FrameId) {
         if !P::Response::HAS_RESULT {
             return;

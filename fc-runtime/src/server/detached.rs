@@ -1,4 +1,4 @@
-//! Handlers that run on though nobody waits for their answer any more.
+//! Handlers that run on without a waiting app.
 
 use super::budget::Charge;
 use super::running_handler::RunningHandler;
@@ -9,16 +9,17 @@ use std::task::{Context, Poll, ready};
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
 
-/// What all connections of a server share.
+/// The detached handlers of all connections of a server.
 pub(super) struct DetachedHandlers {
     limit: usize,
     running: Arc<AtomicUsize>,
-    /// `None` once the server is over.
+    /// `None` after the end of the server.
     tasks: Mutex<Option<JoinSet<()>>>,
 }
 
 impl DetachedHandlers {
-    /// So many may run on before no more of their kind are begun; with 0, none runs on.
+    /// Creates the set. Up to `limit` handlers may run on before no more of their kind are started. With 0, none runs
+    /// on.
     pub(super) fn new(limit: usize) -> Self {
         Self {
             limit,
@@ -27,16 +28,16 @@ impl DetachedHandlers {
         }
     }
 
-    /// Whether as many run on as may: no handler that might join them is begun then, so that none
-    /// that has begun must be dropped.
+    /// Returns `true` at the limit. No handler that might run on is started then, so that no started one must be
+    /// dropped.
     pub(super) fn is_full(&self) -> bool {
         self.limit > 0 && self.running.load(Ordering::Relaxed) >= self.limit
     }
 
-    /// Lets a handler run on in a task of its own, to its end or to that of the server. `false` if
-    /// none may, and it has been dropped.
+    /// Lets a handler run on in its own task to its end or to that of the server. Returns `false` if this is not
+    /// possible; the handler has been dropped.
     pub(super) fn take_over(&self, mut handler: Box<dyn RunningHandler>, request: Charge) -> bool {
-        // Without a runtime there is no server any more either.
+        // Without a runtime the server has ended.
         let Ok(runtime) = Handle::try_current() else {
             return false;
         };
@@ -50,17 +51,17 @@ impl DetachedHandlers {
         };
         let mut guard = self.lock();
         let Some(tasks) = guard.as_mut() else {
-            // Not under the lock: what is dropped is the user's.
+            // Unlock first, because dropping the handler runs code of the user.
             drop(guard);
             return false;
         };
-        // Those that have ended are of no interest, but they take room.
+        // Remove ended tasks, because they take memory.
         while tasks.try_join_next().is_some() {}
         tasks.spawn_on(task, &runtime);
         true
     }
 
-    /// Ready once none runs on.
+    /// Ready when no handler runs.
     pub(super) fn poll_ended(&self, cx: &mut Context<'_>) -> Poll<()> {
         if let Some(tasks) = self.lock().as_mut() {
             while ready!(tasks.poll_join_next(cx)).is_some() {}
@@ -68,7 +69,7 @@ impl DetachedHandlers {
         Poll::Ready(())
     }
 
-    /// Drops all of them, and all that are still to come.
+    /// Drops all handlers, also those added later.
     pub(super) fn abort(&self) {
         let tasks = self.lock().take();
         drop(tasks);
@@ -79,7 +80,7 @@ impl DetachedHandlers {
     }
 }
 
-/// One of those that run on.
+/// Counts one running handler until it is dropped.
 struct RunningHandlerCount(Arc<AtomicUsize>);
 
 impl RunningHandlerCount {

@@ -1,8 +1,7 @@
-//! The one task of a command connection: it alone touches the socket.
+//! The task of a command connection. Only it uses the socket.
 //!
-//! Each time it is woken it goes on with waiting handlers, reads all there is, handles it in place,
-//! takes up reports and answers, and sends all of it with one write. An app that does not read its
-//! answers is not read either.
+//! When it wakes, it continues waiting handlers, reads and handles all requests, takes reports and responses, and sends
+//! everything with one write. An app that does not read its responses is not read either.
 
 use super::connection_id::ConnectionId;
 use super::gate::{Gate, GateQueue, LARGE, Pass, through};
@@ -31,43 +30,42 @@ use std::time::Instant;
 use tokio::task::yield_now;
 use tokio::time::timeout;
 
-/// Beyond this much unsent, in bytes, nothing is read or taken up.
+/// Unsent bytes beyond which nothing is read or taken from queues.
 const HIGH_WATER: usize = 256 * 1024;
 
-/// What a connection may do in one turn before the others have theirs, in bytes received and
-/// answered: some sixty small requests.
+/// Work of a connection in one turn, in bytes received and answered: about sixty small requests. Then other connections
+/// run.
 const TURN: usize = 160 * 1024;
 
-/// After so many requests their answers are sent, though more requests are at hand: the app then
-/// works on the ones while the robot works on the others.
+/// Number of requests after which responses are sent although more requests are available. The app then works on these
+/// while the robot works on the others.
 const SLICE: usize = 32;
 
-/// What is digested at once of a long answer, in bytes: some sixty microseconds.
+/// Bytes of a long response that are digested at once, in about sixty microseconds.
 const DIGEST: usize = 32 * 1024;
 
-/// What is written at once, in bytes: the system copies it while nobody else has his turn.
+/// Bytes written at once. The system copies them while no other task runs.
 const WRITE: usize = 256 * 1024;
 
-/// What the work on a frame counts beside its bytes.
+/// Work per frame in addition to its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
 
-/// Nothing can be sent any more either.
+/// The reason if nothing can be sent any more.
 const BROKEN: Reason = "the connection broke";
 
-/// How a turn of the connection has ended.
+/// The end of a turn of the connection.
 enum Turn {
-    /// All that it may do at once is done.
+    /// The turn has used up its work.
     Spent,
-    /// And the connection with it.
+    /// The connection has ended.
     Over(Reason),
 }
 
-/// Why nothing more can be received.
+/// The reason why nothing more can be received.
 enum End {
-    /// Answers cannot be sent either.
+    /// Responses cannot be sent either.
     Broken,
-    /// Answers can still be sent: the app has closed its half, or what it sends cannot be told into
-    /// frames.
+    /// Responses can still be sent: the app has closed its sending side, or its bytes are not frames.
     Deaf(Reason),
 }
 
@@ -76,16 +74,16 @@ pub(super) struct Driver<S, P: Protocol> {
     peer: Arc<Peer<P>>,
     service: Arc<dyn Service<P>>,
     handlers: Handlers<P>,
-    /// What is left of the turn, in bytes.
+    /// Work left in this turn, in bytes.
     turn: usize,
     gate: GateQueue,
-    /// There is no memory to read on.
+    /// `true` if there is no memory to read on.
     short: bool,
     pause: ReadPause,
-    /// What is logged of frames that could not be read, and of the limit in flight.
+    /// Log limits for unreadable frames, and for the limit of calls in flight.
     bad_frames: LogLimiter,
     in_flight: LogLimiter,
-    /// Why nothing more is read at all. What has been carried out is answered all the same.
+    /// The reason why nothing more is read. Handled requests are answered nevertheless.
     deaf: Option<Reason>,
     watch: Watchdog,
 }
@@ -127,7 +125,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             });
             match turn.await {
                 Turn::Over(reason) => break reason,
-                // There may be more to handle; first it is the others' turn.
+                // More requests may be available, but other tasks run first.
                 Turn::Spent => yield_now().await,
             }
         };
@@ -135,7 +133,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             .ended::<P>(peer.id, peer.address, "command", reason);
         self.leave();
         if peer.evicted().is_none() {
-            // A peer that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the app may neither read nor stop sending.
             let _ = timeout(CLOSING, self.link.goodbye()).await;
         }
     }
@@ -174,7 +172,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let unwritten = self.link.unwritten();
             let written = before.saturating_sub(unwritten);
             self.watch.wrote(written, &self.peer.settings, now);
-            // What is long is digested and written bit by bit, and the others have their turn in between.
+            // Long data is digested and written in pieces, with pauses for other tasks.
             let long = !sealed || (write.is_ready() && unwritten > 0);
             more &= !long;
             match write {
@@ -192,13 +190,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let activity = self.activity(now, due);
             match self.watch.poll(cx, now, &self.peer.settings, activity) {
                 Poll::Ready(late) => {
-                    // One that has fallen silent before has been counted then.
+                    // A connection that is no longer read has been counted before.
                     if self.deaf.is_none() {
                         self.peer.counters.connections_timed_out.one();
                     }
                     match late {
                         Overdue::All(reason) => return Poll::Ready(Turn::Over(reason)),
-                        // Requests before it may still be carried out.
+                        // Requests before it may still be running.
                         Overdue::Frame(reason) => self.deaf = Some(reason),
                     }
                 }
@@ -208,7 +206,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// What it is at now that all is done that can be.
+    /// Returns the activity of the connection after all possible work.
     fn activity(&mut self, now: Instant, due: Option<Instant>) -> Activity {
         let rest = self.pause.until(now);
         let inside = self.link.decoder.pending() > 0;
@@ -230,7 +228,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Says what is held for the connection.
+    /// Updates the memory held for the connection.
     fn memory(&self) {
         let (mut busy, mut idle) = (self.handlers.weight(), 0);
         let unsent = {
@@ -246,7 +244,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         self.peer.memory.hold(busy, idle + kept);
     }
 
-    /// Gives back what is not needed at this moment.
+    /// Releases unused memory.
     fn tidy(&mut self) {
         self.link.tidy();
         let mut output = self.peer.output();
@@ -255,12 +253,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Whether an answer more may be written.
+    /// Returns `true` if another response may be written.
     fn has_room(&self) -> bool {
         self.link.unwritten() + self.peer.unsent() < HIGH_WATER
     }
 
-    /// Goes on with the digests of long answers. Whether they are done.
+    /// Continues the digests of long responses. Returns `true` if they are complete.
     fn seal(&mut self) -> bool {
         if self.peer.unsent() < LONG {
             return true;
@@ -270,21 +268,21 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         output.is_sealed()
     }
 
-    /// Counts what has been answered since as much as `before` was unsent.
+    /// Subtracts new responses from the turn. `before` is the number of unsent bytes before them.
     fn charge(&mut self, before: usize) {
         let answered = self.peer.unsent().saturating_sub(before);
         self.turn = self.turn.saturating_sub(answered);
     }
 
-    /// Whether all that has been carried out is answered, and nothing more is to come.
+    /// Returns `true` if all requests are answered and no more are to come.
     fn is_drained(&self) -> bool {
         (self.peer.is_draining() || self.deaf.is_some())
             && self.peer.unsent() == 0
             && self.handlers.is_empty()
     }
 
-    /// Handles what has been received and reads on until nothing more is there, nothing more may be
-    /// taken or a slice has been handled. `Ok(true)` if there may be more to come at once.
+    /// Handles requests and reads on, until no more are available, no more may be taken, or a slice is complete.
+    /// Returns `true` if more may be available at once.
     fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
         let mut slice = SLICE;
         loop {
@@ -327,7 +325,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
             }
             if !self.has_room() {
-                // The answers have to go out first.
+                // The responses must be sent first.
                 return Ok(true);
             }
             let begins = self.link.decoder.pending() == 0;
@@ -366,7 +364,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Logs that as many handlers are at work as may be.
+    /// Logs that the limit of running handlers is reached.
     fn full(&mut self, now: Instant) {
         if let Some(held) = self.in_flight.admit(now) {
             let (protocol, held) = (P::NAME, held.shown());
@@ -376,7 +374,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Has the connection rest for the useless work that its last frame has made.
+    /// Pauses the connection for the useless work of its last frame.
     fn owe(&mut self, surplus: u64, now: Instant) {
         let unusable = self.peer.take_unusable();
         let Some((time, line)) = self.pause.owe(surplus, unusable, now) else {
@@ -390,7 +388,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Handles the next frame; `Ok(false)` if there is none yet.
+    /// Handles the next frame. Returns `false` if it has not arrived yet.
     fn take(
         &mut self,
         cx: &mut Context<'_>,
@@ -460,7 +458,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 queued.end(outcome);
             }
             Incoming::Late => peer.unusable(),
-            // Robots take no reports, and streams have a port of their own.
+            // Robots accept no reports, and streams have their own port.
             Incoming::Report | Incoming::Repeated | Incoming::Stream => {
                 peer.refuse_with(id, P::RESULTS.protocol);
             }
@@ -468,8 +466,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         Ok(true)
     }
 
-    /// Everything else that happens under the lock: reports, deadlines, what is to be sent. Says
-    /// whether there is something to send, and when the next report is due.
+    /// Handles reports, deadlines and the send buffer under the lock. Returns `true` if there is something to send, and
+    /// the deadline of the next report.
     fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.peer.lock();
         let state = &mut *guard;
@@ -524,14 +522,14 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 }
 
 impl<S, P: Protocol> Driver<S, P> {
-    /// Nothing more will be answered.
+    /// Notes that no more responses are sent.
     fn leave(&mut self) {
         self.peer.end();
         self.handlers.abandon();
     }
 }
 
-/// However the task ends.
+/// Runs however the task ends.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.leave();
@@ -539,8 +537,8 @@ impl<S, P: Protocol> Drop for Driver<S, P> {
     }
 }
 
-/// Repetitions to different apps are spread over an eighth of the wait: what many apps have not
-/// acknowledged does not go to all of them again at once.
+/// Spreads repetitions to different apps over an eighth of the wait, so that many unacknowledged reports are not
+/// repeated at once.
 fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
     const PLACES: u32 = 32;
     let place = u32::try_from(connection.0 % u64::from(PLACES)).unwrap_or_default();
@@ -551,7 +549,7 @@ fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
     }
 }
 
-/// What an app has answered to a report.
+/// Returns the outcome of an app's response to a report.
 fn acknowledged<P: Protocol>(body: &[u8], allowance: Allowance) -> AckOutcome {
     match read_enveloped::<P::Response, Empty>(body, allowance) {
         Err(error) => AckOutcome::Invalid(error),

@@ -1,4 +1,4 @@
-//! What comes before the first frame: TLS, or nothing.
+//! The handshake before the first frame, such as that of TLS.
 
 use super::connection_id::ConnectionId;
 use super::counters::Counters;
@@ -8,16 +8,16 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// Why there is nothing to serve.
+/// The reason for the end of a handshake.
 enum Failed {
     Late,
     Broken(io::Error),
-    /// Another has taken its place, or the server ends.
+    /// The connection was replaced, or the server ends.
     Gone,
 }
 
-/// Waits for a handshake, but not for longer than `limit` nor than until `gone`. `None`, counted and
-/// logged, if it comes to nothing.
+/// Waits for a handshake, for up to `limit` or until `gone`. A failed handshake is counted and logged, and returns
+/// `None`.
 pub(super) async fn shake<P: Protocol, S>(
     handshake: impl Future<Output = io::Result<S>>,
     gone: impl Future<Output = ()>,

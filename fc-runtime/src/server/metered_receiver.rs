@@ -1,4 +1,4 @@
-//! The receiving half of a robot's data connection: large frames pass the gate, and memory is asked for.
+//! The receiving half of a robot's data connection, with limits on memory and large frames.
 
 use super::budget::ConnectionMemory;
 use super::gate::{Gate, LARGE, through};
@@ -10,7 +10,7 @@ use std::io;
 use std::sync::Arc;
 use tokio::io::AsyncRead;
 
-/// A receiver within the bounds of a robot.
+/// A receiver that reserves memory, and passes the gate for large frames.
 pub(super) struct MeteredReceiver<R, P: Protocol> {
     receiver: Receiver<R, P>,
     gate: Gate,
@@ -26,7 +26,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         }
     }
 
-    /// The next frame; `None` at the end. Cancellation safe.
+    /// Returns the next frame, or `None` at the end. Cancellation safe.
     pub(super) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         loop {
             if let Some(frame) = self.pass().await? {
@@ -39,7 +39,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         }
     }
 
-    /// The next frame that has arrived, as soon as it may be dealt with.
+    /// Returns the next complete frame, after the gate if it is large.
     async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let receiver = &mut self.receiver;
         let taken = if let Some(work) = receiver.decoder().work(LARGE) {
@@ -57,8 +57,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         taken
     }
 
-    /// Reads once; 0 at the end of the stream. Without memory until something has come, and then with
-    /// as much as there is for it.
+    /// Reads once. Returns 0 at the end of the stream. Memory is reserved only after bytes have arrived.
     async fn read_on(&mut self) -> Result<usize, StreamError> {
         let decoder = self.receiver.decoder();
         if decoder.is_bare() {
@@ -71,17 +70,17 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         self.receiver.fill().await
     }
 
-    /// Reads on to the end of the stream, and looks at nothing.
+    /// Reads and drops everything up to the end of the stream.
     pub(super) async fn skip_to_end(&mut self) -> io::Result<()> {
         self.receiver.skip_to_end().await
     }
 
-    /// Bytes received since this was last asked.
+    /// Returns the number of bytes received since the last call.
     pub(super) fn take_received(&mut self) -> usize {
         self.receiver.take_received()
     }
 
-    /// What [`Decoder::take_surplus`](crate::frame::Decoder::take_surplus) says.
+    /// Calls [`Decoder::take_surplus`](crate::frame::Decoder::take_surplus).
     pub(super) fn take_surplus(&mut self) -> u64 {
         self.receiver.decoder().take_surplus()
     }

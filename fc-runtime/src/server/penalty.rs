@@ -1,33 +1,30 @@
-//! What a connection pays for when its frames make work and cannot be used: for a while nothing is
-//! read from it, and the others have the robot to themselves.
+//! Penalties for connections whose frames cause useless work: they are not read for a while.
 
 use crate::clock;
 use crate::log_limiter::{LogLimiter, Suppressed};
 use crate::session::after;
 use std::time::{Duration, Instant};
 
-/// How much a connection may have decompressed for it, in bytes per second, beyond the bytes it has
-/// sent.
+/// Inflated bytes per second that a connection may cause beyond the bytes it has sent.
 const INFLATED: u64 = 128 * 1024 * 1024;
 
-/// What a frame costs that cannot be used: what is answered as a protocol error, as invalid or as
-/// expired, and answers that nobody waits for.
+/// Penalty for an unusable frame: a protocol error, an invalid or expired message, or a response to no request.
 const UNUSABLE: Duration = Duration::from_millis(1);
 
-/// So many of these are free, and are so again once the time they cost has passed: an app of another
-/// version notices nothing.
+/// Number of unusable frames without a penalty. They become free again after the time they cost. So an app of another
+/// version is not slowed down.
 const FREE: u32 = 256;
 
-/// What one connection has to pay for.
+/// The penalty of one connection for unusable frames.
 #[derive(Debug, Default)]
 pub(super) struct Penalty {
     owed: Duration,
-    /// When that much was owed.
+    /// Time of the last update.
     at: Option<Instant>,
 }
 
 impl Penalty {
-    /// How long the connection rests after so many frames that could not be used.
+    /// Returns the pause after this many unusable frames.
     pub(super) fn unusable(&mut self, frames: u32, now: Instant) -> Duration {
         if let Some(at) = self.at.replace(now) {
             self.owed = self.owed.saturating_sub(now.saturating_duration_since(at));
@@ -37,12 +34,12 @@ impl Penalty {
     }
 }
 
-/// How long a connection rests after so many bytes were decompressed for it.
+/// Returns the pause after this many surplus bytes have been inflated.
 pub(super) fn inflated(surplus: u64) -> Duration {
     Duration::from_micros(surplus.saturating_mul(1_000_000) / INFLATED)
 }
 
-/// When a connection is not read because of what it owes.
+/// The pause of a connection that is not read because of a penalty.
 #[derive(Debug, Default)]
 pub(super) struct ReadPause {
     penalty: Penalty,
@@ -51,14 +48,14 @@ pub(super) struct ReadPause {
 }
 
 impl ReadPause {
-    /// When it is over, if the connection rests.
+    /// Returns the end of the pause, or `None` without one.
     pub(super) fn until(&mut self, now: Instant) -> Option<Instant> {
         self.until = self.until.filter(|until| *until > now);
         self.until
     }
 
-    /// Notes what the last frames have cost: bytes decompressed beyond those that came, and frames that
-    /// could not be used. Gives the new rest, if there is one, and what to log of it.
+    /// Adds the cost of the last frames: inflated bytes beyond those received, and unusable frames. Returns the new
+    /// pause, if there is one, and the state of the log limit.
     pub(super) fn owe(
         &mut self,
         surplus: u64,

@@ -1,24 +1,23 @@
-//! A handler at handler as those see it who go on with it: neither its protocol nor its answer is told.
+//! Running handlers, independent of protocol and response.
 
 use crate::operation::Effect;
 use std::task::{Context, Poll};
 
-/// What moves must not stop because an app is gone, and what nobody knows may move.
+/// Returns `true` if a handler must not stop when its app is gone, because it may move something.
 pub(super) fn outlives(effect: Effect) -> bool {
     matches!(effect, Effect::Motion | Effect::Unknown)
 }
 
 /// A handler that was not ready at once.
 pub(super) trait RunningHandler: Send {
-    /// Goes on with it; once it has ended, its answer is sent if somebody `waits` for it. Does not
-    /// panic.
+    /// Continues the handler. When it ends, its response is sent if `waits` is `true`. Does not panic.
     fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()>;
 
-    /// Whether it runs to its end also when nobody waits for its answer any more.
+    /// Returns `true` if the handler runs to its end without a waiting app.
     fn outlives(&self) -> bool;
 }
 
-/// A handler at handler, and how much memory its request takes, in bytes.
+/// A running handler, and the memory of its request in bytes.
 pub(super) struct StartedHandler {
     pub(super) handler: Box<dyn RunningHandler>,
     pub(super) weight: usize,

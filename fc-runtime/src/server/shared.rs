@@ -1,4 +1,4 @@
-//! What a server's tasks share: who is connected, who may be, and when all of it ends.
+//! The state that all tasks of a server share: its connections, their limits, and the shutdown.
 
 use super::allow::Effects;
 use super::budget::{ConnectionMemory, MemoryBudget, MemoryHolder};
@@ -32,16 +32,16 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::sleep_until;
 
-/// Where a server is in its life.
+/// The lifecycle of a server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Life {
     Running,
-    /// To be over by then.
+    /// Ends at this time at the latest.
     Stopping(Instant),
     Over,
 }
 
-/// Behind every handle and every task of a server.
+/// The state behind all handles and tasks of a server.
 pub(super) struct Shared<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     service: Arc<dyn Service<P>>,
@@ -57,7 +57,7 @@ pub(super) struct Shared<P: Protocol> {
     life: watch::Sender<Life>,
 }
 
-/// Why a silent connection has ended, for the log.
+/// The reason of a replaced connection, for the log.
 const DISPLACED: &str = "another has taken its place";
 
 impl<P: Protocol> Shared<P> {
@@ -78,7 +78,7 @@ impl<P: Protocol> Shared<P> {
         })
     }
 
-    /// What may be called from an address; `None`, counted and logged, if nobody may connect from there.
+    /// Returns the allowed effects for an address. If it may not connect, counts and logs that and returns `None`.
     fn allowed(&self, address: SocketAddr) -> Option<Effects> {
         let effects = self.settings.allowed.effects(address.ip());
         if effects.is_none() {
@@ -91,7 +91,7 @@ impl<P: Protocol> Shared<P> {
         effects
     }
 
-    /// Serves one more command connection, or closes it if it may not be or there are too many.
+    /// Serves a new command connection, or closes it if it is forbidden or there are too many.
     pub(super) fn serve<S: Transport>(
         self: &Arc<Self>,
         handshake: impl Future<Output = io::Result<S>> + Send + 'static,
@@ -128,7 +128,7 @@ impl<P: Protocol> Shared<P> {
         Some(id)
     }
 
-    /// Serves one more data connection, or closes it if it may not be or there are too many.
+    /// Serves a new data connection, or closes it if it is forbidden or there are too many.
     pub(super) fn serve_data<S: Transport>(
         self: &Arc<Self>,
         handshake: impl Future<Output = io::Result<S>> + Send + 'static,
@@ -154,7 +154,8 @@ impl<P: Protocol> Shared<P> {
             answers: sender.downgrade(),
             gate: self.gate.clone(),
         };
-        // Whoever only receives is known by his commands. Looked up once, and only if there are too many.
+        // An app that only receives is known by its command connection. The list is created once, and only if there are
+        // too many connections.
         let speakers = OnceCell::new();
         let silent = |from: IpAddr, data: &DataEntry| {
             !data.heard.load(Ordering::Relaxed)
@@ -168,12 +169,12 @@ impl<P: Protocol> Shared<P> {
             owner,
             _entered: entered,
         };
-        // A displaced one ends when its entry is dropped.
+        // A replaced connection ends when its entry is dropped.
         drop(
             self.admit(&self.data_peers, id, address, entry, silent)
                 .ok()?,
         );
-        // After it has been entered: whoever comes from now on notes himself.
+        // Look only after the entry has been added: later connections note themselves in it.
         let apps: Vec<_> = lock(&self.peers)
             .iter()
             .filter(|(_, from, _)| *from == address.ip())
@@ -200,7 +201,7 @@ impl<P: Protocol> Shared<P> {
         Some(id)
     }
 
-    /// Addresses from which something has come at the command port.
+    /// Returns the addresses from which data has arrived at the command port.
     fn speakers(&self) -> HashSet<IpAddr> {
         let peers = lock(&self.peers);
         let heard = peers.iter().filter(|(_, _, peer)| peer.is_heard());
@@ -211,8 +212,8 @@ impl<P: Protocol> Shared<P> {
         ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Enters a connection into a table. If the table is full or holds too many of the same address,
-    /// one that is `silent` gives way and is handed back; if there is none, the new one is refused.
+    /// Adds a connection to a table. If the table is full or has too many connections of the address, a `silent` one is
+    /// replaced and returned. Without a silent one, the new connection is refused.
     fn admit<T>(
         &self,
         table: &Mutex<Table<T>>,
@@ -224,7 +225,7 @@ impl<P: Protocol> Shared<P> {
         let settings = &self.settings;
         let address = address.ip();
         let mut table = lock(table);
-        // Under the lock: whoever stops the server looks at the table afterwards.
+        // Check under the lock, because a shutdown looks at the table afterwards.
         if *self.life.borrow() != Life::Running {
             return Err(NotAdmitted);
         }
@@ -270,24 +271,24 @@ impl<P: Protocol> Shared<P> {
 
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
         let mut tasks = lock(&self.tasks);
-        // Under the lock: what is spawned after the end would never be cut off.
+        // Check under the lock, because a task spawned after the end would never be aborted.
         if *self.life.borrow() == Life::Over {
             return;
         }
-        // Those that have ended are of no interest, but they take room.
+        // Remove ended tasks, because they take memory.
         while tasks.try_join_next().is_some() {}
         tasks.spawn(task);
     }
 
-    /// Resolves once the server is to stop.
+    /// Resolves when the server is to stop.
     pub(super) async fn stop_requested(&self) {
         let mut life = self.life.subscribe();
-        // An error would mean that there is no server any more.
+        // An error would mean that the server no longer exists.
         let _ = life.wait_for(|life| *life != Life::Running).await;
     }
 
-    /// Takes no more connections and requests, and lets those there are end by themselves until
-    /// `deadline`. Of several deadlines the earliest counts.
+    /// Accepts no more connections and requests, and lets existing ones end until `deadline`. Of several deadlines the
+    /// earliest applies.
     pub(super) fn stop(&self, deadline: Instant) {
         self.life.send_if_modified(|life| {
             let sooner = match *life {
@@ -307,23 +308,23 @@ impl<P: Protocol> Shared<P> {
         for peer in peers {
             peer.drain();
         }
-        // Data connections end when what waits for them is sent.
+        // Data connections end when their queued frames are sent.
         lock(&self.data_peers).clear();
     }
 
-    /// Waits until all connections and handlers have ended, and cuts them off when it is time.
+    /// Waits until all connections and handlers have ended, and aborts them at the deadline.
     pub(super) async fn drain(&self) {
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
             drop(tasks);
-            // Where there are no connections, no more handlers are left behind.
+            // Without connections, no more handlers are detached.
             self.detached.poll_ended(cx)
         });
         self.over(all).await;
     }
 
-    /// Waits for `all`, for the end of the server, or for the deadline, and ends it then.
+    /// Waits for `all`, for the end of the server, or for the deadline, at which it ends the server.
     pub(super) async fn over(&self, all: impl Future<Output = ()>) {
         let mut life = self.life.subscribe();
         let mut all = pin!(all);
@@ -368,7 +369,7 @@ impl<P: Protocol> Shared<P> {
 }
 
 impl<P: Protocol> Shared<P> {
-    /// The data connections of an audience.
+    /// Returns the data connections of an audience.
     pub(super) fn data_audience(&self, audience: Audience) -> Result<Vec<Outbox>, PushError> {
         let Audience::One(id) = audience else {
             let data_peers = lock(&self.data_peers);
@@ -396,7 +397,7 @@ impl<P: Protocol> Shared<P> {
     }
 }
 
-/// Where streams for one data connection go.
+/// The queue for streams to one data connection.
 pub(super) struct Outbox {
     sender: mpsc::Sender<Outgoing>,
     memory: Arc<ConnectionMemory>,
@@ -410,7 +411,7 @@ impl Outbox {
         }
     }
 
-    /// Queues a frame as soon as there is room and memory for it; `false` if the connection has ended.
+    /// Queues a frame when there is room and memory for it. Returns `false` if the connection has ended.
     pub(super) async fn send(&self, id: FrameId, body: Prepared) -> bool {
         let charge = poll_fn(|cx| self.memory.poll_queue(cx, body.len())).await;
         let frame = Outgoing { id, body, charge };
@@ -418,10 +419,10 @@ impl Outbox {
     }
 }
 
-/// There is no room for a connection, or no server any more.
+/// There is no room for a connection, or the server has ended.
 struct NotAdmitted;
 
-/// A connection's entry in the table; removes itself.
+/// Removes the table entry of a connection when it is dropped.
 struct Registered<P: Protocol> {
     shared: Arc<Shared<P>>,
     id: ConnectionId,

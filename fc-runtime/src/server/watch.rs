@@ -1,4 +1,4 @@
-//! What has to come, or go, in time on a command connection.
+//! Time limits of a command connection.
 
 use super::config::Settings;
 use crate::rate::RateMeter;
@@ -7,49 +7,49 @@ use crate::sync::Alarm;
 use std::task::{Context, Poll};
 use std::time::Instant;
 
-/// Why a connection has ended, for the log.
+/// The reason for the end of a connection, for the log.
 pub(super) type Reason = &'static str;
 
-/// What bytes a connection waits for.
+/// The bytes that a connection waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Expected {
-    /// For none.
+    /// No bytes.
     Nothing,
-    /// For a frame.
+    /// A frame.
     Frame,
-    /// For the rest of one.
+    /// The rest of a frame.
     Rest,
 }
 
-/// What a connection is at when it has done all it can for now.
+/// The activity of a connection after all possible work.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Activity {
     pub(super) expected: Expected,
-    /// Something is to be sent that the app does not take.
+    /// `true` if the app does not take bytes that are to be sent.
     pub(super) unwritten: bool,
-    /// Nothing has come that is not answered.
+    /// `true` if no received request is unanswered.
     pub(super) idle: bool,
-    /// When it has to go on by itself.
+    /// Time at which the connection must continue.
     pub(super) due: Option<Instant>,
 }
 
-/// What did not come in time.
+/// An exceeded time limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Overdue {
-    /// The rest of a frame: nothing more can be read, but answered.
+    /// The rest of a frame is late. The connection cannot be read any more, but responses can be sent.
     Frame(Reason),
-    /// Anything else: the connection is of no more use.
+    /// Anything else. The connection cannot be used any more.
     All(Reason),
 }
 
-/// When something last happened on a connection, and the timer for what is next.
+/// Times of the last events of a connection, and the timer for the next limit.
 pub(super) struct Watchdog {
-    /// The first byte of a header that is not whole yet.
+    /// Arrival of the first byte of an incomplete header.
     header: Option<Instant>,
-    /// Of the frame that has begun to arrive, while it is read.
+    /// Rate of the arriving frame while it is read.
     read: RateMeter,
     reads: bool,
-    /// Of what is to be sent.
+    /// Rate of the sent bytes.
     written: RateMeter,
     frame: Instant,
     alarm: Alarm,
@@ -67,39 +67,39 @@ impl Watchdog {
         }
     }
 
-    /// The first bytes of a frame have come.
+    /// Notes the first bytes of a frame.
     pub(super) fn begins(&mut self, now: Instant) {
         self.read = RateMeter::new(now);
     }
 
-    /// More bytes of it have come.
+    /// Notes further bytes of a frame.
     pub(super) fn received(&mut self, bytes: usize, settings: &Settings, now: Instant) {
         self.read.add(bytes, settings.stall.bytes, now);
     }
 
-    /// All that has come has been looked at, and it ends `inside` a header, or not.
+    /// Notes that all received bytes have been read. They may end inside a header.
     pub(super) fn ends_inside_header(&mut self, inside: bool, now: Instant) {
         self.header = inside.then(|| self.header.unwrap_or(now));
     }
 
-    /// A whole frame has come.
+    /// Notes a complete frame.
     pub(super) fn frame(&mut self, now: Instant) {
         self.header = None;
         self.read = RateMeter::new(now);
         self.frame = now;
     }
 
-    /// Something new is to be sent.
+    /// Notes new bytes to be sent.
     pub(super) fn loads(&mut self, now: Instant) {
         self.written = RateMeter::new(now);
     }
 
-    /// So much of it has been taken.
+    /// Notes sent bytes.
     pub(super) fn wrote(&mut self, bytes: usize, settings: &Settings, now: Instant) {
         self.written.add(bytes, settings.stall.bytes, now);
     }
 
-    /// Says what is late, or has `cx` woken when the next thing is.
+    /// Returns an exceeded limit, or wakes the task of `cx` at the next one.
     pub(super) fn poll(
         &mut self,
         cx: &mut Context<'_>,
@@ -109,7 +109,7 @@ impl Watchdog {
     ) -> Poll<Overdue> {
         let reads = activity.expected != Expected::Nothing;
         if reads && !self.reads {
-            // What could not come meanwhile is not missed.
+            // Bytes that were not read meanwhile are not late.
             self.read = RateMeter::new(now);
         }
         self.reads = reads;
