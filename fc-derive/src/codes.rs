@@ -1,11 +1,11 @@
-//! That no two operations of a dispatch have the same code.
+//! The check that all operations of a dispatch have different codes.
 
 use crate::span::moved;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::Path;
 
-/// Refuses, at the span of the later one, two equal codes.
+/// Reports a repeated code at the span of its later occurrence.
 pub fn distinct(
     runtime: &Path,
     codes: &[TokenStream],

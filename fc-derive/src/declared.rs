@@ -1,4 +1,4 @@
-//! `#[derive(DeclaredError)]`: the results besides success that a command declares.
+//! `#[derive(DeclaredError)]`: the errors that a command declares.
 
 use crate::attr::{self, Item, NumberValue, Slot};
 use crate::faults::Faults;
@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Token, Variant};
 
-/// Writes the implementation, or the faults and a stub.
+/// Writes the implementation, or errors and a stub.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let item = "an enum of errors";
     let runtime = item::read_attributes(input, &mut faults, item, &mut |_, _| Ok(Item::Unknown));
@@ -102,7 +102,7 @@ fn code(ident: &Ident, runtime: &Path, errors: &[Declared<'_>]) -> TokenStream {
     }
 }
 
-/// An implementation that does nothing, for an enum with faults.
+/// Returns an implementation that does nothing, for an enum with errors.
 fn stub(ident: &Ident, runtime: &Path) -> TokenStream {
     quote! {
         #[automatically_derived]

@@ -1,4 +1,4 @@
-//! `#[derive(Defaults)]`: what the absence of a field means.
+//! `#[derive(Defaults)]`: the meaning of absent fields.
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
@@ -10,7 +10,7 @@ use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Expr, Fields, Ident, Token, Type};
 
-/// Writes a constant and an accessor for each default, or the faults.
+/// Writes a constant and an accessor for each default, or errors.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let mut found = Vec::new();
     if let Data::Struct(data) = &input.data
@@ -28,10 +28,10 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     faults.finish(|| code(input, &found), TokenStream::new)
 }
 
-/// A field whose absence means something.
+/// A field with a default.
 struct Defaulted<'a> {
     ident: &'a Ident,
-    /// What its `Option` holds.
+    /// Inner type of its `Option`.
     ty: &'a Type,
     default: Expr,
 }
@@ -45,7 +45,7 @@ impl<'a> Defaulted<'a> {
                 at = Some(key.span());
                 return default.set(key, expression(input));
             }
-            // `Message` reads the rest, and refuses what nobody reads.
+            // `Message` reads all other keys and reports unknown ones.
             Ok(Item::Foreign)
         });
         let ty = optional(&field.ty);
@@ -69,8 +69,8 @@ impl<'a> Defaulted<'a> {
         let span = span_of(ident);
         let constant = Ident::new(&format!("DEFAULT_{}", name.to_uppercase()), span);
         let accessor = Ident::new(&format!("{name}_or_default"), span);
-        let constant_docs = format!("What the absence of `{name}` means.");
-        let accessor_docs = format!("`{name}`, or what its absence means.");
+        let constant_docs = format!("The meaning of an absent `{name}`.");
+        let accessor_docs = format!("Returns `{name}`, or its default if it is absent.");
         let (held, borrowed, value) = if is_string(ty) {
             (
                 quote_spanned!(span=> &'static ::core::primitive::str),

@@ -8,7 +8,7 @@ use quote::quote;
 use syn::parse::ParseStream;
 use syn::{DeriveInput, Field, Ident, LitStr, Path, Type};
 
-/// Writes the envelope trait, or the faults and a stub.
+/// Writes the envelope trait, or errors and a stub.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let envelope = Envelope::read(input, &mut faults);
     faults.finish(|| code(&envelope), || stub(&envelope))
@@ -17,7 +17,7 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
 struct Envelope<'a> {
     ident: &'a Ident,
     runtime: Path,
-    /// `None` if it is not said or said wrong.
+    /// `None` if it is missing or invalid.
     side: Option<Side>,
     time: Option<Part<'a>>,
     result_code: Option<Part<'a>>,
@@ -88,7 +88,7 @@ impl<'a> Envelope<'a> {
                 if key == "role" {
                     return role.set(key, read_role(input));
                 }
-                // `Message` reads the rest, and refuses what nobody reads.
+                // `Message` reads all other keys and reports unknown ones.
                 Ok(Item::Foreign)
             },
         );
@@ -217,7 +217,7 @@ fn trait_name(envelope: &Envelope<'_>) -> Ident {
     Ident::new(name, Span::call_site())
 }
 
-/// An implementation that does nothing, for an envelope with faults.
+/// Returns an implementation that does nothing, for an envelope with errors.
 fn stub(envelope: &Envelope<'_>) -> TokenStream {
     let Envelope { ident, runtime, .. } = envelope;
     if envelope.side.is_none() {

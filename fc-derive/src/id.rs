@@ -1,4 +1,4 @@
-//! `#[derive(Id)]`: an id with a type of its own, which travels as what it holds.
+//! `#[derive(Id)]`: an id with its own type, sent as its inner value.
 
 use crate::attr::Item;
 use crate::faults::Faults;
@@ -8,10 +8,10 @@ use proc_macro2::TokenStream;
 use quote::quote_spanned;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
 
-/// What an id may hold beside a `String`.
+/// Inner types of an id besides `String`.
 const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
 
-/// Writes the implementations, or the faults.
+/// Writes the implementations, or errors.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let runtime = item::read_attributes(input, &mut faults, "an id", &mut |_, _| Ok(Item::Unknown));
     let held = held(input, &mut faults);
@@ -21,13 +21,13 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     )
 }
 
-/// What an id holds.
+/// The inner type of an id.
 enum Held<'a> {
     Integer(&'a Type),
     Text(&'a Type),
 }
 
-/// What it holds; a fault where that cannot be an id.
+/// Returns the inner type, or reports an invalid one.
 fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
     const WANTED: &str =
         "an id is a struct of one integer or `String`, such as `struct StationId(pub i64)`";
@@ -116,7 +116,7 @@ fn code(ident: &Ident, runtime: &Path, held: &Held<'_>) -> TokenStream {
     all.into_iter().chain(own).collect()
 }
 
-/// What a number may be on the wire besides itself, and its constraints.
+/// Returns the wire forms and constraints of an integer.
 fn of_integer(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     quote_spanned! {span_of(ty)=>
         #[automatically_derived]
@@ -152,7 +152,7 @@ fn of_integer(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     }
 }
 
-/// The constraints of a text, and the ways to make and to lend one.
+/// Returns the constraints and conversions of a string.
 fn of_text(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     quote_spanned! {span_of(ty)=>
         #[automatically_derived]

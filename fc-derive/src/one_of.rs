@@ -9,7 +9,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
-/// Writes the implementations, or the faults and stubs.
+/// Writes the implementations, or errors and stubs.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let item = "a choice of messages";
     let runtime = item::read_attributes(input, &mut faults, item, &mut |_, _| Ok(Item::Unknown));
@@ -21,7 +21,7 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     )
 }
 
-/// The variants and their messages.
+/// Returns the variants and their messages.
 fn read_variants<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Vec<(&'a Ident, &'a Type)> {
     let hint = "; a struct is a `Message`";
     let Some(variants) = item::variants(input, faults, "`OneOf` is for enums", hint) else {

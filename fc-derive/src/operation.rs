@@ -1,4 +1,4 @@
-//! `#[derive(Command)]` and `#[derive(Report)]`: what ties a message to its code.
+//! `#[derive(Command)]` and `#[derive(Report)]`: the code and further properties of a message.
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
@@ -9,7 +9,7 @@ use quote::quote;
 use syn::parse::{Parse as _, ParseStream};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
-/// What the attributes say of an operation.
+/// The attributes of an operation.
 #[derive(Default)]
 struct Operation {
     runtime: Slot<Path>,
@@ -59,7 +59,7 @@ impl Operation {
             "sets_off" => self.sets_off.set(key, process::sets_off(input)),
             "state" => self.state.set(key, process::state(input)),
             "failure" => self.failure.set(key, process::ways(input)),
-            // `Message` reads the rest, and refuses what nobody reads.
+            // `Message` reads all other keys and reports unknown ones.
             _ => Ok(Item::Foreign),
         }
     }
@@ -134,12 +134,12 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
     }
 }
 
-/// Refuses a struct that lacks an attribute, by showing one.
+/// Returns the error of a missing attribute, with an example.
 fn missing(key: &str, example: &str) -> String {
     format!("`{key}` is missing: `#[fc({key} = {example})]`")
 }
 
-/// Writes `Command`, or the faults and a stub.
+/// Writes `Command`, or errors and a stub.
 pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let operation = Operation::read(input, &mut faults);
     let runtime = attr::runtime(operation.runtime);
@@ -215,7 +215,7 @@ pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     )
 }
 
-/// Writes `Report`, or the faults and a stub.
+/// Writes `Report`, or errors and a stub.
 pub fn expand_report(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let operation = Operation::read(input, &mut faults);
     let runtime = attr::runtime(operation.runtime);

@@ -8,7 +8,7 @@ use quote::quote;
 use syn::ext::IdentExt as _;
 use syn::{DeriveInput, Field, Ident};
 
-/// Writes `Debug`, or the faults and a stub.
+/// Writes `Debug`, or errors and a stub.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let fields: Vec<_> = item::named_fields(input, &mut faults, "RedactedDebug")
         .into_iter()
@@ -17,14 +17,14 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     faults.finish(|| code(input, &fields), || code(input, &[]))
 }
 
-/// A field and whether it is sensitive.
+/// Reads a field. The bool is `true` for a sensitive one.
 fn read<'a>(field: &'a Field, faults: &mut Faults) -> Option<(&'a Ident, bool)> {
     let mut sensitive = Slot::default();
     attr::read(&field.attrs, faults, "a field", &mut |key, _| {
         if key == "sensitive" {
             return sensitive.set(key, Ok(()));
         }
-        // `Message` reads the rest, and refuses what nobody reads.
+        // `Message` reads all other keys and reports unknown ones.
         Ok(Item::Foreign)
     });
     Some((field.ident.as_ref()?, sensitive.get().is_some()))

@@ -1,4 +1,4 @@
-//! `#[derive(Dispatch)]`: an enum of reports, told apart by code.
+//! `#[derive(Dispatch)]`: an enum of reports, distinguished by code.
 
 use crate::attr::{self, Item, Slot};
 use crate::codes::distinct;
@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
-/// Writes `from_raw`, or the faults.
+/// Writes `from_raw`, or errors.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let mut protocol = Slot::default();
     let item = "an enum of reports";
@@ -104,10 +104,10 @@ fn code(
 
         #[automatically_derived]
         impl #ident {
-            /// Reads a report as the type that its code says.
+            /// Reads a report as the type of its code.
             ///
             /// # Errors
-            /// What is wrong with the report's text, or with a key of that type.
+            /// The error of the report's text or of a key of that type.
             pub fn from_raw(
                 raw: #raw,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {

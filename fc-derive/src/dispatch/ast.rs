@@ -1,5 +1,5 @@
-//! The trait, as far as it matters here. (Parsing it by `syn` needs the feature `full`, which costs
-//! every user of a generated crate a second.)
+//! The relevant parts of the trait. Parsing it with `syn` needs the feature `full`, which costs every user of a
+//! generated crate a second.
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
@@ -15,7 +15,7 @@ pub struct Options {
     pub protocol: Option<Path>,
     /// Name of the service.
     pub service: Option<Ident>,
-    /// Name of the trait of which every method may be left out, if there is to be one.
+    /// Name of the trait with optional methods, if there is one.
     pub partial: Option<Ident>,
 }
 
@@ -42,7 +42,7 @@ impl Options {
             };
         let result = parser.parse2(arguments);
         faults.ok(result);
-        // There is nothing to point at but the attribute itself, which is where `None` ends up.
+        // `None` points at the attribute, because there is no other token.
         let nothing = TokenStream::new();
         protocol.required(faults, &nothing, "`protocol = …` is missing");
         service.required(faults, &nothing, "`service = …` is missing");
@@ -67,7 +67,7 @@ pub struct Service {
     pub visibility: Visibility,
     pub trait_token: Token![trait],
     pub ident: Ident,
-    /// What stands between the name and the methods.
+    /// Tokens between the name and the methods.
     pub bounds: TokenStream,
     pub methods: Vec<Method>,
 }
@@ -82,10 +82,10 @@ pub struct Method {
     pub ident: Ident,
     /// Everything between the parentheses.
     pub arguments: TokenStream,
-    /// The types of the arguments behind `&self`.
+    /// Types of the arguments after `&self`.
     pub types: Vec<Type>,
     pub has_self: bool,
-    /// What it answers.
+    /// Return type.
     pub output: Option<Type>,
     pub body: Option<Group>,
 }
@@ -176,7 +176,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(bool, Vec<Type>)> {
         }
     }
     while !input.is_empty() {
-        // The name of an argument, whatever it looks like.
+        // Skips the pattern of an argument.
         while !input.is_empty() && (!input.peek(Token![:]) || input.peek(Token![::])) {
             input.parse::<TokenTree>()?;
         }
@@ -189,7 +189,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(bool, Vec<Type>)> {
     Ok((has_self, types))
 }
 
-/// The item without `#[fc(…)]`, which nobody would know once this macro has gone.
+/// Returns the item without `#[fc(…)]`, which is unknown after this macro.
 pub fn without_attributes(item: TokenStream) -> TokenStream {
     let mut tokens: Vec<TokenTree> = Vec::new();
     for token in item {

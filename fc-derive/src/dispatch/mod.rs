@@ -1,4 +1,4 @@
-//! `#[dispatch]`: a trait of methods, one per command, made into a service.
+//! `#[dispatch]`: makes a trait of methods, one per command, into a service.
 
 mod ast;
 mod declaration;
@@ -10,7 +10,7 @@ use crate::faults::Faults;
 use ast::{Options, Service};
 use proc_macro2::TokenStream;
 
-/// Writes the trait and its service, or the faults and the trait.
+/// Writes the trait and its service, or errors and the trait.
 pub fn expand(attribute: TokenStream, item: TokenStream) -> TokenStream {
     let mut faults = Faults::default();
     let options = Options::read(attribute, &mut faults);

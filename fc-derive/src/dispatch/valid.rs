@@ -1,21 +1,21 @@
-//! Which codes each method serves, and what a service's trait must be like.
+//! The codes that each method serves, and requirements of the trait.
 
 use super::ast::{Method, Service};
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
 use syn::{LitInt, Token};
 
-/// The methods by what they serve.
+/// The methods by their codes.
 pub struct Roles<'s> {
-    /// Each serves the command that its request type says.
+    /// Methods for the command of their request type.
     pub commands: Vec<&'s Method>,
-    /// Each serves the codes of a range.
+    /// Methods for a range of codes.
     pub ranges: Vec<(&'s Method, Range)>,
-    /// Serves every other code.
+    /// The method for all other codes.
     pub unknown: &'s Method,
 }
 
-/// Codes from the first to the last, both included, as they are written.
+/// A range of codes as written, both ends included.
 pub struct Range {
     pub first: LitInt,
     pub last: LitInt,
@@ -28,7 +28,7 @@ impl Range {
     }
 }
 
-/// Finds the faults of each method's signature.
+/// Reports invalid method signatures.
 pub fn check(service: &Service, faults: &mut Faults) {
     for method in &service.methods {
         let message = if !method.is_async {
@@ -46,7 +46,7 @@ pub fn check(service: &Service, faults: &mut Faults) {
     }
 }
 
-/// Finds out what each method serves; `None` if that has a fault.
+/// Returns the codes of each method, or `None` after an error.
 pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>> {
     let mut commands = Vec::new();
     let mut ranges: Vec<(&Method, Range)> = Vec::new();

@@ -1,4 +1,4 @@
-//! What a header is made of, as its attributes say.
+//! A header with its attributes.
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
@@ -14,11 +14,11 @@ pub struct Header<'a> {
     pub runtime: Path,
     /// `byte_order`.
     pub byte_order: ByteOrder,
-    /// Fields in the order in which they travel.
+    /// Fields in the order in which they are sent.
     pub fields: Vec<Field<'a>>,
 }
 
-/// Order of the bytes of an integer.
+/// The byte order of integers.
 #[derive(Clone, Copy)]
 pub enum ByteOrder {
     /// Most significant byte first.
@@ -33,9 +33,9 @@ pub struct Field<'a> {
     pub ident: &'a Ident,
     /// Its type.
     pub ty: &'a Type,
-    /// Its width and kind; `None` if its type has a fault.
+    /// Width and kind, or `None` if the type is invalid.
     pub shape: Option<Shape>,
-    /// Bytes before it.
+    /// Offset in bytes.
     pub offset: usize,
     /// `role`.
     pub role: Slot<(LitStr, Role)>,
@@ -45,17 +45,17 @@ pub struct Field<'a> {
     pub algorithm: Slot<(LitStr, Algorithm)>,
 }
 
-/// Width and kind of a field.
+/// The width and kind of a field.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// An integer of so many bytes.
+    /// An integer of this many bytes.
     Int(usize),
-    /// A run of bytes.
+    /// A byte array.
     Bytes(usize),
 }
 
 impl Field<'_> {
-    /// What it digests by: MD5 unless it says so.
+    /// Returns the digest algorithm; MD5 by default.
     pub fn algorithm(&self) -> Algorithm {
         self.algorithm
             .get()
@@ -64,7 +64,7 @@ impl Field<'_> {
 }
 
 impl Shape {
-    /// Width in bytes.
+    /// Returns the width in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Int(size) | Self::Bytes(size) => size,
@@ -72,10 +72,10 @@ impl Shape {
     }
 }
 
-/// What the runtime uses a field for.
+/// The role of a field in the runtime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The bytes that open a frame.
+    /// The first bytes of a frame.
     Head,
     /// Kind of the data.
     Kind,
@@ -83,7 +83,7 @@ pub enum Role {
     Code,
     /// Message id.
     Id,
-    /// How the data is packed.
+    /// Encoding of the data.
     Encoding,
     /// Length of the whole frame.
     TotalLength,
@@ -91,11 +91,11 @@ pub enum Role {
     PlainLength,
     /// Digest of the data as sent.
     Digest,
-    /// Travels, and is never interpreted.
+    /// Sent but never interpreted.
     Status,
 }
 
-/// How the data is digested.
+/// A digest algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Algorithm {
     /// 16 bytes.
@@ -109,7 +109,7 @@ pub const ALGORITHMS: [(&str, Algorithm); 2] =
     [("md5", Algorithm::Md5), ("crc32", Algorithm::Crc32)];
 
 impl Algorithm {
-    /// Its type in the runtime; the type of a field that holds a digest, and how that travels.
+    /// Returns the type in the runtime, the type of the field, and its shape.
     pub fn facts(self) -> (&'static str, &'static str, Shape) {
         match self {
             Self::Md5 => ("Md5", "[u8; 16]", Shape::Bytes(16)),
@@ -193,7 +193,7 @@ impl<'a> Header<'a> {
         });
     }
 
-    /// Length in bytes.
+    /// Returns the length in bytes.
     pub fn len(&self) -> usize {
         self.fields
             .iter()
@@ -232,7 +232,7 @@ fn read_shape(ty: &Type) -> syn::Result<Shape> {
     }
 }
 
-/// The length is needed for offsets, so it must be a literal.
+/// Reads a byte array. Its length must be a literal, because it is needed for offsets.
 fn read_bytes(array: &TypeArray) -> Option<Shape> {
     let Type::Path(element) = &*array.elem else {
         return None;

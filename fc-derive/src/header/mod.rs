@@ -9,7 +9,7 @@ use ast::Header;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes `Header`, or the faults.
+/// Writes `Header`, or errors.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let header = Header::read(input, &mut faults);
     let roles = valid::check(&header, &mut faults);

@@ -1,9 +1,9 @@
-//! What a header must have.
+//! Requirements of a header.
 
 use super::ast::{Field, Header, ROLES, Role, Shape};
 use crate::faults::Faults;
 
-/// The fields the runtime uses.
+/// The fields with a role.
 pub struct Roles<'h> {
     pub head: &'h Field<'h>,
     pub kind: &'h Field<'h>,
@@ -15,7 +15,7 @@ pub struct Roles<'h> {
     pub digest: Option<&'h Field<'h>>,
 }
 
-/// Finds every fault between fields; the roles, if each is there.
+/// Reports all conflicts between fields. Returns the roles if none is missing.
 pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h>> {
     for field in &header.fields {
         check_field(field, faults);
@@ -60,7 +60,7 @@ pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h
     })
 }
 
-/// Whether there is no frame without a field of this role.
+/// Returns `true` if every frame needs this role.
 fn is_needed(role: Role) -> bool {
     match role {
         Role::Head | Role::Kind | Role::Code | Role::Id | Role::TotalLength => true,
@@ -68,7 +68,7 @@ fn is_needed(role: Role) -> bool {
     }
 }
 
-/// A role that is written wrong may be the one that seems to be missing.
+/// Returns `true` if all roles are valid. An invalid one may be the role that seems to be missing.
 fn has_sound_roles(header: &Header<'_>) -> bool {
     header
         .fields
@@ -118,7 +118,7 @@ fn check_field(field: &Field<'_>, faults: &mut Faults) {
     }
 }
 
-/// The type of a role's field, and whether a field has it.
+/// Returns the required type of a role, and `true` if the field has it.
 fn wanted(field: &Field<'_>, role: Role, shape: Shape) -> (&'static str, bool) {
     match role {
         Role::Head => ("[u8; N]", matches!(shape, Shape::Bytes(_))),
@@ -137,7 +137,7 @@ fn wanted(field: &Field<'_>, role: Role, shape: Shape) -> (&'static str, bool) {
     }
 }
 
-/// A frame is known for one by its first bytes.
+/// Reports a head that is not the first field.
 fn check_head_is_first(header: &Header<'_>, faults: &mut Faults) {
     for field in header.fields.iter().skip(1) {
         if let Some((literal, Role::Head)) = field.role.get() {

@@ -1,4 +1,4 @@
-//! What a message is made of, as its attributes say.
+//! A message with its attributes.
 
 use super::condition::{self, Asked};
 use crate::attr::{self, Item, Number, NumberValue, Slot};
@@ -14,9 +14,9 @@ use syn::{DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Typ
 pub struct Message<'a> {
     /// Its name.
     pub ident: &'a Ident,
-    /// Who sees it.
+    /// Visibility.
     pub vis: &'a Visibility,
-    /// Its parameters; a message has none.
+    /// Generic parameters, which a message must not have.
     pub generics: &'a Generics,
     /// Path of the runtime crate.
     pub runtime: Path,
@@ -24,7 +24,7 @@ pub struct Message<'a> {
     pub example: Slot<LitStr>,
     /// Fields with keys, in the order in which they are sent.
     pub fields: Vec<Field<'a>>,
-    /// The fields that keep unknown keys; at most one is right.
+    /// Fields that keep unknown keys; at most one is allowed.
     pub extra: Vec<(&'a Ident, &'a Type)>,
 }
 
@@ -36,9 +36,9 @@ pub struct Field<'a> {
     pub ty: &'a Type,
     /// Its key on the wire.
     pub key: String,
-    /// Where the key stands.
+    /// Position of the key.
     pub key_span: Span,
-    /// What else its attributes say.
+    /// Other attributes.
     pub attributes: FieldAttributes,
 }
 
@@ -75,7 +75,7 @@ pub struct FieldAttributes {
     extra: Slot<()>,
 }
 
-/// In which form a field travels that is not its type's own.
+/// A wire form other than that of the type.
 #[derive(Clone, Copy)]
 pub enum WireForm {
     /// `wire = "string"`.
@@ -84,7 +84,7 @@ pub enum WireForm {
     Number,
 }
 
-/// What a lenient field is.
+/// The kind of a lenient field.
 #[derive(Clone, Copy)]
 pub enum Lenient {
     /// `lenient(number)`.
@@ -191,7 +191,7 @@ impl FieldAttributes {
         }
     }
 
-    /// Whether a constraint has to be checked.
+    /// Returns `true` if there are constraints.
     pub fn has_constraints(&self) -> bool {
         self.min.get().is_some()
             || self.max.get().is_some()
@@ -228,7 +228,7 @@ fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
     let content;
     syn::parenthesized!(content in input);
     let word: Ident = content.parse()?;
-    // What is left over would be a fault of its own.
+    // Read the rest here, because a leftover would be reported separately.
     let rest: TokenStream = content.parse()?;
     match word.to_string().as_str() {
         _ if !rest.is_empty() => Err(syn::Error::new_spanned(rest, "expected `)`")),

@@ -11,7 +11,7 @@ use ast::Message;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes the implementations, or the faults and stubs.
+/// Writes the implementations, or errors and stubs.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let message = Message::read(input, &mut faults);
     valid::check(&message, &mut faults);

@@ -1,4 +1,4 @@
-//! What the attributes of a message must not say together.
+//! Conflicts between attributes of a message.
 
 use super::ast::{Field, Message};
 use super::condition;
@@ -6,7 +6,7 @@ use crate::faults::Faults;
 use crate::item;
 use std::collections::HashSet;
 
-/// Finds every fault between attributes.
+/// Reports all conflicts between attributes.
 pub fn check(message: &Message<'_>, faults: &mut Faults) {
     item::forbid_parameters(message.generics, faults, "a message");
     check_keys(message, faults);
@@ -22,7 +22,7 @@ pub fn check(message: &Message<'_>, faults: &mut Faults) {
     }
 }
 
-/// Two fields must not read the same key.
+/// Reports a key that two fields read.
 fn check_keys(message: &Message<'_>, faults: &mut Faults) {
     let mut seen = HashSet::new();
     for field in &message.fields {

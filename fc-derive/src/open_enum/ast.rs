@@ -1,4 +1,4 @@
-//! What an enum of values is made of, as its attributes say.
+//! An enum of values with its attributes.
 
 use crate::attr::{self, Item, Slot};
 use crate::faults::Faults;
@@ -15,41 +15,41 @@ pub struct OpenEnum<'a> {
     pub ident: &'a Ident,
     /// Path of the runtime crate.
     pub runtime: Path,
-    /// What travels.
+    /// The wire type.
     pub repr: Repr,
-    /// In what sense values follow each other.
+    /// The order of values.
     pub order: Option<Order>,
     /// Variants with a value, as written.
     pub values: Vec<(&'a Ident, Value)>,
-    /// What is said of the variants with a value as states, in step with them.
+    /// States of the variants with a value, in the same order.
     pub states: Vec<State>,
-    /// The variants that keep an unknown value; at most one is right.
+    /// Variants that keep an unknown value; at most one is allowed.
     pub other: Vec<&'a Ident>,
 }
 
-/// In what sense values follow each other.
+/// The order of values.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// Normally; other changes occur as well.
+    /// The normal order; other changes may occur.
     Normal,
-    /// No other change occurs.
+    /// The complete order; no other change occurs.
     Complete,
 }
 
-/// What is said of a variant as the state of a process.
+/// A variant as the state of a process.
 #[derive(Default)]
 pub struct State {
-    /// Variants that follow it.
+    /// Variants that may follow it.
     pub then: Vec<Ident>,
-    /// Set if it is a final state.
+    /// `true` for a final state.
     pub is_final: bool,
-    /// Whether something failed.
+    /// `true` for a failure.
     pub is_error: bool,
 }
 
-/// What travels.
+/// The wire type.
 pub enum Repr {
-    /// An integer of this type, and its smallest and largest value.
+    /// An integer type with its smallest and largest value.
     Int(Ident, i128, i128),
     /// A string.
     Str,
@@ -57,9 +57,9 @@ pub enum Repr {
 
 /// The value of a variant, as written.
 pub struct Value {
-    /// As it is written.
+    /// Tokens as written.
     pub tokens: TokenStream,
-    /// What tells it from other values.
+    /// Unique text of the value.
     identity: String,
     /// `None` for a string.
     number: Option<i128>,
@@ -151,7 +151,7 @@ impl<'a> OpenEnum<'a> {
         }
     }
 
-    /// The variant `other` holds what travels.
+    /// Checks the payload of the variant `other`.
     fn check_payload(&self, variant: &Variant, readable: bool, faults: &mut Faults) {
         let wanted = match &self.repr {
             Repr::Int(int, ..) => int.to_string(),
@@ -176,7 +176,7 @@ impl<'a> OpenEnum<'a> {
         }
     }
 
-    /// Finds every fault between variants.
+    /// Reports all conflicts between variants.
     pub fn check(&self, faults: &mut Faults) {
         for other in self.other.iter().skip(1) {
             faults.on(
@@ -216,7 +216,7 @@ impl Repr {
     }
 }
 
-/// The last name of a type's path.
+/// Returns the last name of a type's path.
 fn last_name(ty: &Type) -> Option<&Ident> {
     match ty {
         Type::Path(path) => path.path.segments.last().map(|segment| &segment.ident),

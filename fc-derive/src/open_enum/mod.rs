@@ -9,7 +9,7 @@ use ast::OpenEnum;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes the implementations, or the faults and stubs.
+/// Writes the implementations, or errors and stubs.
 pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
     let choice = OpenEnum::read(input, &mut faults);
     choice.check(&mut faults);

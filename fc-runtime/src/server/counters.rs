@@ -281,7 +281,7 @@ impl Default for LogLimiters {
     }
 }
 
-/// LogLimiters of one cause that several connections write.
+/// Limits lines of one cause that several connections write.
 #[derive(Debug, Default)]
 pub(super) struct SharedLogLimiter(Mutex<LogLimiter>);
 
