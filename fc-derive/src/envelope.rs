@@ -130,7 +130,6 @@ fn read_role(input: ParseStream<'_>) -> syn::Result<(LitStr, Role)> {
 
 fn code(envelope: &Envelope<'_>) -> TokenStream {
     let Envelope {
-        ident,
         runtime,
         time,
         result_code,
@@ -161,90 +160,102 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
         )
     };
     let take_time = take_number(time);
-    let trait_name = trait_name(envelope);
-    let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let has_result = result_code.is_some();
-        let take_code = take_number(result_code);
-        let text = |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
-        let take_text = result_text.map_or_else(|| quote!(""), text);
-        let arguments = quote! {
-            time_ms: ::core::primitive::i64,
-            code: ::core::primitive::i64,
-            text: &::core::primitive::str,
-        };
-        let results = quote! {
-            const HAS_RESULT: ::core::primitive::bool = #has_result;
-
-            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> {
-                #take_code
-            }
-
-            fn result_text(&self) -> &::core::primitive::str {
-                #take_text
-            }
-        };
-        (arguments, Some(results))
-    } else {
-        (quote!(time_ms: ::core::primitive::i64), None)
-    };
-    quote! {
-        #[automatically_derived]
-        impl #runtime::#trait_name for #ident {
-            #[allow(unused_variables)]
-            fn at(#arguments) -> Self {
+    let text =
+        |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
+    implement(
+        envelope,
+        &Bodies {
+            at: quote! {
                 Self {
                     #make_time
                     #make_code
                     #make_text
                     #(#make_rest)*
                 }
-            }
-
-            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> {
-                #take_time
-            }
-
-            #results
-        }
-    }
-}
-
-fn trait_name(envelope: &Envelope<'_>) -> Ident {
-    let name = match envelope.side {
-        Some(Side::Response) => "ResponseEnvelope",
-        Some(Side::Request) | None => "RequestEnvelope",
-    };
-    Ident::new(name, Span::call_site())
+            },
+            time_ms: take_time,
+            has_result: result_code.is_some(),
+            result_code: take_number(result_code),
+            result_text: result_text.map_or_else(|| quote!(""), text),
+        },
+    )
 }
 
 /// Returns an implementation that does nothing, for an envelope with errors.
 fn stub(envelope: &Envelope<'_>) -> TokenStream {
-    let Envelope { ident, runtime, .. } = envelope;
     if envelope.side.is_none() {
         return TokenStream::new();
     }
-    let trait_name = trait_name(envelope);
     let todo = quote!(::core::unimplemented!());
-    let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let arguments = quote!(
-            _: ::core::primitive::i64,
-            _: ::core::primitive::i64,
-            _: &::core::primitive::str,
-        );
-        let results = quote! {
-            const HAS_RESULT: ::core::primitive::bool = false;
-            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
-            fn result_text(&self) -> &::core::primitive::str { #todo }
-        };
-        (arguments, Some(results))
+    implement(
+        envelope,
+        &Bodies {
+            at: todo.clone(),
+            time_ms: todo.clone(),
+            has_result: false,
+            result_code: todo.clone(),
+            result_text: todo,
+        },
+    )
+}
+
+/// The bodies of the methods of an envelope. A request has no result.
+struct Bodies {
+    at: TokenStream,
+    time_ms: TokenStream,
+    has_result: bool,
+    result_code: TokenStream,
+    result_text: TokenStream,
+}
+
+/// Implements the envelope trait.
+fn implement(envelope: &Envelope<'_>, bodies: &Bodies) -> TokenStream {
+    let Envelope { ident, runtime, .. } = envelope;
+    let Bodies {
+        at,
+        time_ms,
+        has_result,
+        result_code,
+        result_text,
+    } = bodies;
+    let is_response = envelope.side == Some(Side::Response);
+    let name = if is_response {
+        "ResponseEnvelope"
     } else {
-        (quote!(_: ::core::primitive::i64), None)
+        "RequestEnvelope"
     };
+    let trait_name = Ident::new(name, Span::call_site());
+    let result_arguments = is_response.then(|| {
+        quote! {
+            code: ::core::primitive::i64,
+            text: &::core::primitive::str,
+        }
+    });
+    let results = is_response.then(|| {
+        quote! {
+            const HAS_RESULT: ::core::primitive::bool = #has_result;
+
+            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> {
+                #result_code
+            }
+
+            fn result_text(&self) -> &::core::primitive::str {
+                #result_text
+            }
+        }
+    });
     quote! {
         #[automatically_derived]
         impl #runtime::#trait_name for #ident {
-            fn at(#arguments) -> Self { #todo }
-            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
+            #[allow(unused_variables)]
+            fn at(time_ms: ::core::primitive::i64, #result_arguments) -> Self {
+                #at
+            }
+
+            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> {
+                #time_ms
+            }
+
             #results
         }
     }
