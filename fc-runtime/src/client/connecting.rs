@@ -22,51 +22,33 @@ pub(super) trait Dial: Send + 'static {
     fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
 }
 
-/// Connects with TCP.
-pub(super) struct TcpDial {
-    host: String,
-    port: u16,
-    limit: Duration,
-    keepalive: Option<Duration>,
-}
-
-impl TcpDial {
-    pub(super) fn new(host: &str, port: u16, config: &ClientConfig) -> Self {
-        Self {
-            host: host.to_owned(),
-            port,
-            limit: config.connect_timeout,
-            keepalive: config.connection.keepalive,
-        }
-    }
-}
-
-impl Dial for TcpDial {
-    type Transport = TcpStream;
-
-    fn address(&self) -> String {
-        format!("{}:{}", self.host, self.port)
-    }
-
-    async fn dial(&mut self) -> Result<TcpStream, ConnectError> {
-        let connecting = async {
-            let stream = TcpStream::connect((self.host.as_str(), self.port)).await?;
-            prepare(&stream, self.keepalive)?;
+/// Connects over TCP.
+pub(super) fn tcp(
+    (host, port): (&str, u16),
+    config: &ClientConfig,
+) -> impl Dial<Transport = TcpStream> + use<> {
+    let target = host.to_owned();
+    let keepalive = config.connection.keepalive;
+    let dial = move || {
+        let target = target.clone();
+        async move {
+            let stream = TcpStream::connect((target, port)).await?;
+            prepare(&stream, keepalive)?;
             Ok(stream)
-        };
-        within(self.limit, connecting, || self.address()).await
-    }
+        }
+    };
+    Dialer::new(dial, (host, port), config)
 }
 
-/// Connects with a function of the user.
-pub(super) struct CustomDial<D> {
-    pub(super) dial: D,
-    /// Address for errors.
-    pub(super) address: String,
-    pub(super) limit: Duration,
+/// Connects with a function, within the connect timeout.
+pub(super) struct Dialer<D> {
+    dial: D,
+    /// Address for errors and logs.
+    address: String,
+    limit: Duration,
 }
 
-impl<D> CustomDial<D> {
+impl<D> Dialer<D> {
     pub(super) fn new(dial: D, (host, port): (&str, u16), config: &ClientConfig) -> Self {
         Self {
             dial,
@@ -76,7 +58,7 @@ impl<D> CustomDial<D> {
     }
 }
 
-impl<D, F, S> Dial for CustomDial<D>
+impl<D, F, S> Dial for Dialer<D>
 where
     D: FnMut() -> F + Send + 'static,
     F: Future<Output = io::Result<S>> + Send,
@@ -89,23 +71,15 @@ where
     }
 
     async fn dial(&mut self) -> Result<S, ConnectError> {
-        let dialling = (self.dial)();
-        within(self.limit, dialling, || self.address.clone()).await
-    }
-}
-
-/// Limits the time of one attempt. Its error contains the `address`.
-async fn within<S>(
-    limit: Duration,
-    attempt: impl Future<Output = io::Result<S>>,
-    address: impl Fn() -> String,
-) -> Result<S, ConnectError> {
-    match timeout(limit, attempt).await {
-        Err(_) => Err(ConnectError::Timeout { address: address() }),
-        Ok(connected) => connected.map_err(|source| ConnectError::Io {
-            address: address(),
-            source,
-        }),
+        match timeout(self.limit, (self.dial)()).await {
+            Err(_) => Err(ConnectError::Timeout {
+                address: self.address.clone(),
+            }),
+            Ok(connected) => connected.map_err(|source| ConnectError::Io {
+                address: self.address.clone(),
+                source,
+            }),
+        }
     }
 }
 

@@ -45,7 +45,7 @@ use crate::link::Transport;
 use crate::operation::Command;
 use crate::protocol::Protocol;
 use crate::raw::RawResponse;
-use connecting::{CustomDial, Dial, TcpDial};
+use connecting::{Dial, Dialer, tcp};
 use state::{Handle, Inner};
 use std::fmt;
 use std::io;
@@ -70,9 +70,7 @@ impl<P: Protocol> Connection<P> {
     ///
     /// [`ConnectError`] if the first attempt fails. Later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        let (host, port) = config.command_address::<P>();
-        let tcp = TcpDial::new(host, port, &config);
-        Self::dialled(tcp, config).await
+        Self::dialled(tcp(config.command_address::<P>(), &config), config).await
     }
 
     /// Connects over streams that `dial` creates, such as TLS or a tunnel. `dial` is called again after a loss, as
@@ -88,7 +86,7 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         Self::dialled(
-            CustomDial::new(dial, config.command_address::<P>(), &config),
+            Dialer::new(dial, config.command_address::<P>(), &config),
             config,
         )
         .await
@@ -102,9 +100,8 @@ impl<P: Protocol> Connection<P> {
     /// [`ClientConfig::reconnect`] is `None`.
     #[must_use]
     pub fn connect_lazy(config: ClientConfig) -> Self {
-        let (host, port) = config.command_address::<P>();
-        let tcp = TcpDial::new(host, port, &config);
-        Self::driven(None, tcp, config)
+        let dial = tcp(config.command_address::<P>(), &config);
+        Self::driven(None, dial, config)
     }
 
     /// Connects like [`connect_lazy`](Self::connect_lazy), over streams that `dial` creates. Needs a tokio runtime with
@@ -118,7 +115,7 @@ impl<P: Protocol> Connection<P> {
     {
         Self::driven(
             None,
-            CustomDial::new(dial, config.command_address::<P>(), &config),
+            Dialer::new(dial, config.command_address::<P>(), &config),
             config,
         )
     }
@@ -213,8 +210,8 @@ impl<P: Protocol> Connection<P> {
     #[must_use]
     pub fn data(&self) -> DataConnection<P> {
         let config = &self.handle.config;
-        let (host, port) = config.data_address::<P>();
-        DataConnection::new(self.handle.clone(), TcpDial::new(host, port, config))
+        let dial = tcp(config.data_address::<P>(), config);
+        DataConnection::new(self.handle.clone(), dial)
     }
 
     /// Connects like [`data`](Self::data), over streams that `dial` creates, such as TLS or a tunnel. One attempt may
@@ -227,7 +224,7 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         let config = &self.handle.config;
-        let by = CustomDial::new(dial, config.data_address::<P>(), config);
+        let by = Dialer::new(dial, config.data_address::<P>(), config);
         DataConnection::new(self.handle.clone(), by)
     }
 

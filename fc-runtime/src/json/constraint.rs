@@ -46,7 +46,7 @@ macro_rules! bounded {
                     reason = "a limit with a fraction is compared as a float"
                 )]
                 let order = match limit {
-                    Limit::Int(limit) => compare_int(*self, limit),
+                    Limit::Int(limit) => CompareInt::compare(*self, limit),
                     Limit::Float(limit) => (*self as f64).partial_cmp(&limit),
                 };
                 order.is_some_and(|order| order == wanted || order == Ordering::Equal)
@@ -60,11 +60,6 @@ bounded!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
 /// Comparison of a number with an integer.
 trait CompareInt {
     fn compare(self, limit: i128) -> Option<Ordering>;
-}
-
-#[inline]
-fn compare_int<T: CompareInt>(value: T, limit: i128) -> Option<Ordering> {
-    value.compare(limit)
 }
 
 macro_rules! compare_int {

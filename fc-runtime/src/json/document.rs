@@ -67,12 +67,7 @@ fn fill<'a>(
         Ok(start)
     });
     match filled {
-        Ok(start) => Ok(Filled {
-            text,
-            allowance,
-            start,
-            lists: allowance.list_bytes - reader.list_bytes,
-        }),
+        Ok(start) => Ok(Filled::new(&reader, allowance, start)),
         Err(error) => Err(placed(text, allowance, error)),
     }
 }
@@ -87,7 +82,16 @@ struct Filled<'a> {
     lists: usize,
 }
 
-impl Filled<'_> {
+impl<'a> Filled<'a> {
+    fn new(reader: &Reader<'a>, allowance: Allowance, start: usize) -> Self {
+        Self {
+            text: reader.text,
+            allowance,
+            start,
+            lists: allowance.list_bytes - reader.list_bytes,
+        }
+    }
+
     /// Creates the message from the slots.
     fn finish<M: Message>(&self, slots: M::Slots) -> Result<M, BodyError> {
         match finish(slots, self.text, self.start) {
@@ -150,12 +154,7 @@ fn fill_both<'a>(
     let text = body_text(bytes).map_err(Failed::Envelope)?;
     let mut reader = Reader::new(text, allowance);
     match reader.fill_both(envelope, body) {
-        Ok(start) => Ok(Filled {
-            text,
-            allowance,
-            start,
-            lists: allowance.list_bytes - reader.list_bytes,
-        }),
+        Ok(start) => Ok(Filled::new(&reader, allowance, start)),
         Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, allowance, error))),
         Err(Failed::Body(error)) => Err(Failed::Body(placed(text, allowance, error))),
     }

@@ -68,6 +68,13 @@ impl BodyErrorKind {
 /// Longest quotation in a detail, in bytes. It comes from the peer and may be sent back.
 const LONGEST_QUOTATION: usize = 200;
 
+/// Returns at most the first `length` bytes of a text, cut between characters.
+pub(super) fn prefix(text: &str, length: usize) -> &str {
+    let mut ends = (0..=length.min(text.len())).rev();
+    let end = ends.find(|end| text.is_char_boundary(*end));
+    text.get(..end.unwrap_or(0)).unwrap_or_default()
+}
+
 /// Returns the beginning of a text, without keeping the whole text in memory.
 pub(super) fn shortened(text: impl fmt::Display) -> String {
     struct Short(String);
@@ -79,9 +86,7 @@ pub(super) fn shortened(text: impl fmt::Display) -> String {
                 self.0.push_str(piece);
                 return Ok(());
             }
-            let whole = |end: &usize| piece.is_char_boundary(*end);
-            let end = (0..=room).rev().find(whole).unwrap_or(0);
-            self.0.push_str(piece.get(..end).unwrap_or_default());
+            self.0.push_str(prefix(piece, room));
             Err(fmt::Error)
         }
     }

@@ -3,6 +3,7 @@
 //! The reader keeps only offsets. The path is computed from the text after an error, so that valid texts do not pay for
 //! it.
 
+use super::error::prefix;
 use std::fmt::Write as _;
 
 /// Longest key in a path, in bytes. Keys come from the peer.
@@ -85,7 +86,7 @@ fn print(levels: &[Level<'_>]) -> String {
                 if !path.is_empty() {
                     path.push('.');
                 }
-                let short = key.floor_char_boundary_at(LONGEST_KEY);
+                let short = prefix(key, LONGEST_KEY);
                 path.push_str(short);
                 if short.len() < key.len() {
                     path.push('…');
@@ -99,21 +100,6 @@ fn print(levels: &[Level<'_>]) -> String {
         }
     }
     path
-}
-
-trait Shorten {
-    fn floor_char_boundary_at(&self, length: usize) -> &Self;
-}
-
-impl Shorten for str {
-    /// Returns at most the first `length` bytes, cut between characters.
-    fn floor_char_boundary_at(&self, length: usize) -> &Self {
-        let mut end = length.min(self.len());
-        while !self.is_char_boundary(end) {
-            end -= 1;
-        }
-        self.get(..end).unwrap_or_default()
-    }
 }
 
 #[cfg(test)]

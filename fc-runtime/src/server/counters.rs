@@ -49,64 +49,6 @@ macro_rules! counters {
                 }
             }
 
-            /// Counts and logs an unreadable frame.
-            pub(super) fn bad_frame<P: Protocol>(
-                &self,
-                limiters: &mut LogLimiter,
-                (connection, peer): (ConnectionId, SocketAddr),
-                name: &'static str,
-                error: &dyn Display,
-            ) {
-                self.bad_frames.one();
-                if let Some(held) = limiters.admit(clock::now()) {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
-                }
-            }
-
-            /// Counts and logs a connection that is closed because memory is short, with its memory.
-            pub(super) fn evicted<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-                held: usize,
-            ) {
-                self.connections_evicted.one();
-                if let Some(held_back) = self.limiters.evicted.admit() {
-                    let (protocol, connection, bytes) = (P::NAME, connection.0, held);
-                    let held = held_back.shown();
-                    tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
-                }
-            }
-
-            /// Logs a new connection at a port.
-            pub(super) fn connected<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-            ) {
-                if let Some(held) = self.limiters.connected.admit() {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::info!(protocol, connection, %peer, port, held, "connected");
-                }
-            }
-
-            /// Logs the end of a connection.
-            pub(super) fn ended<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-                reason: &'static str,
-            ) {
-                if let Some(held) = self.limiters.ended.admit() {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
-                }
-            }
-
             pub(super) fn read(&self) -> ServerCounters {
                 ServerCounters {
                     $($name: self.$name.0.load(Ordering::Relaxed),)*
@@ -215,6 +157,64 @@ impl Counters {
         };
         count.one();
         self.operations.called(code, result);
+    }
+
+    /// Counts and logs an unreadable frame.
+    pub(super) fn bad_frame<P: Protocol>(
+        &self,
+        limiters: &mut LogLimiter,
+        (connection, peer): (ConnectionId, SocketAddr),
+        name: &'static str,
+        error: &dyn Display,
+    ) {
+        self.bad_frames.one();
+        if let Some(held) = limiters.admit(clock::now()) {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
+        }
+    }
+
+    /// Counts and logs a connection that is closed because memory is short, with its memory.
+    pub(super) fn evicted<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+        held: usize,
+    ) {
+        self.connections_evicted.one();
+        if let Some(held_back) = self.limiters.evicted.admit() {
+            let (protocol, connection, bytes) = (P::NAME, connection.0, held);
+            let held = held_back.shown();
+            tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
+        }
+    }
+
+    /// Logs a new connection at a port.
+    pub(super) fn connected<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+    ) {
+        if let Some(held) = self.limiters.connected.admit() {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::info!(protocol, connection, %peer, port, held, "connected");
+        }
+    }
+
+    /// Logs the end of a connection.
+    pub(super) fn ended<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+        reason: &'static str,
+    ) {
+        if let Some(held) = self.limiters.ended.admit() {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
+        }
     }
 
     /// Records the time of a handler.
