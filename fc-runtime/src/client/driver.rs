@@ -192,7 +192,7 @@ impl<P: Protocol> Driver<P> {
         if ended.is_none() && self.gather(cx, link) {
             return Poll::Pending;
         }
-        let (closed, due) = self.tend(cx, now);
+        let (closed, due) = self.update_state(cx, now);
         if closed {
             return Poll::Ready(Turn::Over(Loss::Here));
         }
@@ -293,7 +293,7 @@ impl<P: Protocol> Driver<P> {
 
     /// Handles arrivals and deadlines under the lock. Returns `true` if the connection is closed, and the deadline of
     /// the next call.
-    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
+    fn update_state(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
@@ -426,7 +426,7 @@ impl<P: Protocol> Driver<P> {
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
-                let (closed, due) = self.tend(cx, clock::now());
+                let (closed, due) = self.update_state(cx, clock::now());
                 if closed {
                     return Poll::Ready(None);
                 }

@@ -22,7 +22,7 @@ use crate::operation::AckPolicy;
 use crate::protocol::Protocol;
 use crate::session::Due;
 use crate::sync::register;
-use requests::End;
+use requests::ReadEnd;
 use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -72,7 +72,7 @@ pub(super) struct Driver<S, P: Protocol> {
     bad_frames: LogLimiter,
     in_flight: LogLimiter,
     /// The reason why nothing more is read. Handled requests are answered nevertheless.
-    deaf: Option<Reason>,
+    half_closed: Option<Reason>,
     watch: Watchdog,
 }
 
@@ -94,7 +94,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             pause: ReadPause::default(),
             bad_frames: LogLimiter::default(),
             in_flight: LogLimiter::default(),
-            deaf: None,
+            half_closed: None,
             watch: Watchdog::new(clock::now()),
         }
     }
@@ -108,7 +108,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let turn = poll_fn(|cx| {
                 let turn = self.poll(cx);
                 self.gate.keep_if_asked();
-                self.memory();
+                self.update_memory();
                 turn
             });
             match turn.await {
@@ -144,16 +144,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.charge(before);
             }
             let mut more = false;
-            if !self.peer.is_draining() && self.deaf.is_none() {
+            if !self.peer.is_draining() && self.half_closed.is_none() {
                 match self.receive(cx, now) {
                     Ok(read) => more = read,
-                    Err(End::Broken) => return Poll::Ready(Turn::Over(BROKEN)),
-                    Err(End::Deaf(reason)) => self.deaf = Some(reason),
+                    Err(ReadEnd::Broken) => return Poll::Ready(Turn::Over(BROKEN)),
+                    Err(ReadEnd::HalfClosed(reason)) => self.half_closed = Some(reason),
                 }
             }
             more |= self.handlers.take_fresh();
             let sealed = self.seal();
-            let (loaded, due) = self.tend(cx, now);
+            let (loaded, due) = self.update_state(cx, now);
             more |= loaded;
             let before = self.link.unwritten();
             let write = self.link.poll_write(cx, WRITE);
@@ -166,7 +166,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             match write {
                 Poll::Ready(Ok(())) if more || long => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
-                    return Poll::Ready(Turn::Over(self.deaf.unwrap_or("drained")));
+                    return Poll::Ready(Turn::Over(self.half_closed.unwrap_or("drained")));
                 }
                 Poll::Ready(Ok(())) => {}
                 Poll::Ready(Err(_)) => return Poll::Ready(Turn::Over(BROKEN)),
@@ -179,13 +179,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             match self.watch.poll(cx, now, &self.peer.settings, activity) {
                 Poll::Ready(late) => {
                     // A connection that is no longer read has been counted before.
-                    if self.deaf.is_none() {
+                    if self.half_closed.is_none() {
                         self.peer.counters.connections_timed_out.one();
                     }
                     match late {
                         Overdue::All(reason) => return Poll::Ready(Turn::Over(reason)),
                         // Requests before it may still be running.
-                        Overdue::Frame(reason) => self.deaf = Some(reason),
+                        Overdue::Frame(reason) => self.half_closed = Some(reason),
                     }
                 }
                 Poll::Pending if self.turn == 0 || long => return Poll::Ready(Turn::Spent),
@@ -203,7 +203,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             && !self.gate.is_waiting()
             && !self.short
             && rest.is_none()
-            && self.deaf.is_none();
+            && self.half_closed.is_none();
         Activity {
             expected: match (reads, inside) {
                 (false, _) => Expected::Nothing,
@@ -217,7 +217,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// Updates the memory held for the connection.
-    fn memory(&self) {
+    fn update_memory(&self) {
         let (mut busy, mut idle) = (self.handlers.weight(), 0);
         let unsent = {
             let output = self.peer.output();
@@ -264,14 +264,14 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 
     /// Returns `true` if all requests are answered and no more are to come.
     fn is_drained(&self) -> bool {
-        (self.peer.is_draining() || self.deaf.is_some())
+        (self.peer.is_draining() || self.half_closed.is_some())
             && self.peer.unsent() == 0
             && self.handlers.is_empty()
     }
 
     /// Handles reports, deadlines and the send buffer under the lock. Returns `true` if there is something to send, and
     /// the deadline of the next report.
-    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
+    fn update_state(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.peer.lock();
         let state = &mut *guard;
         let mut output = self.peer.output();
@@ -295,7 +295,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 }
             }
         }
-        while self.deaf.is_none()
+        while self.half_closed.is_none()
             && room(output, &self.link)
             && state.session.in_flight() < self.peer.settings.limits.in_flight
             && let Some(queued) = state.queue.pop_front()

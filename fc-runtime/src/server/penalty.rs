@@ -56,7 +56,7 @@ impl ReadPause {
 
     /// Adds the cost of the last frames: inflated bytes beyond those received, and unusable frames. Returns the new
     /// pause, if there is one, and the state of the log limit.
-    pub(super) fn owe(
+    pub(super) fn add(
         &mut self,
         surplus: u64,
         unusable: u32,

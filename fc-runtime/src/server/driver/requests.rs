@@ -19,23 +19,23 @@ use std::time::Instant;
 const SLICE: usize = 32;
 
 /// The reason why nothing more can be received.
-pub(super) enum End {
+pub(super) enum ReadEnd {
     /// Responses cannot be sent either.
     Broken,
     /// Responses can still be sent: the app has closed its sending side, or its bytes are not frames.
-    Deaf(Reason),
+    HalfClosed(Reason),
 }
 
 impl<S: Transport, P: Protocol> Driver<S, P> {
     /// Handles requests and reads on, until no more are available, no more may be taken, or a slice is complete.
     /// Returns `true` if more may be available at once.
-    pub(super) fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
+    pub(super) fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, ReadEnd> {
         let mut slice = SLICE;
         loop {
             while self.has_room() {
                 if self.handlers.len() >= self.peer.settings.limits.in_flight {
                     self.peer.counters.in_flight_reached.one();
-                    self.full(now);
+                    self.log_in_flight_limit(now);
                     return Ok(false);
                 }
                 if self.turn == 0 || self.pause.until(now).is_some() {
@@ -51,9 +51,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                         self.short = true;
                         return Ok(false);
                     };
-                    self.take(cx, now, Some(pass))?
+                    self.handle_next(cx, now, Some(pass))?
                 } else {
-                    self.take(cx, now, None)?
+                    self.handle_next(cx, now, None)?
                 };
                 self.short = false;
                 self.charge(before);
@@ -61,7 +61,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 if surplus > 0 {
                     self.link.decoder.release();
                 }
-                self.owe(surplus, now);
+                self.pause_after_useless_work(surplus, now);
                 if !taken {
                     break;
                 }
@@ -90,7 +90,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Poll::Pending => return Ok(false),
                 Poll::Ready(Ok(0)) => {
                     let inside = self.link.decoder.finish().is_err();
-                    return Err(End::Deaf(if inside {
+                    return Err(ReadEnd::HalfClosed(if inside {
                         "closed inside a frame"
                     } else {
                         "closed by the app"
@@ -105,13 +105,13 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                     }
                     self.peer.counters.bytes_in.add(n);
                 }
-                Poll::Ready(Err(_)) => return Err(End::Broken),
+                Poll::Ready(Err(_)) => return Err(ReadEnd::Broken),
             }
         }
     }
 
     /// Logs that the limit of running handlers is reached.
-    fn full(&mut self, now: Instant) {
+    fn log_in_flight_limit(&mut self, now: Instant) {
         if let Some(held) = self.in_flight.admit(now) {
             let (protocol, held) = (P::NAME, held.shown());
             let (connection, peer) = (self.peer.id.0, self.peer.address);
@@ -121,9 +121,9 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// Pauses the connection for the useless work of its last frame.
-    fn owe(&mut self, surplus: u64, now: Instant) {
+    fn pause_after_useless_work(&mut self, surplus: u64, now: Instant) {
         let unusable = self.peer.take_unusable();
-        let Some((time, line)) = self.pause.owe(surplus, unusable, now) else {
+        let Some((time, line)) = self.pause.add(surplus, unusable, now) else {
             return;
         };
         self.peer.counters.connections_paced.one();
@@ -135,12 +135,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     }
 
     /// Handles the next frame. Returns `false` if it has not arrived yet.
-    fn take(
+    fn handle_next(
         &mut self,
         cx: &mut Context<'_>,
         now: Instant,
         pass: Option<Pass>,
-    ) -> Result<bool, End> {
+    ) -> Result<bool, ReadEnd> {
         let peer = &self.peer;
         let decoder = &mut self.link.decoder;
         let frame = match through(pass.as_ref(), || decoder.next()) {
@@ -157,7 +157,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 let counters = &peer.counters;
                 let whose = (peer.id, peer.address);
                 counters.bad_frame::<P>(&mut self.bad_frames, whose, error.name(), &error);
-                let id = error.frame().ok_or(End::Deaf(error.name()))?;
+                let id = error.frame().ok_or(ReadEnd::HalfClosed(error.name()))?;
                 if id.response {
                     peer.unusable();
                 } else {
