@@ -233,7 +233,7 @@ pub(super) struct ConnectionMemory {
 impl ConnectionMemory {
     /// Requests memory for the connection. Until it is available, the connection with the most memory is closed, which
     /// may be this one.
-    pub(super) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
+    pub(super) fn poll_grow(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.shared.poll_demand(cx, bytes);
         if taken.is_ready() {
             self.usage.busy.fetch_add(bytes, Ordering::Relaxed);
@@ -251,7 +251,7 @@ impl ConnectionMemory {
     }
 
     /// Sets the memory in use and the memory kept for the next frames, besides queued memory.
-    pub(super) fn hold(&self, busy: usize, idle: usize) {
+    pub(super) fn update(&self, busy: usize, idle: usize) {
         let before =
             self.usage.busy.load(Ordering::Relaxed) + self.usage.idle.load(Ordering::Relaxed);
         let after = busy + idle;
@@ -265,7 +265,7 @@ impl ConnectionMemory {
     }
 
     /// Charges queued data if there is memory for it. Closes no connection.
-    pub(super) fn queue(&self, bytes: usize) -> Option<Charge> {
+    pub(super) fn try_queue(&self, bytes: usize) -> Option<Charge> {
         let taken = self.shared.take(bytes);
         taken.then(|| self.queued_charge(bytes))
     }
@@ -295,13 +295,13 @@ impl ConnectionMemory {
     }
 
     /// Charges existing data to the connection.
-    pub(super) fn keep(&self, bytes: usize) -> Charge {
+    pub(super) fn queue_existing(&self, bytes: usize) -> Charge {
         self.add(bytes);
         self.queued_charge(bytes)
     }
 
     /// Charges existing data that outlives the connection.
-    pub(super) fn lend(&self, bytes: usize) -> Charge {
+    pub(super) fn lend_existing(&self, bytes: usize) -> Charge {
         self.add(bytes);
         self.shared.lent.fetch_add(bytes, Ordering::SeqCst);
         self.charge(None, bytes)
@@ -318,7 +318,7 @@ impl ConnectionMemory {
     /// Removes the connection.
     pub(super) fn close(&self) {
         self.shared.lock().connections.remove(&self.id);
-        self.hold(0, 0);
+        self.update(0, 0);
     }
 }
 

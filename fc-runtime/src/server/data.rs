@@ -120,7 +120,7 @@ pub(super) enum Owner {
 
 impl Owner {
     /// Notes a command connection from the same address.
-    pub(super) fn saw(&mut self, app: ConnectionId) {
+    pub(super) fn note(&mut self, app: ConnectionId) {
         *self = match *self {
             Self::Nobody => Self::One(app),
             Self::One(known) if known == app => Self::One(app),
@@ -284,7 +284,7 @@ impl<P: Protocol> DataPeer<P> {
     async fn hand_on(&self, frame: StreamFrame) {
         self.counters.stream_frames_in.one();
         let inbox = lock(&self.inbox).clone();
-        let mut charge = self.memory.keep(frame.data.memory());
+        let mut charge = self.memory.queue_existing(frame.data.memory());
         let taken = match inbox {
             Some(inbox) => match inbox.reserve().await {
                 Ok(place) => {
@@ -318,7 +318,7 @@ impl<P: Protocol> DataPeer<P> {
             .encoder::<P>()
             .prepare(|out| write_enveloped(&envelope, &Empty, out));
         if let (Ok(body), Some(answers)) = (body, self.answers.upgrade())
-            && let Some(charge) = self.memory.queue(body.len())
+            && let Some(charge) = self.memory.try_queue(body.len())
         {
             let id = frame.answer();
             let _ = answers.try_send(Outgoing { id, body, charge });

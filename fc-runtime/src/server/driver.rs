@@ -229,7 +229,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         let kept = self.link.decoder.idle();
         busy += self.link.decoder.capacity() - kept;
-        self.peer.memory.hold(busy, idle + kept);
+        self.peer.memory.update(busy, idle + kept);
     }
 
     /// Releases unused memory.

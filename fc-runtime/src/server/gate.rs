@@ -76,7 +76,7 @@ impl GateQueue {
 pub(super) struct Pass(#[allow(dead_code, reason = "held")] Option<OwnedSemaphorePermit>);
 
 /// Processes a frame. For a large frame on a multi-threaded runtime, other tasks move to another thread.
-pub(super) fn through<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
+pub(super) fn process_frame<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
     let runtime = pass.and_then(|_| Handle::try_current().ok());
     match runtime.map(|runtime| runtime.runtime_flavor()) {
         Some(RuntimeFlavor::MultiThread) => block_in_place(work),

@@ -219,7 +219,7 @@ impl<P: Protocol> Waiting<P> {
     fn abandon(&mut self) {
         if let Some(handler) = self.handler.take()
             && handler.outlives()
-            && (self.peer.detached).take_over(handler, self.peer.memory.lend(self.weight))
+            && (self.peer.detached).take_over(handler, self.peer.memory.lend_existing(self.weight))
         {
             self.peer.counters.handlers_abandoned.one();
         }

@@ -1,7 +1,7 @@
 //! The receiving half of a robot's data connection, with limits on memory and large frames.
 
 use super::budget::ConnectionMemory;
-use super::gate::{Gate, LARGE, through};
+use super::gate::{Gate, LARGE, process_frame};
 use crate::frame::LONG;
 use crate::protocol::Protocol;
 use crate::stream::{Receiver, StreamError, StreamFrame};
@@ -45,7 +45,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         let taken = if let Some(work) = receiver.decoder().work(LARGE) {
             let _inflated = poll_fn(|cx| self.memory.poll_lend(cx, work.inflated)).await;
             let pass = self.gate.clone().pass().await;
-            through(Some(&pass), || receiver.take())
+            process_frame(Some(&pass), || receiver.take())
         } else {
             receiver.take()
         };
@@ -53,7 +53,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         if decoder.idle() > LONG {
             decoder.tidy();
         }
-        self.memory.hold(decoder.capacity(), 0);
+        self.memory.update(decoder.capacity(), 0);
         taken
     }
 
@@ -65,7 +65,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
         }
         let bytes = decoder.growth();
         if bytes > 0 {
-            poll_fn(|cx| self.memory.poll_more(cx, bytes)).await;
+            poll_fn(|cx| self.memory.poll_grow(cx, bytes)).await;
         }
         self.receiver.fill().await
     }

@@ -215,7 +215,7 @@ impl<P: Protocol> Peer<P> {
     fn charge(&self, report: &mut Queued) -> bool {
         let bytes = report.body.len();
         if self.memory.queued().saturating_add(bytes) <= self.settings.queued_bytes {
-            report.charge = self.memory.queue(bytes);
+            report.charge = self.memory.try_queue(bytes);
         }
         report.charge.is_some()
     }

@@ -2,7 +2,7 @@
 
 use super::answer::{effect, name};
 use super::context::Context;
-use super::gate::{Pass, through};
+use super::gate::{Pass, process_frame};
 use super::handlers::{Answer, begin};
 use super::peer::Peer;
 use super::running_handler::{StartedHandler, outlives};
@@ -219,7 +219,7 @@ impl<P: Protocol> Request<'_, P> {
     fn read<M: Message>(&self) -> Result<(Context<P>, M, usize), Refusal> {
         let settings = &self.peer.settings;
         let allowance = settings.limits.json();
-        let (read, lists) = through(self.pass.as_ref(), || {
+        let (read, lists) = process_frame(self.pass.as_ref(), || {
             enveloped::<P::Request, M>(self.body, allowance)
         })
         .map_err(Self::invalid)?;

@@ -111,7 +111,7 @@ impl<P: Protocol> Shared<P> {
             displaced.give_way(DISPLACED);
         }
         for data in lock(&self.data_peers).of_mut(address.ip()) {
-            data.owner.saw(id);
+            data.owner.note(id);
         }
         self.counters.connections.one();
         let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
@@ -182,7 +182,7 @@ impl<P: Protocol> Shared<P> {
             .collect();
         if let Some(entry) = lock(&self.data_peers).get_mut(id) {
             for app in apps {
-                entry.owner.saw(app);
+                entry.owner.note(app);
             }
         }
         self.counters.data_connections.one();

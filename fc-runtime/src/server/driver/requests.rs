@@ -6,7 +6,7 @@ use crate::link::Transport;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::Protocol;
 use crate::refusal::Refusal;
-use crate::server::gate::{LARGE, Pass, through};
+use crate::server::gate::{LARGE, Pass, process_frame};
 use crate::server::push::AckOutcome;
 use crate::server::service::Request;
 use crate::server::watch::Reason;
@@ -80,7 +80,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.link.poll_begin(cx)
             } else {
                 let grows = self.link.decoder.growth();
-                self.short = grows > 0 && self.peer.memory.poll_more(cx, grows).is_pending();
+                self.short = grows > 0 && self.peer.memory.poll_grow(cx, grows).is_pending();
                 if self.short {
                     return Ok(false);
                 }
@@ -143,7 +143,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
     ) -> Result<bool, ReadEnd> {
         let peer = &self.peer;
         let decoder = &mut self.link.decoder;
-        let frame = match through(pass.as_ref(), || decoder.next()) {
+        let frame = match process_frame(pass.as_ref(), || decoder.next()) {
             Ok(Some(frame)) => {
                 self.turn = self.turn.saturating_sub(FRAME + frame.body().len());
                 frame
