@@ -171,7 +171,7 @@ impl<P: Protocol> Peer<P> {
         }
         let (protocol, connection) = (P::NAME, self.id.0);
         let (name, code, msg_id) = (name::<P>(request.code), request.code, request.id);
-        if self.counters.handlers_panicked.one_to_log() {
+        if self.counters.handlers_panicked.increment_sampled() {
             tracing::error!(
                 protocol,
                 connection,
@@ -195,7 +195,7 @@ impl<P: Protocol> Peer<P> {
 
     /// Counts and logs a command of the spec that this robot does not implement.
     pub(super) fn note_not_implemented(&self, code: u16) {
-        if self.counters.calls_not_implemented.one_to_log() {
+        if self.counters.calls_not_implemented.increment_sampled() {
             let (protocol, connection, name) = (P::NAME, self.id.0, name::<P>(code));
             tracing::warn!(protocol, connection, name, code, "not implemented");
         }
@@ -213,7 +213,7 @@ impl<P: Protocol> Peer<P> {
 
     /// Refuses a request that the app's address may not make.
     pub(super) fn refuse_as_forbidden(&self, request: FrameId) {
-        self.counters.calls_forbidden.one();
+        self.counters.calls_forbidden.increment();
         if let Some(held) = self.counters.limiters.forbidden_calls.admit() {
             let (protocol, connection, peer) = (P::NAME, self.id.0, self.address);
             let (name, code) = (name::<P>(request.code), request.code);
@@ -226,7 +226,7 @@ impl<P: Protocol> Peer<P> {
     /// Refuses a request that is not started because too many handlers run on.
     pub(super) fn refuse_as_full(&self, request: FrameId) {
         let limit = self.settings.abandoned_handlers;
-        if self.counters.abandoned_reached.one_to_log() {
+        if self.counters.abandoned_reached.increment_sampled() {
             let (protocol, connection, code) = (P::NAME, self.id.0, request.code);
             tracing::warn!(
                 protocol,

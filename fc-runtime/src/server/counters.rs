@@ -155,7 +155,7 @@ impl Counters {
             Answered::Expired => (&self.calls_expired, "expired"),
             Answered::Refused => (&self.calls_refused, "refused"),
         };
-        count.one();
+        count.increment();
         self.operations.called(code, result);
     }
 
@@ -167,7 +167,7 @@ impl Counters {
         name: &'static str,
         error: &dyn Display,
     ) {
-        self.bad_frames.one();
+        self.bad_frames.increment();
         if let Some(held) = limiters.admit(clock::now()) {
             let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
             tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
@@ -182,7 +182,7 @@ impl Counters {
         port: &'static str,
         held: usize,
     ) {
-        self.connections_evicted.one();
+        self.connections_evicted.increment();
         if let Some(held_back) = self.limiters.evicted.admit() {
             let (protocol, connection, bytes) = (P::NAME, connection.0, held);
             let held = held_back.shown();
@@ -302,12 +302,12 @@ impl Count {
         Self(AtomicU64::new(0), metric)
     }
 
-    pub(super) fn one(&self) {
+    pub(super) fn increment(&self) {
         self.add(1);
     }
 
     /// Counts one. Returns `true` if it should be logged: only powers of two are, so that the log stays short.
-    pub(super) fn one_to_log(&self) -> bool {
+    pub(super) fn increment_sampled(&self) -> bool {
         self.count(1).wrapping_add(1).is_power_of_two()
     }
 

@@ -204,7 +204,7 @@ impl<P: Protocol> DataPeer<P> {
                 Ok(()) => "closed",
                 Err(error) => {
                     if matches!(error, StreamError::Stalled) {
-                        self.counters.connections_timed_out.one();
+                        self.counters.connections_timed_out.increment();
                     }
                     error.name()
                 }
@@ -274,7 +274,7 @@ impl<P: Protocol> DataPeer<P> {
                 }
             }
             if !rest.is_zero() {
-                self.counters.connections_paced.one();
+                self.counters.connections_paced.increment();
                 sleep(rest).await;
             }
         }
@@ -282,7 +282,7 @@ impl<P: Protocol> DataPeer<P> {
 
     /// Passes a frame to the receiver of streams, and waits while it is busy. The app is not read meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
-        self.counters.stream_frames_in.one();
+        self.counters.stream_frames_in.increment();
         let inbox = lock(&self.inbox).clone();
         let mut charge = self.memory.queue_existing(frame.data.memory());
         let taken = match inbox {
@@ -302,7 +302,7 @@ impl<P: Protocol> DataPeer<P> {
             None => false,
         };
         if !taken {
-            self.counters.stream_frames_dropped.one();
+            self.counters.stream_frames_dropped.increment();
         }
     }
 
@@ -346,7 +346,7 @@ impl<P: Protocol> DataPeer<P> {
             drop(charge);
             self.counters.bytes_out.add(sent);
             if !id.response {
-                self.counters.stream_frames_out.one();
+                self.counters.stream_frames_out.increment();
             }
         }
         sender.close().await

@@ -180,7 +180,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Poll::Ready(late) => {
                     // A connection that is no longer read has been counted before.
                     if self.half_closed.is_none() {
-                        self.peer.counters.connections_timed_out.one();
+                        self.peer.counters.connections_timed_out.increment();
                     }
                     match late {
                         Overdue::All(reason) => return Poll::Ready(Turn::Over(reason)),
@@ -286,11 +286,11 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Due::Again(id, queued) => {
                     if output.out.len() < HIGH_WATER {
                         output.encoder.prepared(&mut output.out, id, &queued.body);
-                        counters.reports_repeated.one();
+                        counters.reports_repeated.increment();
                     }
                 }
                 Due::Expired(_, queued) => {
-                    counters.reports_timed_out.one();
+                    counters.reports_timed_out.increment();
                     expired.push(queued);
                 }
             }
@@ -304,7 +304,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let policy = spread(queued.policy, self.peer.id);
             if let Ok(id) = state.session.open(P::REPORT, code, policy, now, queued) {
                 output.encoder.prepared(&mut output.out, id, &body);
-                counters.reports_sent.one();
+                counters.reports_sent.increment();
             }
         }
         let loads = self.link.unwritten() == 0 && !output.out.is_empty() && output.is_sealed();

@@ -221,7 +221,7 @@ impl<P: Protocol> Waiting<P> {
             && handler.outlives()
             && (self.peer.detached).take_over(handler, self.peer.memory.lend_existing(self.weight))
         {
-            self.peer.counters.handlers_abandoned.one();
+            self.peer.counters.handlers_abandoned.increment();
         }
     }
 }

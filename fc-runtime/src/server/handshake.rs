@@ -39,7 +39,7 @@ pub(super) async fn shake<P: Protocol, S>(
         Err(Failed::Late) => "it did not come in time".to_owned(),
         Err(Failed::Broken(error)) => error.to_string(),
     };
-    counters.handshakes_failed.one();
+    counters.handshakes_failed.increment();
     if let Some(held) = counters.limiters.handshakes.admit() {
         let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
         tracing::warn!(protocol, connection, %peer, held, "the handshake failed: {why}");

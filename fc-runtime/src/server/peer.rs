@@ -198,7 +198,7 @@ impl<P: Protocol> Peer<P> {
             (state.driver.take(), dropped)
         };
         for dropped in dropped {
-            self.counters.reports_dropped.one();
+            self.counters.reports_dropped.increment();
             if let Some(held) = self.counters.limiters.dropped.admit() {
                 let (protocol, connection, code) = (P::NAME, self.id.0, dropped.code);
                 let (peer, held) = (self.address, held.shown());

@@ -82,7 +82,7 @@ impl<P: Protocol> Shared<P> {
     fn allowed(&self, address: SocketAddr) -> Option<Effects> {
         let effects = self.settings.allowed.effects(address.ip());
         if effects.is_none() {
-            self.counters.connections_forbidden.one();
+            self.counters.connections_forbidden.increment();
             if let Some(held) = self.counters.limiters.forbidden.admit() {
                 let (protocol, peer, held) = (P::NAME, address.ip(), held.shown());
                 tracing::warn!(protocol, %peer, held, "refused: the address is not allowed");
@@ -113,7 +113,7 @@ impl<P: Protocol> Shared<P> {
         for data in lock(&self.data_peers).of_mut(address.ip()) {
             data.owner.note(id);
         }
-        self.counters.connections.one();
+        self.counters.connections.increment();
         let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
         let registered = self.registered(id, &self.counters.gauges.connections);
         self.spawn(async move {
@@ -185,7 +185,7 @@ impl<P: Protocol> Shared<P> {
                 entry.owner.note(app);
             }
         }
-        self.counters.data_connections.one();
+        self.counters.data_connections.increment();
         let registered = self.registered(id, &self.counters.gauges.data_connections);
         self.spawn(async move {
             let _registered = registered;
@@ -247,14 +247,14 @@ impl<P: Protocol> Shared<P> {
         drop(table);
         let protocol = P::NAME;
         let Some((gone, from, entry)) = displaced else {
-            self.counters.connections_refused.one();
+            self.counters.connections_refused.increment();
             if let Some(held) = self.counters.limiters.refused.admit() {
                 let held = held.shown();
                 tracing::warn!(protocol, peer = %address, limit, held, "refused: {why}");
             }
             return Err(NotAdmitted);
         };
-        if self.counters.connections_displaced.one_to_log() {
+        if self.counters.connections_displaced.increment_sampled() {
             let (peer, by, connection) = (from, address, gone.0);
             tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
         }

@@ -34,7 +34,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         loop {
             while self.has_room() {
                 if self.handlers.len() >= self.peer.settings.limits.in_flight {
-                    self.peer.counters.in_flight_reached.one();
+                    self.peer.counters.in_flight_reached.increment();
                     self.log_in_flight_limit(now);
                     return Ok(false);
                 }
@@ -126,7 +126,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         let Some((time, line)) = self.pause.add(surplus, unusable, now) else {
             return;
         };
-        self.peer.counters.connections_paced.one();
+        self.peer.counters.connections_paced.increment();
         if let Some(held) = line {
             let (protocol, held) = (P::NAME, held.shown());
             let (connection, peer) = (self.peer.id.0, self.peer.address);
@@ -198,8 +198,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 let allowance = peer.settings.limits.json();
                 let outcome = acknowledged::<P>(frame.body(), allowance);
                 match outcome {
-                    AckOutcome::Acknowledged => peer.counters.reports_acknowledged.one(),
-                    _ => peer.counters.reports_refused.one(),
+                    AckOutcome::Acknowledged => peer.counters.reports_acknowledged.increment(),
+                    _ => peer.counters.reports_refused.increment(),
                 }
                 queued.end(outcome);
             }
