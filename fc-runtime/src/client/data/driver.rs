@@ -60,7 +60,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
             };
             let (dialled, commands) = tokio::select! {
                 biased;
-                () = self.shared.end.notified() => return None,
+                () = self.shared.closing.notified() => return None,
                 why = closed(self.commands.clone()) => {
                     self.why = why;
                     return None;
@@ -95,7 +95,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
         let mut for_good = false;
         self.why = tokio::select! {
             biased;
-            () = shared.end.notified() => {
+            () = shared.closing.notified() => {
                 for_good = true;
                 Loss::Here
             }

@@ -113,7 +113,7 @@ impl<P: Protocol> DataConnection<P> {
     /// [`DataError`]. After any error except [`DataError::Closed`], the next call continues with the next frame.
     pub async fn recv(&self) -> Result<StreamFrame, DataError> {
         loop {
-            let came = self.shared.came.notified();
+            let came = self.shared.inbox_changed.notified();
             if let Some(taken) = self.shared.take() {
                 return taken;
             }
@@ -135,7 +135,7 @@ impl<P: Protocol> DataConnection<P> {
     /// Returns the number of dropped frames without a subscription since the last call.
     #[must_use]
     pub fn missed(&self) -> u64 {
-        std::mem::take(&mut self.shared.lock().takers.skipped)
+        std::mem::take(&mut self.shared.lock().subscriptions.skipped)
     }
 
     /// Sends a frame with a JSON object, without an envelope, like [`send`](Self::send).
@@ -180,7 +180,7 @@ impl<P: Protocol> DataConnection<P> {
             bytes: Some(bytes),
         };
         loop {
-            let went = self.shared.went.notified();
+            let went = self.shared.outbox_changed.notified();
             let state = match pending.look() {
                 Ok(result) => return result,
                 Err(state) => state,
@@ -219,8 +219,8 @@ impl<P: Protocol> DataConnection<P> {
     /// that have arrived can still be received.
     pub fn close(&self) {
         self.shared.lock().connection.close(Loss::Here);
-        self.shared.tell();
-        self.shared.end.notify_one();
+        self.shared.notify_all();
+        self.shared.closing.notify_one();
     }
 }
 
@@ -240,7 +240,7 @@ impl PendingFrame<'_> {
             if let ConnectionState::Closed { why, .. } = now {
                 return Ok(Err(DataError::Closed(why)));
             }
-            if let Some(loss) = state.unsure.take() {
+            if let Some(loss) = state.sender_loss.take() {
                 return Ok(Err(DataError::Lost(loss)));
             }
             // The outbox may still hold a frame whose caller has given up.
@@ -294,7 +294,7 @@ impl Drop for PendingFrame<'_> {
                 // The next sender gets the loss.
                 let loss = *loss;
                 state.outbox = Outbox::Empty;
-                state.unsure = Some(loss);
+                state.sender_loss = Some(loss);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The state that the handle of a data connection shares with its driver: room for one frame in each direction.
 
 use super::error::DataError;
-use super::subscription::Takers;
+use super::subscription::SubscriptionQueues;
 use crate::client::loss::Loss;
 use crate::client::state_watch::{ConnectionState, StateWatch};
 use crate::stream::StreamFrame;
@@ -31,12 +31,12 @@ pub(super) struct State {
     /// The received frame that has not been taken.
     inbox: Option<Result<StreamFrame, DataError>>,
     /// A loss to be reported to the receiver after the frame in the inbox.
-    gap: Option<Loss>,
+    receiver_loss: Option<Loss>,
     /// Receivers of subscriptions.
-    pub(super) takers: Takers,
+    pub(super) subscriptions: SubscriptionQueues,
     pub(super) outbox: Outbox,
     /// A loss to be reported to the sender, after frames were sent.
-    pub(super) unsure: Option<Loss>,
+    pub(super) sender_loss: Option<Loss>,
     /// `true` if something was sent over this connection.
     sent: bool,
     /// `true` if something was received over this connection.
@@ -47,15 +47,15 @@ pub(super) struct State {
 pub(super) struct Shared {
     state: Mutex<State>,
     /// A frame has arrived, or the state of the connection has changed.
-    pub(super) came: Notify,
+    pub(super) inbox_changed: Notify,
     /// The outbox or the state of the connection has changed.
-    pub(super) went: Notify,
+    pub(super) outbox_changed: Notify,
     /// For the driver: the inbox is empty.
-    room: Notify,
+    inbox_emptied: Notify,
     /// For the driver: there is a frame to be sent.
-    work: Notify,
+    outbox_filled: Notify,
     /// For the driver: this side closes the connection.
-    pub(super) end: Notify,
+    pub(super) closing: Notify,
 }
 
 impl Shared {
@@ -64,18 +64,18 @@ impl Shared {
             state: Mutex::new(State {
                 connection: StateWatch::new(),
                 inbox: None,
-                gap: None,
-                takers: Takers::default(),
+                receiver_loss: None,
+                subscriptions: SubscriptionQueues::default(),
                 outbox: Outbox::Empty,
-                unsure: None,
+                sender_loss: None,
                 sent: false,
                 heard: false,
             }),
-            came: Notify::new(),
-            went: Notify::new(),
-            room: Notify::new(),
-            work: Notify::new(),
-            end: Notify::new(),
+            inbox_changed: Notify::new(),
+            outbox_changed: Notify::new(),
+            inbox_emptied: Notify::new(),
+            outbox_filled: Notify::new(),
+            closing: Notify::new(),
         }
     }
 
@@ -84,9 +84,9 @@ impl Shared {
     }
 
     /// Wakes all waiting tasks.
-    pub(super) fn tell(&self) {
-        self.came.notify_waiters();
-        self.went.notify_waiters();
+    pub(super) fn notify_all(&self) {
+        self.inbox_changed.notify_waiters();
+        self.outbox_changed.notify_waiters();
     }
 
     /// Takes the next result for the receiver, if there is one.
@@ -94,11 +94,14 @@ impl Shared {
         let mut state = self.lock();
         let taken = match state.inbox.take() {
             Some(arrived) => Some(arrived),
-            None => state.gap.take().map(|loss| Err(DataError::Lost(loss))),
+            None => state
+                .receiver_loss
+                .take()
+                .map(|loss| Err(DataError::Lost(loss))),
         };
         if taken.is_some() {
             drop(state);
-            self.room.notify_one();
+            self.inbox_emptied.notify_one();
             return taken;
         }
         match state.connection.now() {
@@ -110,7 +113,7 @@ impl Shared {
     /// Delivers a frame to its subscriptions, or waits until the receiver has room for it.
     pub(super) async fn put(&self, mut arrived: Result<StreamFrame, DataError>) {
         loop {
-            let room = self.room.notified();
+            let room = self.inbox_emptied.notified();
             // A separate statement, because the lock must not be held while waiting.
             let placed = self.lock().place(arrived);
             match placed {
@@ -119,21 +122,21 @@ impl Shared {
             }
             room.await;
         }
-        self.came.notify_waiters();
+        self.inbox_changed.notify_waiters();
     }
 
     /// Adds a subscription to a code and returns its id.
     pub(super) fn enter(&self, code: u16) -> u64 {
-        let id = self.lock().takers.enter(code);
+        let id = self.lock().subscriptions.enter(code);
         // A frame that waits for room can be dropped now.
-        self.room.notify_one();
+        self.inbox_emptied.notify_one();
         id
     }
 
     /// Takes the next result for a subscription, if there is one.
     pub(super) fn take_of(&self, id: u64) -> Option<Result<StreamFrame, DataError>> {
         let mut state = self.lock();
-        let taken = state.takers.take(id);
+        let taken = state.subscriptions.take(id);
         if taken.is_some() {
             return taken;
         }
@@ -161,13 +164,13 @@ impl Shared {
     /// Puts a frame into the empty outbox.
     pub(super) fn begin(&self, state: &mut State, bytes: Vec<u8>) {
         state.outbox = Outbox::Waiting(bytes);
-        self.work.notify_one();
+        self.outbox_filled.notify_one();
     }
 
     /// Waits for the next frame to be sent.
     pub(super) async fn next(&self) -> Vec<u8> {
         loop {
-            let work = self.work.notified();
+            let work = self.outbox_filled.notified();
             {
                 let mut state = self.lock();
                 if let Outbox::Waiting(bytes) = &mut state.outbox {
@@ -190,7 +193,7 @@ impl Shared {
             Outbox::Empty | Outbox::Waiting(_) | Outbox::Done(_) => {}
         }
         drop(state);
-        self.went.notify_waiters();
+        self.outbox_changed.notify_waiters();
     }
 
     /// Notes a new connection and returns its number.
@@ -201,25 +204,25 @@ impl Shared {
         state.connection.connected();
         let connects = state.connection.now().connects();
         drop(state);
-        self.tell();
+        self.notify_all();
         connects
     }
 
     /// Notes that there is no connection yet.
     pub(super) fn not_connected(&self, why: Loss) {
         self.lock().connection.lost(why);
-        self.tell();
+        self.notify_all();
     }
 
     /// Notes a loss of the connection and of the frames in flight.
     pub(super) fn lost(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
-        state.gap = Some(why);
-        state.takers.lost(why);
+        state.receiver_loss = Some(why);
+        state.subscriptions.lost(why);
         state.connection.lost(why);
         drop(state);
-        self.tell();
+        self.notify_all();
     }
 
     /// Notes the end of the connection.
@@ -228,7 +231,7 @@ impl Shared {
         state.abandon(why);
         state.connection.close(why);
         drop(state);
-        self.tell();
+        self.notify_all();
     }
 }
 
@@ -238,18 +241,18 @@ impl State {
         &mut self,
         arrived: Result<StreamFrame, DataError>,
     ) -> Result<(), Result<StreamFrame, DataError>> {
-        let Err(arrived) = self.takers.offer(arrived) else {
+        let Err(arrived) = self.subscriptions.offer(arrived) else {
             return Ok(());
         };
-        if self.inbox.is_none() && self.gap.is_none() {
+        if self.inbox.is_none() && self.receiver_loss.is_none() {
             self.inbox = Some(arrived);
             return Ok(());
         }
-        if self.takers.is_empty() {
+        if self.subscriptions.is_empty() {
             return Err(arrived);
         }
         // Subscriptions do not wait for a receiver that may not exist.
-        self.takers.skipped += 1;
+        self.subscriptions.skipped += 1;
         Ok(())
     }
 
@@ -260,11 +263,11 @@ impl State {
             Outbox::Sending { orphan: false } => self.outbox = Outbox::Done(Err(why)),
             Outbox::Sending { orphan: true } => {
                 self.outbox = Outbox::Empty;
-                self.unsure = Some(why);
+                self.sender_loss = Some(why);
             }
             // The next frame must not follow one that may be missing.
             Outbox::Waiting(_) if sent => self.outbox = Outbox::Done(Err(why)),
-            Outbox::Empty | Outbox::Done(Ok(())) if sent => self.unsure = Some(why),
+            Outbox::Empty | Outbox::Done(Ok(())) if sent => self.sender_loss = Some(why),
             Outbox::Empty | Outbox::Waiting(_) | Outbox::Done(_) => {}
         }
     }

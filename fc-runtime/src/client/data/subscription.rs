@@ -60,7 +60,7 @@ impl<T: StreamContent> Subscription<T> {
     /// call continues with the next frame.
     pub async fn recv(&mut self) -> Result<StreamItem<T>, DataError> {
         let frame = loop {
-            let came = self.shared.came.notified();
+            let came = self.shared.inbox_changed.notified();
             if let Some(taken) = self.shared.take_of(self.id) {
                 break taken?;
             }
@@ -77,13 +77,13 @@ impl<T: StreamContent> Subscription<T> {
 impl<T> Subscription<T> {
     /// Returns the number of replaced frames since the last call.
     pub fn missed(&mut self) -> u64 {
-        self.shared.lock().takers.missed_of(self.id)
+        self.shared.lock().subscriptions.missed_of(self.id)
     }
 }
 
 impl<T> Drop for Subscription<T> {
     fn drop(&mut self) {
-        self.shared.lock().takers.leave(self.id);
+        self.shared.lock().subscriptions.leave(self.id);
     }
 }
 
@@ -95,22 +95,22 @@ impl<T> fmt::Debug for Subscription<T> {
 
 /// The queues of all receivers of a data connection.
 #[derive(Debug, Default)]
-pub(super) struct Takers {
+pub(super) struct SubscriptionQueues {
     last: u64,
-    all: Vec<Taker>,
+    all: Vec<SubscriptionQueue>,
     /// Dropped frames of other streams.
     pub(super) skipped: u64,
 }
 
 #[derive(Debug)]
-struct Taker {
+struct SubscriptionQueue {
     id: u64,
     code: u16,
     waiting: VecDeque<Result<StreamFrame, DataError>>,
     missed: u64,
 }
 
-impl Taker {
+impl SubscriptionQueue {
     fn push(&mut self, arrived: Result<StreamFrame, DataError>) {
         if self.waiting.len() >= QUEUE {
             let oldest = self.waiting.iter().position(Result::is_ok);
@@ -121,10 +121,10 @@ impl Taker {
     }
 }
 
-impl Takers {
+impl SubscriptionQueues {
     pub(super) fn enter(&mut self, code: u16) -> u64 {
         self.last += 1;
-        self.all.push(Taker {
+        self.all.push(SubscriptionQueue {
             id: self.last,
             code,
             waiting: VecDeque::new(),
@@ -134,7 +134,7 @@ impl Takers {
     }
 
     fn leave(&mut self, id: u64) {
-        self.all.retain(|taker| taker.id != id);
+        self.all.retain(|queue| queue.id != id);
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -151,11 +151,11 @@ impl Takers {
             Err(DataError::Frame(error)) => error.frame().map(|frame| frame.code),
             Err(_) => None,
         };
-        let mut takers = self.all.iter_mut().filter(|it| Some(it.code) == code);
-        let Some(first) = takers.next() else {
+        let mut subscriptions = self.all.iter_mut().filter(|it| Some(it.code) == code);
+        let Some(first) = subscriptions.next() else {
             return Err(arrived);
         };
-        for other in takers {
+        for other in subscriptions {
             other.push(arrived.clone());
         }
         first.push(arrived);
@@ -164,9 +164,9 @@ impl Takers {
 
     /// Adds a loss to all queues, because frames may be missing.
     pub(super) fn lost(&mut self, why: Loss) {
-        for taker in &mut self.all {
-            if !matches!(taker.waiting.back(), Some(Err(DataError::Lost(_)))) {
-                taker.push(Err(DataError::Lost(why)));
+        for queue in &mut self.all {
+            if !matches!(queue.waiting.back(), Some(Err(DataError::Lost(_)))) {
+                queue.push(Err(DataError::Lost(why)));
             }
         }
     }
@@ -174,13 +174,13 @@ impl Takers {
     pub(super) fn take(&mut self, id: u64) -> Option<Result<StreamFrame, DataError>> {
         self.all
             .iter_mut()
-            .find(|taker| taker.id == id)?
+            .find(|queue| queue.id == id)?
             .waiting
             .pop_front()
     }
 
     fn missed_of(&mut self, id: u64) -> u64 {
-        let taker = self.all.iter_mut().find(|taker| taker.id == id);
-        taker.map_or(0, |taker| std::mem::take(&mut taker.missed))
+        let queue = self.all.iter_mut().find(|queue| queue.id == id);
+        queue.map_or(0, |queue| std::mem::take(&mut queue.missed))
     }
 }
