@@ -25,12 +25,12 @@ impl FrameProgress {
     }
 
     /// Notes that a frame is complete or has been skipped.
-    pub(crate) fn whole(&mut self) {
+    pub(crate) fn complete(&mut self) {
         self.since = None;
     }
 
     /// Notes that bytes have arrived.
-    pub(crate) fn came(&mut self, now: Instant) {
+    pub(crate) fn received(&mut self, now: Instant) {
         if let Some((_, last)) = &mut self.since {
             *last = now;
         }

@@ -170,7 +170,7 @@ fn report<P: Protocol>(
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
-    if let Some(since) = state.report_watchdog.came(id.code, now) {
+    if let Some(since) = state.report_watchdog.received(id.code, now) {
         state.counters.reports_late += 1;
         if let Some(held) = state.limiters.late.admit(now) {
             tracing::warn!(

@@ -132,7 +132,7 @@ impl<P: Protocol> Driver<P> {
             decoder: self.inner.config.decoder::<P>(),
         };
         let mut heard = false;
-        self.arriving.whole();
+        self.arriving.complete();
         self.unread_since = None;
         // The reason if the task ends before the connection.
         self.why = Loss::Ended;
@@ -177,7 +177,7 @@ impl<P: Protocol> Driver<P> {
                 Poll::Pending => break self.stalled(link, now),
                 Poll::Ready(Ok(n)) if n > 0 => {
                     self.bytes_in += n as u64;
-                    self.arriving.came(now);
+                    self.arriving.received(now);
                 }
                 Poll::Ready(Ok(_)) => {
                     break Some(match link.decoder.finish() {
@@ -262,7 +262,7 @@ impl<P: Protocol> Driver<P> {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
-                    self.arriving.whole();
+                    self.arriving.complete();
                     *turn = turn.saturating_sub(FRAME + frame.body().len());
                     let allowance = self.inner.limits.json();
                     self.arrivals.push(Arrival::of(
@@ -273,7 +273,7 @@ impl<P: Protocol> Driver<P> {
                     ));
                 }
                 Err(error) => {
-                    self.arriving.whole();
+                    self.arriving.complete();
                     *turn = turn.saturating_sub(FRAME);
                     let Some(id) = error.frame() else {
                         self.inner.lock().counters.bad_frames += 1;
@@ -347,7 +347,7 @@ impl<P: Protocol> Driver<P> {
             state.connection.connected();
         }
         state.session.reconnected();
-        state.report_watchdog.begin();
+        state.report_watchdog.restart();
         let mut wakers: Vec<_> = state
             .slots
             .iter_mut()

@@ -132,7 +132,7 @@ impl Queues {
     }
 
     /// Adds a receiver for reports with this code, or for all reports. Returns its number.
-    pub(super) fn enter(&mut self, code: Option<u16>) -> u64 {
+    pub(super) fn add(&mut self, code: Option<u16>) -> u64 {
         self.next += 1;
         self.receivers.push(Queue {
             receiver: self.next,
@@ -147,12 +147,12 @@ impl Queues {
         self.next
     }
 
-    pub(super) fn leave(&mut self, receiver: u64) {
+    pub(super) fn remove(&mut self, receiver: u64) {
         self.receivers.retain(|queue| queue.receiver != receiver);
     }
 
     /// Returns the queue of a receiver.
-    pub(super) fn of(&mut self, receiver: u64) -> Option<&mut Queue> {
+    pub(super) fn get(&mut self, receiver: u64) -> Option<&mut Queue> {
         self.receivers
             .iter_mut()
             .find(|queue| queue.receiver == receiver)

@@ -32,14 +32,14 @@ impl ReportWatchdog {
     }
 
     /// Starts a connection. Arrivals on earlier ones do not count.
-    pub(super) fn begin(&mut self) {
+    pub(super) fn restart(&mut self) {
         for interval in &mut self.0 {
             interval.last = None;
         }
     }
 
     /// Notes a new report. Returns the time since the last one if that is too long.
-    pub(super) fn came(&mut self, code: u16, now: Instant) -> Option<Duration> {
+    pub(super) fn received(&mut self, code: u16, now: Instant) -> Option<Duration> {
         let interval = self.0.iter_mut().find(|interval| interval.code == code)?;
         let last = interval.last.replace(now)?;
         Some(now.saturating_duration_since(last)).filter(|since| *since > interval.at_most)

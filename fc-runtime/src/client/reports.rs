@@ -47,7 +47,7 @@ impl<P: Protocol> RawReports<P> {
     /// full while another receiver takes the report.
     pub fn missed(&mut self) -> u64 {
         let mut state = self.0.handle.lock();
-        let queue = state.reports.of(self.0.id);
+        let queue = state.reports.get(self.0.id);
         queue.map_or(0, |queue| std::mem::take(&mut queue.missed))
     }
 }
@@ -75,7 +75,7 @@ pub(super) struct Receiver<P: Protocol> {
 impl<P: Protocol> Receiver<P> {
     /// Creates a queue for the reports of a code, or for all reports.
     pub(super) fn new(handle: Handle<P>, code: Option<u16>) -> Self {
-        let id = handle.lock().reports.enter(code);
+        let id = handle.lock().reports.add(code);
         Self { handle, id }
     }
 
@@ -88,7 +88,7 @@ impl<P: Protocol> Receiver<P> {
         let mut state = self.handle.lock();
         let now = state.connection.now();
         let ended = || Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
-        let Some(queue) = state.reports.of(self.id) else {
+        let Some(queue) = state.reports.get(self.id) else {
             return ended();
         };
         if let Some(next) = take(queue) {
@@ -104,6 +104,6 @@ impl<P: Protocol> Receiver<P> {
 
 impl<P: Protocol> Drop for Receiver<P> {
     fn drop(&mut self) {
-        self.handle.lock().reports.leave(self.id);
+        self.handle.lock().reports.remove(self.id);
     }
 }
