@@ -1,6 +1,6 @@
 //! The grammar of `#[fc(…)]`: `key`, `key = value`, `key(values)`, separated by commas.
 
-use crate::faults::Faults;
+use crate::errors::Errors;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt as _;
@@ -27,12 +27,12 @@ pub type ItemReader<'r> = dyn FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item
 
 /// Reads every key of every `#[fc(…)]` in `attributes` with `item`, which gets the key before its value. After an error
 /// it continues after the next comma.
-pub fn read(attributes: &[Attribute], faults: &mut Faults, place: &str, item: &mut ItemReader<'_>) {
+pub fn read(attributes: &[Attribute], errors: &mut Errors, place: &str, item: &mut ItemReader<'_>) {
     for attribute in attributes {
         if attribute.path().is_ident(NAME) {
             let result = attribute
-                .parse_args_with(|input: ParseStream<'_>| read_items(input, faults, place, item));
-            faults.ok(result);
+                .parse_args_with(|input: ParseStream<'_>| read_items(input, errors, place, item));
+            errors.ok(result);
         }
     }
 }
@@ -40,7 +40,7 @@ pub fn read(attributes: &[Attribute], faults: &mut Faults, place: &str, item: &m
 /// Reads the keys of one attribute.
 pub fn read_items(
     input: ParseStream<'_>,
-    faults: &mut Faults,
+    errors: &mut Errors,
     place: &str,
     item: &mut ItemReader<'_>,
 ) -> syn::Result<()> {
@@ -48,13 +48,13 @@ pub fn read_items(
         let key = input.call(Ident::parse_any)?;
         match item(&key, input) {
             Ok(Item::Read) if !input.is_empty() && !input.peek(Token![,]) => {
-                faults.push(input.error("expected `,`"));
+                errors.push(input.error("expected `,`"));
             }
             Ok(Item::Read | Item::Foreign) => {}
             Ok(Item::Unknown) => {
-                faults.on(&key, format!("`{key}` is not an attribute of {place}"));
+                errors.on(&key, format!("`{key}` is not an attribute of {place}"));
             }
-            Err(error) => faults.push(error),
+            Err(error) => errors.push(error),
         }
         skip(input)?;
         input.parse::<Option<Token![,]>>()?;
@@ -109,9 +109,9 @@ impl<T> Slot<T> {
     }
 
     /// Returns the value. Reports an error at `place` if the key was not given.
-    pub fn required(&self, faults: &mut Faults, place: &dyn ToTokens, message: &str) -> Option<&T> {
+    pub fn required(&self, errors: &mut Errors, place: &dyn ToTokens, message: &str) -> Option<&T> {
         if self.key.is_none() {
-            faults.on(place, message);
+            errors.on(place, message);
         }
         self.get()
     }

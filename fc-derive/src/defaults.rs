@@ -1,7 +1,7 @@
 //! `#[derive(Defaults)]`: the meaning of absent fields.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::new::optional;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
@@ -11,21 +11,21 @@ use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Expr, Fields, Ident, Token, Type};
 
 /// Writes a constant and an accessor for each default, or errors.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
     let mut found = Vec::new();
     if let Data::Struct(data) = &input.data
         && let Fields::Named(fields) = &data.fields
     {
         for field in &fields.named {
-            found.extend(Defaulted::read(field, &mut faults));
+            found.extend(Defaulted::read(field, &mut errors));
         }
     } else {
-        faults.on(
+        errors.on(
             &input.ident,
             "`Defaults` is for structs whose fields have names",
         );
     }
-    faults.finish(|| code(input, &found), TokenStream::new)
+    errors.finish(|| code(input, &found), TokenStream::new)
 }
 
 /// A field with a default.
@@ -37,10 +37,10 @@ struct Defaulted<'a> {
 }
 
 impl<'a> Defaulted<'a> {
-    fn read(field: &'a syn::Field, faults: &mut Faults) -> Option<Self> {
+    fn read(field: &'a syn::Field, errors: &mut Errors) -> Option<Self> {
         let mut default = Slot::default();
         let mut at = None;
-        attr::read(&field.attrs, faults, "a field", &mut |key, input| {
+        attr::read(&field.attrs, errors, "a field", &mut |key, input| {
             if key == "default" {
                 at = Some(key.span());
                 return default.set(key, expression(input));
@@ -50,7 +50,7 @@ impl<'a> Defaulted<'a> {
         });
         let ty = optional(&field.ty);
         if let (Some(at), None) = (at, ty) {
-            faults.at(
+            errors.at(
                 at,
                 "`default` is for an `Option`: it is what its absence means",
             );

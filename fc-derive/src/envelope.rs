@@ -1,7 +1,7 @@
 //! `#[derive(Envelope)]`.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -9,9 +9,9 @@ use syn::parse::ParseStream;
 use syn::{DeriveInput, Field, Ident, LitStr, Path, Type};
 
 /// Writes the envelope trait, or errors and a stub.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let envelope = Envelope::read(input, &mut faults);
-    faults.finish(|| code(&envelope), || stub(&envelope))
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let envelope = Envelope::read(input, &mut errors);
+    errors.finish(|| code(&envelope), || stub(&envelope))
 }
 
 struct Envelope<'a> {
@@ -43,9 +43,9 @@ enum Role {
 }
 
 impl<'a> Envelope<'a> {
-    fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+    fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut side = Slot::default();
-        let runtime = item::read_attributes(input, faults, "an envelope", &mut |key, input| {
+        let runtime = item::read_attributes(input, errors, "an envelope", &mut |key, input| {
             if key == "envelope" {
                 return side.set(key, read_side(input));
             }
@@ -53,7 +53,7 @@ impl<'a> Envelope<'a> {
             Ok(Item::Foreign)
         });
         let message = "the side is missing: `#[fc(envelope = \"request\")]` or `\"response\"`";
-        let side = side.required(faults, &input.ident, message).copied();
+        let side = side.required(errors, &input.ident, message).copied();
         let mut envelope = Self {
             ident: &input.ident,
             runtime,
@@ -63,13 +63,13 @@ impl<'a> Envelope<'a> {
             result_text: None,
             rest: Vec::new(),
         };
-        if let Some(fields) = item::fields(input, faults, "an envelope is a struct", "") {
+        if let Some(fields) = item::fields(input, errors, "an envelope is a struct", "") {
             for field in fields {
-                envelope.add(field, faults);
+                envelope.add(field, errors);
             }
         }
         if envelope.result_text.is_some() && envelope.result_code.is_none() {
-            faults.on(
+            errors.on(
                 &input.ident,
                 "a result text says what a result code means, and no field has the role `result_code`",
             );
@@ -77,12 +77,12 @@ impl<'a> Envelope<'a> {
         envelope
     }
 
-    fn add(&mut self, field: &'a Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "an envelope's field",
             &mut |key, input| {
                 if key == "role" {
@@ -102,13 +102,13 @@ impl<'a> Envelope<'a> {
             Role::ResultText => (&mut self.result_text, true),
         };
         if slot.is_some() {
-            faults.on(
+            errors.on(
                 &literal,
                 format!("another field has the role `{}`", literal.value()),
             );
         }
         if of_response && self.side == Some(Side::Request) {
-            faults.on(&literal, "a request has no result");
+            errors.on(&literal, "a request has no result");
         }
         *slot = Some((ident, &field.ty));
     }

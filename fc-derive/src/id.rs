@@ -1,7 +1,7 @@
 //! `#[derive(Id)]`: an id with its own type, sent as its inner value.
 
 use crate::attr::Item;
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
@@ -12,10 +12,10 @@ use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
 const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
 
 /// Writes the implementations, or errors.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let runtime = item::read_attributes(input, &mut faults, "an id", &mut |_, _| Ok(Item::Unknown));
-    let held = held(input, &mut faults);
-    faults.finish(
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let runtime = item::read_attributes(input, &mut errors, "an id", &mut |_, _| Ok(Item::Unknown));
+    let held = held(input, &mut errors);
+    errors.finish(
         || held.map_or_else(TokenStream::new, |held| code(&input.ident, &runtime, &held)),
         TokenStream::new,
     )
@@ -28,29 +28,29 @@ enum Held<'a> {
 }
 
 /// Returns the inner type, or reports an invalid one.
-fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
+fn held<'a>(input: &'a DeriveInput, errors: &mut Errors) -> Option<Held<'a>> {
     const WANTED: &str =
         "an id is a struct of one integer or `String`, such as `struct StationId(pub i64)`";
     if !input.generics.params.is_empty() {
-        faults.on(&input.generics, "an id has no parameters");
+        errors.on(&input.generics, "an id has no parameters");
         return None;
     }
     let fields = match &input.data {
         Data::Struct(data) => match &data.fields {
             Fields::Unnamed(fields) => &fields.unnamed,
             Fields::Named(_) | Fields::Unit => {
-                faults.on(&input.ident, WANTED);
+                errors.on(&input.ident, WANTED);
                 return None;
             }
         },
         Data::Enum(_) | Data::Union(_) => {
-            faults.on(&input.ident, WANTED);
+            errors.on(&input.ident, WANTED);
             return None;
         }
     };
     let mut fields = fields.iter();
     let (Some(field), None) = (fields.next(), fields.next()) else {
-        faults.on(&input.ident, WANTED);
+        errors.on(&input.ident, WANTED);
         return None;
     };
     let last = match &field.ty {
@@ -63,7 +63,7 @@ fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
         }
         Some(last) if last.ident == "String" => Some(Held::Text(&field.ty)),
         _ => {
-            faults.on(&field.ty, WANTED);
+            errors.on(&field.ty, WANTED);
             None
         }
     }

@@ -15,7 +15,7 @@ mod defaults;
 #[cfg(feature = "server")]
 mod dispatch;
 mod envelope;
-mod faults;
+mod errors;
 mod header;
 mod id;
 mod item;

@@ -1,7 +1,7 @@
 //! `#[derive(New)]`: constructors of messages that may get further fields.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
@@ -10,12 +10,12 @@ use syn::ext::IdentExt as _;
 use syn::{DeriveInput, GenericArgument, Ident, PathArguments, Type};
 
 /// Writes `new`, the setters and, for two or more required fields, a struct with these fields; or errors.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let fields: Vec<_> = item::named_fields(input, &mut faults, "New")
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut errors, "New")
         .into_iter()
-        .filter_map(|field| Field::read(field, &mut faults))
+        .filter_map(|field| Field::read(field, &mut errors))
         .collect();
-    faults.finish(|| code(input, &fields), TokenStream::new)
+    errors.finish(|| code(input, &fields), TokenStream::new)
 }
 
 /// A field and the source of its value.
@@ -35,9 +35,9 @@ enum Value<'a> {
 }
 
 impl<'a> Field<'a> {
-    fn read(field: &'a syn::Field, faults: &mut Faults) -> Option<Self> {
+    fn read(field: &'a syn::Field, errors: &mut Errors) -> Option<Self> {
         let mut extra = Slot::default();
-        attr::read(&field.attrs, faults, "a field", &mut |key, _| {
+        attr::read(&field.attrs, errors, "a field", &mut |key, _| {
             if key == "extra" {
                 return extra.set(key, Ok(()));
             }

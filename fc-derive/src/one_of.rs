@@ -1,7 +1,7 @@
 //! `#[derive(OneOf)]`.
 
 use crate::attr::{self, Item};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use crate::json::{self, Bodies};
 use crate::span::span_of;
@@ -10,34 +10,34 @@ use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
 /// Writes the implementations, or errors and stubs.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
     let item = "a choice of messages";
-    let runtime = item::read_attributes(input, &mut faults, item, &mut |_, _| Ok(Item::Unknown));
-    item::forbid_parameters(&input.generics, &mut faults, item);
-    let variants = read_variants(input, &mut faults);
-    faults.finish(
+    let runtime = item::read_attributes(input, &mut errors, item, &mut |_, _| Ok(Item::Unknown));
+    item::forbid_parameters(&input.generics, &mut errors, item);
+    let variants = read_variants(input, &mut errors);
+    errors.finish(
         || code(&input.ident, &runtime, &variants),
         || json::stub(&input.ident, &runtime),
     )
 }
 
 /// Returns the variants and their messages.
-fn read_variants<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Vec<(&'a Ident, &'a Type)> {
+fn read_variants<'a>(input: &'a DeriveInput, errors: &mut Errors) -> Vec<(&'a Ident, &'a Type)> {
     let hint = "; a struct is a `Message`";
-    let Some(variants) = item::variants(input, faults, "`OneOf` is for enums", hint) else {
+    let Some(variants) = item::variants(input, errors, "`OneOf` is for enums", hint) else {
         return Vec::new();
     };
     if variants.is_empty() {
-        faults.on(&input.ident, "a choice has at least one variant");
+        errors.on(&input.ident, "a choice has at least one variant");
     }
     variants
         .iter()
-        .filter_map(|variant| read_variant(variant, faults))
+        .filter_map(|variant| read_variant(variant, errors))
         .collect()
 }
 
-fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Ident, &'a Type)> {
-    attr::read(&variant.attrs, faults, "a choice's variant", &mut |_, _| {
+fn read_variant<'a>(variant: &'a Variant, errors: &mut Errors) -> Option<(&'a Ident, &'a Type)> {
+    attr::read(&variant.attrs, errors, "a choice's variant", &mut |_, _| {
         Ok(Item::Unknown)
     });
     if let Fields::Unnamed(fields) = &variant.fields
@@ -49,7 +49,7 @@ fn read_variant<'a>(variant: &'a Variant, faults: &mut Faults) -> Option<(&'a Id
         Fields::Unit => variant.ident.to_token_stream(),
         fields => fields.to_token_stream(),
     };
-    faults.on(&place, "each variant holds one message");
+    errors.on(&place, "each variant holds one message");
     None
 }
 

@@ -1,7 +1,7 @@
 //! `#[derive(Command)]` and `#[derive(Report)]`: the code and further properties of a message.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
@@ -38,9 +38,9 @@ struct Ack {
 }
 
 impl Operation {
-    fn read(input: &DeriveInput, faults: &mut Faults) -> Self {
+    fn read(input: &DeriveInput, errors: &mut Errors) -> Self {
         let mut this = Self::default();
-        attr::read(&input.attrs, faults, "an operation", &mut |key, input| {
+        attr::read(&input.attrs, errors, "an operation", &mut |key, input| {
             this.item(key, input)
         });
         this
@@ -112,8 +112,8 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
     let parentheses = syn::parenthesized!(content in input);
     let mut timeout_ms = Slot::default();
     let mut retries = Slot::default();
-    let mut faults = Faults::default();
-    attr::read_items(&content, &mut faults, "`ack`", &mut |key, input| match key
+    let mut errors = Errors::default();
+    attr::read_items(&content, &mut errors, "`ack`", &mut |key, input| match key
         .to_string()
         .as_str()
     {
@@ -121,7 +121,7 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
         "retries" => retries.set(key, attr::integer(input)),
         _ => Ok(Item::Unknown),
     })?;
-    faults.into_result()?;
+    errors.into_result()?;
     match (timeout_ms.get(), retries.get()) {
         (Some(&timeout_ms), Some(&retries)) => Ok(Ack {
             timeout_ms,
@@ -140,30 +140,30 @@ fn missing(key: &str, example: &str) -> String {
 }
 
 /// Writes `Command`, or errors and a stub.
-pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let operation = Operation::read(input, &mut faults);
+pub fn expand_command(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let operation = Operation::read(input, &mut errors);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code
-        .required(&mut faults, ident, &missing("code", "0x0A03"));
+        .required(&mut errors, ident, &missing("code", "0x0A03"));
     let name = operation
         .name
-        .required(&mut faults, ident, &missing("name", "\"get_station\""));
+        .required(&mut errors, ident, &missing("name", "\"get_station\""));
     let effect = operation
         .effect
-        .required(&mut faults, ident, &missing("effect", "\"read\""));
+        .required(&mut errors, ident, &missing("effect", "\"read\""));
     let response = operation.response.required(
-        &mut faults,
+        &mut errors,
         ident,
         &missing("response", "GetStationResponse"),
     );
     if let Some(key) = operation.ack.key() {
-        faults.at(key, "`ack` is for reports; a command is answered");
+        errors.at(key, "`ack` is for reports; a command is answered");
     }
     let states = [operation.state.key(), operation.failure.key()];
     for key in states.into_iter().flatten() {
-        faults.at(key, "what says how far a process has come is a report");
+        errors.at(key, "what says how far a process has come is a report");
     }
     let set_off = operation.sets_off.get().map(Vec::as_slice);
     let set_off = process::set_off(&runtime, ident, set_off.unwrap_or_default());
@@ -196,7 +196,7 @@ pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
             #set_off
         }
     };
-    faults.finish(
+    errors.finish(
         || {
             let effect = effect
                 .cloned()
@@ -216,32 +216,32 @@ pub fn expand_command(input: &DeriveInput, mut faults: Faults) -> TokenStream {
 }
 
 /// Writes `Report`, or errors and a stub.
-pub fn expand_report(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let operation = Operation::read(input, &mut faults);
+pub fn expand_report(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let operation = Operation::read(input, &mut errors);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code
-        .required(&mut faults, ident, &missing("code", "0x0B01"));
+        .required(&mut errors, ident, &missing("code", "0x0B01"));
     let name = operation.name.required(
-        &mut faults,
+        &mut errors,
         ident,
         &missing("name", "\"recharge_progress\""),
     );
     if let Some(key) = operation.effect.key() {
-        faults.at(key, "`effect` is for commands");
+        errors.at(key, "`effect` is for commands");
     }
     if let Some(key) = operation.response.key() {
-        faults.at(key, "`response` is for commands; a report is acknowledged");
+        errors.at(key, "`response` is for commands; a report is acknowledged");
     }
     if let Some(key) = operation.error.key() {
-        faults.at(key, "`error` is for commands; a report is acknowledged");
+        errors.at(key, "`error` is for commands; a report is acknowledged");
     }
     if let Some(key) = operation.accepted_in.key() {
-        faults.at(key, "`accepted_in` is for commands");
+        errors.at(key, "`accepted_in` is for commands");
     }
     if let Some(key) = operation.sets_off.key() {
-        faults.at(
+        errors.at(
             key,
             "`sets_off` is for commands; a report is what is set off",
         );
@@ -276,7 +276,7 @@ pub fn expand_report(input: &DeriveInput, mut faults: Faults) -> TokenStream {
             }
         }
     };
-    faults.finish(
+    errors.finish(
         || write(generated(code), quote!(#name)),
         || write(quote!(0), quote!("")),
     )

@@ -1,7 +1,7 @@
 //! `#[derive(RedactedDebug)]`.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -9,18 +9,18 @@ use syn::ext::IdentExt as _;
 use syn::{DeriveInput, Field, Ident};
 
 /// Writes `Debug`, or errors and a stub.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let fields: Vec<_> = item::named_fields(input, &mut faults, "RedactedDebug")
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut errors, "RedactedDebug")
         .into_iter()
-        .filter_map(|field| read(field, &mut faults))
+        .filter_map(|field| read(field, &mut errors))
         .collect();
-    faults.finish(|| code(input, &fields), || code(input, &[]))
+    errors.finish(|| code(input, &fields), || code(input, &[]))
 }
 
 /// Reads a field. The bool is `true` for a sensitive one.
-fn read<'a>(field: &'a Field, faults: &mut Faults) -> Option<(&'a Ident, bool)> {
+fn read<'a>(field: &'a Field, errors: &mut Errors) -> Option<(&'a Ident, bool)> {
     let mut sensitive = Slot::default();
-    attr::read(&field.attrs, faults, "a field", &mut |key, _| {
+    attr::read(&field.attrs, errors, "a field", &mut |key, _| {
         if key == "sensitive" {
             return sensitive.set(key, Ok(()));
         }

@@ -2,7 +2,7 @@
 
 use crate::attr::{self, Item, Slot};
 use crate::codes::distinct;
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
@@ -10,10 +10,10 @@ use quote::{ToTokens as _, quote, quote_spanned};
 use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
 /// Writes `from_raw`, or errors.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
     let mut protocol = Slot::default();
     let item = "an enum of reports";
-    let runtime = item::read_attributes(input, &mut faults, item, &mut |key, input| {
+    let runtime = item::read_attributes(input, &mut errors, item, &mut |key, input| {
         if key == "protocol" {
             protocol.set(key, attr::path(input))
         } else {
@@ -21,21 +21,21 @@ pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
         }
     });
     let message = "`protocol` is missing: `#[fc(protocol = Fc)]`";
-    protocol.required(&mut faults, &input.ident, message);
+    protocol.required(&mut errors, &input.ident, message);
     let mut reports = Reports::default();
     let message = "`Dispatch` is for enums of reports";
-    if let Some(variants) = item::variants(input, &mut faults, message, "") {
+    if let Some(variants) = item::variants(input, &mut errors, message, "") {
         for variant in variants {
-            reports.add(variant, &mut faults);
+            reports.add(variant, &mut errors);
         }
         if reports.unknown.is_none() {
-            faults.on(
+            errors.on(
                 &input.ident,
                 "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
             );
         }
     }
-    faults.finish(
+    errors.finish(
         || code(&input.ident, &runtime, protocol.get(), &reports),
         TokenStream::new,
     )
@@ -48,11 +48,11 @@ struct Reports<'a> {
 }
 
 impl<'a> Reports<'a> {
-    fn add(&mut self, variant: &'a Variant, faults: &mut Faults) {
+    fn add(&mut self, variant: &'a Variant, errors: &mut Errors) {
         let mut unknown = Slot::default();
         attr::read(
             &variant.attrs,
-            faults,
+            errors,
             "a report's variant",
             &mut |key, _| {
                 if key == "unknown" {
@@ -71,14 +71,14 @@ impl<'a> Reports<'a> {
                 Fields::Unit => variant.ident.to_token_stream(),
                 fields => fields.to_token_stream(),
             };
-            faults.on(&place, "each variant holds one report");
+            errors.on(&place, "each variant holds one report");
             return;
         };
         let report = (&variant.ident, &field.ty);
         match (unknown.key(), self.unknown) {
             (None, _) => self.typed.push(report),
             (Some(_), None) => self.unknown = Some(report),
-            (Some(key), Some(_)) => faults.at(key, "`unknown` is given twice"),
+            (Some(key), Some(_)) => errors.at(key, "`unknown` is given twice"),
         }
     }
 }

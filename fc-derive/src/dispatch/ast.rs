@@ -2,7 +2,7 @@
 //! generated crate a second.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use proc_macro2::{Group, TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};
 use syn::{Attribute, Ident, Path, Token, Type, Visibility, braced, parenthesized, token};
@@ -21,7 +21,7 @@ pub struct Options {
 
 impl Options {
     /// Reads the attribute's arguments.
-    pub fn read(arguments: TokenStream, faults: &mut Faults) -> Self {
+    pub fn read(arguments: TokenStream, errors: &mut Errors) -> Self {
         let mut runtime = Slot::default();
         let mut protocol = Slot::default();
         let mut service = Slot::default();
@@ -29,7 +29,7 @@ impl Options {
         let place = "a service's trait";
         let parser =
             |input: ParseStream<'_>| {
-                attr::read_items(input, faults, place, &mut |key, input| match key
+                attr::read_items(input, errors, place, &mut |key, input| match key
                     .to_string()
                     .as_str()
                 {
@@ -41,11 +41,11 @@ impl Options {
                 })
             };
         let result = parser.parse2(arguments);
-        faults.ok(result);
+        errors.ok(result);
         // `None` points at the attribute, because there is no other token.
         let nothing = TokenStream::new();
-        protocol.required(faults, &nothing, "`protocol = …` is missing");
-        service.required(faults, &nothing, "`service = …` is missing");
+        protocol.required(errors, &nothing, "`protocol = …` is missing");
+        service.required(errors, &nothing, "`service = …` is missing");
         Self {
             runtime: attr::runtime(runtime),
             protocol: protocol.into_value(),

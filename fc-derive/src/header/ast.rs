@@ -1,7 +1,7 @@
 //! A header with its attributes.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use syn::parse::ParseStream;
 use syn::{DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
@@ -133,9 +133,9 @@ pub const ROLES: [(&str, Role); 9] = [
 
 impl<'a> Header<'a> {
     /// Reads the struct and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut byte_order = Slot::default();
-        let runtime = item::read_attributes(input, faults, "a header", &mut |key, input| {
+        let runtime = item::read_attributes(input, errors, "a header", &mut |key, input| {
             if key == "byte_order" {
                 byte_order.set(key, read_byte_order(input))
             } else {
@@ -143,35 +143,35 @@ impl<'a> Header<'a> {
             }
         });
         let message = "the byte order is missing: `#[fc(byte_order = \"big\")]`";
-        let byte_order = byte_order.required(faults, &input.ident, message).copied();
-        item::forbid_parameters(&input.generics, faults, "a header");
+        let byte_order = byte_order.required(errors, &input.ident, message).copied();
+        item::forbid_parameters(&input.generics, errors, "a header");
         let mut header = Self {
             ident: &input.ident,
             runtime,
             byte_order: byte_order.unwrap_or(ByteOrder::Big),
             fields: Vec::new(),
         };
-        match item::fields(input, faults, "a header is a struct", "") {
+        match item::fields(input, errors, "a header is a struct", "") {
             Some(Fields::Named(fields)) => {
                 for field in &fields.named {
-                    header.add(field, faults);
+                    header.add(field, errors);
                 }
             }
-            Some(Fields::Unnamed(fields)) => faults.on(fields, "the fields of a header have names"),
-            Some(Fields::Unit) => faults.on(&input.ident, "a header has fields"),
+            Some(Fields::Unnamed(fields)) => errors.on(fields, "the fields of a header have names"),
+            Some(Fields::Unit) => errors.on(&input.ident, "a header has fields"),
             None => {}
         }
         header
     }
 
-    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a syn::Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
         let mut value = Slot::default();
         let mut algorithm = Slot::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "a header's field",
             &mut |key, input| match key.to_string().as_str() {
                 "role" => role.set(key, attr::word(input, &ROLES)),
@@ -180,7 +180,7 @@ impl<'a> Header<'a> {
                 _ => Ok(Item::Unknown),
             },
         );
-        let shape = faults.ok(read_shape(&field.ty));
+        let shape = errors.ok(read_shape(&field.ty));
         let offset = self.len();
         self.fields.push(Field {
             ident,
@@ -218,17 +218,17 @@ fn read_value(input: ParseStream<'_>) -> syn::Result<LitInt> {
 
 fn read_shape(ty: &Type) -> syn::Result<Shape> {
     const MESSAGE: &str = "a header's field is `u8`, `u16`, `u32`, `u64` or `[u8; N]`";
-    let fault = || syn::Error::new_spanned(ty, MESSAGE);
+    let error = || syn::Error::new_spanned(ty, MESSAGE);
     match ty {
         Type::Path(path) => match path.path.get_ident().map(ToString::to_string).as_deref() {
             Some("u8") => Ok(Shape::Int(1)),
             Some("u16") => Ok(Shape::Int(2)),
             Some("u32") => Ok(Shape::Int(4)),
             Some("u64") => Ok(Shape::Int(8)),
-            _ => Err(fault()),
+            _ => Err(error()),
         },
-        Type::Array(array) => read_bytes(array).ok_or_else(fault),
-        _ => Err(fault()),
+        Type::Array(array) => read_bytes(array).ok_or_else(error),
+        _ => Err(error()),
     }
 }
 

@@ -4,16 +4,16 @@ mod ast;
 mod expand;
 mod valid;
 
-use crate::faults::Faults;
+use crate::errors::Errors;
 use ast::Header;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
 /// Writes `Header`, or errors.
-pub fn expand(input: &DeriveInput, mut faults: Faults) -> TokenStream {
-    let header = Header::read(input, &mut faults);
-    let roles = valid::check(&header, &mut faults);
-    faults.finish(
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let header = Header::read(input, &mut errors);
+    let roles = valid::check(&header, &mut errors);
+    errors.finish(
         || {
             roles
                 .map(|roles| expand::code(&header, &roles))

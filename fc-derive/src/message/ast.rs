@@ -2,7 +2,7 @@
 
 use super::condition::{self, Asked};
 use crate::attr::{self, Item, Number, NumberValue, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens as _;
@@ -95,10 +95,10 @@ pub enum Lenient {
 
 impl<'a> Message<'a> {
     /// Reads the struct and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut example = Slot::default();
         let runtime =
-            item::read_attributes(input, faults, "a message", &mut |key, input| match key
+            item::read_attributes(input, errors, "a message", &mut |key, input| match key
                 .to_string()
                 .as_str()
             {
@@ -117,26 +117,26 @@ impl<'a> Message<'a> {
             extra: Vec::new(),
         };
         let hint = "; a choice of messages is `OneOf`, a choice of values `OpenEnum`";
-        match item::fields(input, faults, "a message is a struct", hint) {
+        match item::fields(input, errors, "a message is a struct", hint) {
             Some(Fields::Named(fields)) => {
                 for field in &fields.named {
-                    message.add(field, faults);
+                    message.add(field, errors);
                 }
             }
             Some(Fields::Unnamed(fields)) => {
-                faults.on(fields, "the fields of a message have names");
+                errors.on(fields, "the fields of a message have names");
             }
             Some(Fields::Unit) | None => {}
         }
         message
     }
 
-    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a syn::Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
-        let attributes = FieldAttributes::read(field, faults);
+        let attributes = FieldAttributes::read(field, errors);
         if let Some(extra) = attributes.extra.key() {
             if attributes.says_more_than_extra() {
-                faults.at(
+                errors.at(
                     extra,
                     "`extra` keeps all unknown keys; nothing else can be said of it",
                 );
@@ -159,11 +159,11 @@ impl<'a> Message<'a> {
 }
 
 impl FieldAttributes {
-    fn read(field: &syn::Field, faults: &mut Faults) -> Self {
+    fn read(field: &syn::Field, errors: &mut Errors) -> Self {
         let mut this = Self::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "a message's field",
             &mut |key, input| this.item(key, input),
         );

@@ -2,7 +2,7 @@
 
 use super::ast::{Field, Message};
 use crate::attr::{self, NumberValue};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::new::optional;
 use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
@@ -70,14 +70,14 @@ fn read_wanted(input: ParseStream<'_>) -> syn::Result<Wanted> {
 }
 
 /// Reports invalid conditions and fields that cannot have one.
-pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
+pub fn check(message: &Message<'_>, field: &Field<'_>, errors: &mut Errors) {
     let attributes = &field.attributes;
     let (when, unless) = (&attributes.when, &attributes.unless);
     if let (Some(_), Some(unless)) = (when.key(), unless.key()) {
-        faults.at(unless, "a field has either `when` or `unless`");
+        errors.at(unless, "a field has either `when` or `unless`");
     }
     if let (Some(at), None) = (when.key().or(unless.key()), optional(field.ty)) {
-        faults.at(
+        errors.at(
             at,
             "a condition is for an `Option`: it says when there is a value",
         );
@@ -85,13 +85,13 @@ pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
     for asked in when.get().into_iter().chain(unless.get()).flatten() {
         let ident = &asked.ident;
         if ident.unraw() == field.ident.unraw() {
-            faults.on(ident, "a field cannot depend on its own value");
+            errors.on(ident, "a field cannot depend on its own value");
             continue;
         }
         match find(message, ident) {
-            None => faults.on(ident, format!("there is no field `{}`", ident.unraw())),
+            None => errors.on(ident, format!("there is no field `{}`", ident.unraw())),
             Some(beside) if optional(beside.ty).is_some() => {
-                faults.on(ident, "a condition asks a field that is always there");
+                errors.on(ident, "a condition asks a field that is always there");
             }
             Some(_) => {}
         }

@@ -1,7 +1,7 @@
 //! An enum of values with its attributes.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::item;
 use proc_macro2::TokenStream;
 use quote::ToTokens as _;
@@ -67,10 +67,10 @@ pub struct Value {
 
 impl<'a> OpenEnum<'a> {
     /// Reads the enum and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut repr = Slot::default();
         let mut order = Slot::default();
-        let runtime = item::read_attributes(input, faults, "an enum", &mut |key, input| match key
+        let runtime = item::read_attributes(input, errors, "an enum", &mut |key, input| match key
             .to_string()
             .as_str()
         {
@@ -79,7 +79,7 @@ impl<'a> OpenEnum<'a> {
             _ => Ok(Item::Unknown),
         });
         let message = "what travels must be given: `#[fc(repr = u8)]` or `#[fc(repr = str)]`";
-        let readable = repr.required(faults, &input.ident, message).is_some();
+        let readable = repr.required(errors, &input.ident, message).is_some();
         let mut this = Self {
             ident: &input.ident,
             runtime,
@@ -89,17 +89,17 @@ impl<'a> OpenEnum<'a> {
             states: Vec::new(),
             other: Vec::new(),
         };
-        item::forbid_parameters(&input.generics, faults, "an enum of values");
+        item::forbid_parameters(&input.generics, errors, "an enum of values");
         let hint = "; a struct is a `Message`";
-        if let Some(variants) = item::variants(input, faults, "`OpenEnum` is for enums", hint) {
+        if let Some(variants) = item::variants(input, errors, "`OpenEnum` is for enums", hint) {
             for variant in variants {
-                this.add(variant, readable, faults);
+                this.add(variant, readable, errors);
             }
         }
         this
     }
 
-    fn add(&mut self, variant: &'a Variant, readable: bool, faults: &mut Faults) {
+    fn add(&mut self, variant: &'a Variant, readable: bool, errors: &mut Errors) {
         let mut value = Slot::default();
         let mut other = Slot::default();
         let mut then = Slot::default();
@@ -107,7 +107,7 @@ impl<'a> OpenEnum<'a> {
         let mut is_error = Slot::default();
         attr::read(
             &variant.attrs,
-            faults,
+            errors,
             "a variant",
             &mut |key, input| match key.to_string().as_str() {
                 "value" => value.set(key, read_value(input)),
@@ -119,28 +119,28 @@ impl<'a> OpenEnum<'a> {
             },
         );
         if let Some((_, tokens)) = &variant.discriminant {
-            faults.on(tokens, "the value stands in `#[fc(value = …)]`");
+            errors.on(tokens, "the value stands in `#[fc(value = …)]`");
         }
         if let Some(other) = other.key() {
             if value.key().is_some() {
-                faults.at(other, "the variant `other` has no value of its own");
+                errors.at(other, "the variant `other` has no value of its own");
             }
             let said = [then.key(), is_final.key(), is_error.key()];
             if let Some(said) = said.into_iter().flatten().next() {
-                faults.at(said, "of unknown values nothing is said as states");
+                errors.at(said, "of unknown values nothing is said as states");
             }
-            self.check_payload(variant, readable, faults);
+            self.check_payload(variant, readable, errors);
             self.other.push(&variant.ident);
             return;
         }
         let message = "the variant needs `#[fc(value = …)]` or `#[fc(other)]`";
-        value.required(faults, &variant.ident, message);
+        value.required(errors, &variant.ident, message);
         if !matches!(variant.fields, Fields::Unit) {
-            faults.on(&variant.fields, "a variant with a value holds nothing");
+            errors.on(&variant.fields, "a variant with a value holds nothing");
         }
         if let Some(value) = value.into_value() {
             if readable {
-                self.repr.check(&value, faults);
+                self.repr.check(&value, errors);
             }
             self.values.push((&variant.ident, value));
             self.states.push(State {
@@ -152,12 +152,12 @@ impl<'a> OpenEnum<'a> {
     }
 
     /// Checks the payload of the variant `other`.
-    fn check_payload(&self, variant: &Variant, readable: bool, faults: &mut Faults) {
+    fn check_payload(&self, variant: &Variant, readable: bool, errors: &mut Errors) {
         let wanted = match &self.repr {
             Repr::Int(int, ..) => int.to_string(),
             Repr::Str => "String".to_owned(),
         };
-        let fault = match &variant.fields {
+        let misplaced = match &variant.fields {
             Fields::Unnamed(fields) if fields.unnamed.len() == 1 => {
                 let ty = fields.unnamed.first().map(|field| &field.ty);
                 let right = ty.is_some_and(|ty| last_name(ty).is_some_and(|name| *name == wanted));
@@ -166,10 +166,10 @@ impl<'a> OpenEnum<'a> {
             Fields::Unit => Some(variant.ident.to_token_stream()),
             fields => Some(fields.to_token_stream()),
         };
-        if let Some(place) = fault
+        if let Some(place) = misplaced
             && readable
         {
-            faults.on(
+            errors.on(
                 &place,
                 format!("the variant `other` holds the value: `({wanted})`"),
             );
@@ -177,32 +177,32 @@ impl<'a> OpenEnum<'a> {
     }
 
     /// Reports all conflicts between variants.
-    pub fn check(&self, faults: &mut Faults) {
+    pub fn check(&self, errors: &mut Errors) {
         for other in self.other.iter().skip(1) {
-            faults.on(
+            errors.on(
                 other,
                 "unknown values are kept by one variant; `other` is given twice",
             );
         }
         for name in self.states.iter().flat_map(|state| &state.then) {
             if self.order.is_none() {
-                faults.on(name, "what follows needs `order` on the enum: `order = \"normal\"` or `order = \"complete\"`");
+                errors.on(name, "what follows needs `order` on the enum: `order = \"normal\"` or `order = \"complete\"`");
             }
             if !self.values.iter().any(|(known, _)| *known == name) {
-                faults.on(name, "no variant with a value has this name");
+                errors.on(name, "no variant with a value has this name");
             }
         }
         let mut seen = HashSet::new();
         for (_, value) in &self.values {
             if !seen.insert(&value.identity) {
-                faults.on(&value.tokens, "another variant has this value");
+                errors.on(&value.tokens, "another variant has this value");
             }
         }
     }
 }
 
 impl Repr {
-    fn check(&self, value: &Value, faults: &mut Faults) {
+    fn check(&self, value: &Value, errors: &mut Errors) {
         let message = match (self, value.number) {
             (Self::Str, None) => return,
             (Self::Str, Some(_)) => "the value must be a string, as `repr` says".to_owned(),
@@ -212,7 +212,7 @@ impl Repr {
                 format!("the value must fit `{name}`: from {min} to {max}")
             }
         };
-        faults.on(&value.tokens, message);
+        errors.on(&value.tokens, message);
     }
 }
 

@@ -6,9 +6,9 @@ use std::fmt::Display;
 
 /// The errors found so far.
 #[derive(Default)]
-pub struct Faults(Option<syn::Error>);
+pub struct Errors(Option<syn::Error>);
 
-impl Faults {
+impl Errors {
     /// Adds an error at the tokens of `place`.
     pub fn on(&mut self, place: &dyn ToTokens, message: impl Display) {
         let place = place.to_token_stream();
