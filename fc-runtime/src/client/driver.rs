@@ -49,7 +49,7 @@ pub(super) fn drive_dialled<P: Protocol, D: Dial>(
             there => there,
         };
         while let Some(connected) = stream.take() {
-            let heard = driver.run(connected).await.heard;
+            let heard = driver.run(connected).await;
             reconnect.connected(heard);
             stream = driver.connect(&mut reconnect, &mut dial).await;
         }
@@ -73,12 +73,6 @@ enum Turn {
     Spent,
     /// The connection has ended.
     Over(Loss),
-}
-
-/// The result of a connection that has ended.
-struct Ended {
-    /// `true` if at least one frame was received.
-    heard: bool,
 }
 
 /// The socket and decoder of a connection.
@@ -125,8 +119,8 @@ impl<P: Protocol> Driver<P> {
         }
     }
 
-    /// Serves one connection until it ends or is closed.
-    async fn run<S: Transport>(&mut self, stream: S) -> Ended {
+    /// Serves one connection until it ends or is closed. Returns `true` if at least one frame was received.
+    async fn run<S: Transport>(&mut self, stream: S) -> bool {
         let mut link = Link {
             socket: Shared::new(stream),
             decoder: self.inner.config.decoder::<P>(),
@@ -153,7 +147,7 @@ impl<P: Protocol> Driver<P> {
             // The wait is limited, because the peer may neither read nor stop sending.
             let _ = timeout(CLOSING, link.socket.goodbye(out)).await;
         }
-        Ended { heard }
+        heard
     }
 
     /// Ready at the end of a turn.
@@ -303,10 +297,7 @@ impl<P: Protocol> Driver<P> {
         while let Some(due) = state.session.due(now) {
             if let Due::Expired(_, slot) = due {
                 state.counters.timeouts += 1;
-                let unsent = state
-                    .slots
-                    .get(slot)
-                    .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
+                let unsent = state.slots.is_unsent(slot);
                 let error = match (state.connection.now(), unsent) {
                     (ConnectionState::Connected { .. }, _) => CallError::Timeout,
                     (ConnectionState::Connecting { why, .. }, true) => CallError::NotConnected(why),
@@ -387,11 +378,7 @@ impl<P: Protocol> Driver<P> {
             over || !slot.progress.is_to_send()
         });
         for (_, slot) in ended {
-            let unsent = state
-                .slots
-                .get(slot)
-                .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
-            let error = if unsent {
+            let error = if state.slots.is_unsent(slot) {
                 CallError::Closed(why)
             } else {
                 CallError::Lost(why)

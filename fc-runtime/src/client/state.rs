@@ -68,6 +68,11 @@ impl Slots {
         self.slots.get_mut(slot)
     }
 
+    pub(super) fn is_unsent(&self, slot: usize) -> bool {
+        let slot = self.slots.get(slot);
+        slot.is_some_and(|slot| matches!(slot.progress, Progress::Unsent))
+    }
+
     pub(super) fn free(&mut self, slot: usize) -> Progress {
         self.free.push(slot);
         self.get(slot)
