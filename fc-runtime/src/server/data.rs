@@ -306,7 +306,7 @@ impl<P: Protocol> DataPeer<P> {
         }
     }
 
-    /// Answers an unusable frame. The answer is dropped if there is no room for it.
+    /// Responds to an unusable frame. The response is dropped if there is no room for it.
     fn refuse(&self, frame: FrameId) {
         if !P::Response::HAS_RESULT {
             return;
