@@ -121,7 +121,8 @@ impl<P: Protocol> Encoder<P> {
     ) -> Result<(), FrameError> {
         let mut frame = Unfinished::new(out, P::Header::LEN);
         write(frame.out);
-        self.finish(&mut frame, id)?;
+        let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
+        sealed.write::<P>(frame.out, frame.start, id);
         frame.finished = true;
         Ok(())
     }
@@ -230,12 +231,6 @@ impl<P: Protocol> Encoder<P> {
         sealed.write::<P>(out, start, id);
         out.extend_from_slice(body.text());
         out.extend_from_slice(&tail.text);
-        Ok(())
-    }
-
-    fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
-        let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
-        sealed.write::<P>(frame.out, frame.start, id);
         Ok(())
     }
 

@@ -104,10 +104,7 @@ impl Shared {
             self.inbox_emptied.notify_one();
             return taken;
         }
-        match state.connection.now() {
-            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
-            _ => None,
-        }
+        state.closed()
     }
 
     /// Delivers a frame to its subscriptions, or waits until the receiver has room for it.
@@ -140,10 +137,7 @@ impl Shared {
         if taken.is_some() {
             return taken;
         }
-        match state.connection.now() {
-            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
-            _ => None,
-        }
+        state.closed()
     }
 
     /// Notes that a frame has been received.
@@ -236,6 +230,14 @@ impl Shared {
 }
 
 impl State {
+    /// Returns the result for a receiver if the connection is closed.
+    fn closed(&self) -> Option<Result<StreamFrame, DataError>> {
+        match self.connection.now() {
+            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
+            _ => None,
+        }
+    }
+
     /// Delivers a frame, or returns it if there is no room.
     fn place(
         &mut self,
