@@ -117,9 +117,9 @@ impl ServerConfig {
     /// call, all other networks are forbidden. Without a call, everything is allowed.
     ///
     /// The smallest network that contains the address applies. A connection from a forbidden address is closed at once.
-    /// A command with another effect is refused with the protocol's error result, and its handler is not run. Commands
-    /// that the spec does not have, have the effect [`Effect::Unknown`]. Reports are sent to all connected apps, and
-    /// frames at the data port are not checked for effects.
+    /// A command with another effect is refused with the protocol's error result, and its handler is not run. A command
+    /// unknown to the spec has the effect [`Effect::Unknown`]. Reports are sent to all connected apps, and frames at
+    /// the data port are not checked for effects.
     ///
     /// An address does not prove the identity of the sender. Use TLS in a shared network.
     ///
