@@ -36,11 +36,13 @@ impl Alarm {
     }
 
     /// Returns the time at which the timer is set to wake the task.
+    #[cfg(feature = "client")]
     pub(crate) fn at(&self) -> Option<Instant> {
         self.at
     }
 
     /// Forgets a time that has passed.
+    #[cfg(feature = "client")]
     pub(crate) fn forget_past(&mut self, now: Instant) {
         self.at = self.at.filter(|at| *at > now);
     }
