@@ -1,6 +1,6 @@
 //! The grammar of `#[fc(…)]`: `key`, `key = value`, `key(values)`, separated by commas.
 
-use crate::faults::Faults;
+use crate::errors::Errors;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt as _;
@@ -10,29 +10,29 @@ use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parenthesized
 /// Name of the attribute.
 pub const NAME: &str = "fc";
 
-/// What a reader of keys made of one.
+/// The result of reading a key.
 pub enum Item {
     /// Its value has been read.
     Read,
     /// Another derive reads it.
     Foreign,
-    /// Nobody reads it.
+    /// No derive reads it.
     Unknown,
 }
 
 /// Reads the value of a key.
-// Behind a pointer: a parameter of type would have the parsing compiled again for every macro, and
-// whoever uses a message waits for that.
+// Dynamic, because a type parameter would compile the parser again for every macro, and every user of messages waits
+// for that.
 pub type ItemReader<'r> = dyn FnMut(&Ident, ParseStream<'_>) -> syn::Result<Item> + 'r;
 
-/// Reads every key of every `#[fc(…)]` among `attributes` by `item`, which is given the key in front
-/// of its value. After a fault it goes on behind the next comma.
-pub fn read(attributes: &[Attribute], faults: &mut Faults, place: &str, item: &mut ItemReader<'_>) {
+/// Reads every key of every `#[fc(…)]` in `attributes` with `item`, which gets the key before its value. After an error
+/// it continues after the next comma.
+pub fn read(attributes: &[Attribute], errors: &mut Errors, place: &str, item: &mut ItemReader<'_>) {
     for attribute in attributes {
         if attribute.path().is_ident(NAME) {
             let result = attribute
-                .parse_args_with(|input: ParseStream<'_>| read_items(input, faults, place, item));
-            faults.ok(result);
+                .parse_args_with(|input: ParseStream<'_>| read_items(input, errors, place, item));
+            errors.ok(result);
         }
     }
 }
@@ -40,7 +40,7 @@ pub fn read(attributes: &[Attribute], faults: &mut Faults, place: &str, item: &m
 /// Reads the keys of one attribute.
 pub fn read_items(
     input: ParseStream<'_>,
-    faults: &mut Faults,
+    errors: &mut Errors,
     place: &str,
     item: &mut ItemReader<'_>,
 ) -> syn::Result<()> {
@@ -48,13 +48,13 @@ pub fn read_items(
         let key = input.call(Ident::parse_any)?;
         match item(&key, input) {
             Ok(Item::Read) if !input.is_empty() && !input.peek(Token![,]) => {
-                faults.push(input.error("expected `,`"));
+                errors.push(input.error("expected `,`"));
             }
             Ok(Item::Read | Item::Foreign) => {}
             Ok(Item::Unknown) => {
-                faults.on(&key, format!("`{key}` is not an attribute of {place}"));
+                errors.on(&key, format!("`{key}` is not an attribute of {place}"));
             }
-            Err(error) => faults.push(error),
+            Err(error) => errors.push(error),
         }
         skip(input)?;
         input.parse::<Option<Token![,]>>()?;
@@ -86,38 +86,38 @@ impl<T> Default for Slot<T> {
 }
 
 impl<T> Slot<T> {
-    /// Keeps a value. A key with a faulty value has been given all the same.
+    /// Keeps a value. A key with an invalid value counts as given.
     pub fn set(&mut self, key: &Ident, value: syn::Result<T>) -> syn::Result<Item> {
         once(&mut self.key, key)?;
         self.value = Some(value?);
         Ok(Item::Read)
     }
 
-    /// The value, if one was given and had no fault.
+    /// Returns the value if it was given and valid.
     pub fn get(&self) -> Option<&T> {
         self.value.as_ref()
     }
 
-    /// The value, if one was given and had no fault.
+    /// Returns the value if it was given and valid.
     pub fn into_value(self) -> Option<T> {
         self.value
     }
 
-    /// Where the key stands, if it was given.
+    /// Returns the position of the key if it was given.
     pub fn key(&self) -> Option<Span> {
         self.key
     }
 
-    /// The value; a fault on `place` if the key was not given.
-    pub fn required(&self, faults: &mut Faults, place: &dyn ToTokens, message: &str) -> Option<&T> {
+    /// Returns the value. Reports an error at `place` if the key was not given.
+    pub fn required(&self, errors: &mut Errors, place: &dyn ToTokens, message: &str) -> Option<&T> {
         if self.key.is_none() {
-            faults.on(place, message);
+            errors.on(place, message);
         }
         self.get()
     }
 }
 
-/// Notes where a key stands, or that it has been given before.
+/// Notes the position of a key, or reports that it is given twice.
 fn once(given: &mut Option<Span>, key: &Ident) -> syn::Result<()> {
     if given.is_some() {
         let message = format!("`{key}` is given twice");
@@ -127,7 +127,7 @@ fn once(given: &mut Option<Span>, key: &Ident) -> syn::Result<()> {
     Ok(())
 }
 
-/// Reads `(…, …)`, each by `each`. Where there is none, `none` says what is expected.
+/// Reads `(…, …)` with `each` for each item. An empty list is an error with the text `none`.
 pub fn listed<T>(
     input: ParseStream<'_>,
     none: &str,
@@ -196,7 +196,7 @@ where
     plain_integer(&input.parse()?)
 }
 
-/// The value of a literal without suffix.
+/// Returns the value of a literal without suffix.
 pub fn plain_integer<T>(literal: &LitInt) -> syn::Result<T>
 where
     T: std::str::FromStr,
@@ -220,11 +220,11 @@ fn no_suffix(literal: impl ToTokens, suffix: &str) -> syn::Result<()> {
     Err(syn::Error::new_spanned(literal, message))
 }
 
-/// A number with a sign, as it is written.
+/// A number with a sign, as written.
 pub struct Number {
-    /// Its sign and literal.
+    /// Sign and literal.
     pub tokens: TokenStream,
-    /// What it is.
+    /// Value.
     pub value: NumberValue,
 }
 
@@ -238,7 +238,7 @@ pub enum NumberValue {
 }
 
 impl Number {
-    /// The nearest float.
+    /// Returns the nearest float.
     #[allow(
         clippy::cast_precision_loss,
         reason = "only for comparing limits with each other"
@@ -307,7 +307,7 @@ where
     Ok(range)
 }
 
-/// The path of the runtime crate: `#[fc(crate = path)]`, or `::fc_runtime`.
+/// Returns the path of the runtime crate: `#[fc(crate = path)]`, or `::fc_runtime`.
 pub fn runtime(given: Slot<Path>) -> Path {
     given
         .into_value()

@@ -1,11 +1,11 @@
-//! That no two operations of a dispatch have the same code.
+//! The check that all operations of a dispatch have different codes.
 
 use crate::span::moved;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::Path;
 
-/// Refuses, at the span of the later one, two equal codes.
+/// Reports a repeated code at the span of its later occurrence.
 pub fn distinct(
     runtime: &Path,
     codes: &[TokenStream],
@@ -13,7 +13,7 @@ pub fn distinct(
 ) -> TokenStream {
     let checks = spans.enumerate().map(|(index, span)| {
         moved(
-            quote!(const _: () = #runtime::protocol::first_of_its_code(CODES, #index);),
+            quote!(const _: () = #runtime::operation::first_of_its_code(CODES, #index);),
             span,
         )
     });

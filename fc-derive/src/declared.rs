@@ -1,52 +1,39 @@
-//! `#[derive(DeclaredError)]`: the results besides success that a command declares.
+//! `#[derive(DeclaredError)]`: the errors that a command declares.
 
 use crate::attr::{self, Item, NumberValue, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::HashSet;
 use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Token, Variant};
 
-/// Writes the implementation, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an enum of errors",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
-    let errors = match &input.data {
+/// Writes the implementation, or errors and a stub.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let item = "an enum of errors";
+    let runtime = item::read_attributes(input, &mut errors, item, &mut |_, _| Ok(Item::Unknown));
+    let declared = match &input.data {
         Data::Enum(data) => {
             if data.variants.is_empty() {
-                faults.on(&input.ident, "there is at least one error");
+                errors.on(&input.ident, "there is at least one error");
             }
             let variants = data.variants.iter();
-            let errors = variants.filter_map(|variant| Declared::read(variant, &mut faults));
-            errors.collect()
+            let declared = variants.filter_map(|variant| Declared::read(variant, &mut errors));
+            declared.collect()
         }
         Data::Struct(_) | Data::Union(_) => {
-            faults.on(&input.ident, "`DeclaredError` is for enums");
+            errors.on(&input.ident, "`DeclaredError` is for enums");
             Vec::new()
         }
     };
     let mut codes = HashSet::new();
-    for error in errors.iter().filter(|error| !codes.insert(error.code)) {
+    for error in declared.iter().filter(|error| !codes.insert(error.code)) {
         let message = format!("{} is the code of another variant, too", error.code);
-        faults.on(error.ident, message);
+        errors.on(error.ident, message);
     }
-    let runtime = attr::runtime(runtime);
-    faults.finish(
-        || code(&input.ident, &runtime, &errors),
+    errors.finish(
+        || code(&input.ident, &runtime, &declared),
         || stub(&input.ident, &runtime),
     )
 }
@@ -59,12 +46,12 @@ struct Declared<'a> {
 }
 
 impl<'a> Declared<'a> {
-    fn read(variant: &'a Variant, faults: &mut Faults) -> Option<Self> {
+    fn read(variant: &'a Variant, errors: &mut Errors) -> Option<Self> {
         let mut code = Slot::default();
         let mut text = Slot::default();
         attr::read(
             &variant.attrs,
-            faults,
+            errors,
             "an error",
             &mut |key, input| match key.to_string().as_str() {
                 "code" => code.set(key, result_code(input)),
@@ -73,11 +60,11 @@ impl<'a> Declared<'a> {
             },
         );
         if !matches!(variant.fields, Fields::Unit) {
-            faults.on(&variant.fields, "an error holds nothing");
+            errors.on(&variant.fields, "an error holds nothing");
         }
         let ident = &variant.ident;
-        let code = code.required(faults, ident, "`code` is missing: `#[fc(code = 41)]`");
-        let text = text.required(faults, ident, "`text` is missing: `#[fc(text = \"…\")]`");
+        let code = code.required(errors, ident, "`code` is missing: `#[fc(code = 41)]`");
+        let text = text.required(errors, ident, "`text` is missing: `#[fc(text = \"…\")]`");
         Some(Self {
             ident,
             code: *code?,
@@ -97,10 +84,10 @@ fn result_code(input: ParseStream<'_>) -> syn::Result<i64> {
     code.ok_or_else(|| place.error("a result code is an integer of 64 bits"))
 }
 
-fn code(ident: &Ident, runtime: &Path, errors: &[Declared<'_>]) -> TokenStream {
-    let names: Vec<_> = errors.iter().map(|error| error.ident).collect();
-    let codes = errors.iter().map(|it| Literal::i64_unsuffixed(it.code));
-    let texts = errors.iter().map(|it| &it.text);
+fn code(ident: &Ident, runtime: &Path, declared: &[Declared<'_>]) -> TokenStream {
+    let names: Vec<_> = declared.iter().map(|error| error.ident).collect();
+    let codes = declared.iter().map(|it| Literal::i64_unsuffixed(it.code));
+    let texts = declared.iter().map(|it| &it.text);
     quote! {
         #[automatically_derived]
         impl #runtime::DeclaredError for #ident {
@@ -115,7 +102,7 @@ fn code(ident: &Ident, runtime: &Path, errors: &[Declared<'_>]) -> TokenStream {
     }
 }
 
-/// An implementation that does nothing, for an enum with faults.
+/// Returns an implementation that does nothing, for an enum with errors.
 fn stub(ident: &Ident, runtime: &Path) -> TokenStream {
     quote! {
         #[automatically_derived]

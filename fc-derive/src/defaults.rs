@@ -1,7 +1,7 @@
-//! `#[derive(Defaults)]`: what the absence of a field means.
+//! `#[derive(Defaults)]`: the meaning of absent fields.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::new::optional;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
@@ -10,52 +10,47 @@ use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::{Data, DeriveInput, Expr, Fields, Ident, Token, Type};
 
-/// Writes a constant and an accessor for each default, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
+/// Writes a constant and an accessor for each default, or errors.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
     let mut found = Vec::new();
     if let Data::Struct(data) = &input.data
         && let Fields::Named(fields) = &data.fields
     {
         for field in &fields.named {
-            found.extend(Defaulted::read(field, &mut faults));
+            found.extend(Defaulted::read(field, &mut errors));
         }
     } else {
-        faults.on(
+        errors.on(
             &input.ident,
             "`Defaults` is for structs whose fields have names",
         );
     }
-    faults.finish(|| code(&input, &found), TokenStream::new)
+    errors.finish(|| code(input, &found), TokenStream::new)
 }
 
-/// A field whose absence means something.
+/// A field with a default.
 struct Defaulted<'a> {
     ident: &'a Ident,
-    /// What its `Option` holds.
+    /// Inner type of its `Option`.
     ty: &'a Type,
     default: Expr,
 }
 
 impl<'a> Defaulted<'a> {
-    fn read(field: &'a syn::Field, faults: &mut Faults) -> Option<Self> {
+    fn read(field: &'a syn::Field, errors: &mut Errors) -> Option<Self> {
         let mut default = Slot::default();
         let mut at = None;
-        attr::read(&field.attrs, faults, "a field", &mut |key, input| {
+        attr::read(&field.attrs, errors, "a field", &mut |key, input| {
             if key == "default" {
                 at = Some(key.span());
                 return default.set(key, expression(input));
             }
-            // `Message` reads the rest, and refuses what nobody reads.
+            // `Message` reads all other keys and reports unknown ones.
             Ok(Item::Foreign)
         });
         let ty = optional(&field.ty);
         if let (Some(at), None) = (at, ty) {
-            faults.at(
+            errors.at(
                 at,
                 "`default` is for an `Option`: it is what its absence means",
             );
@@ -74,8 +69,8 @@ impl<'a> Defaulted<'a> {
         let span = span_of(ident);
         let constant = Ident::new(&format!("DEFAULT_{}", name.to_uppercase()), span);
         let accessor = Ident::new(&format!("{name}_or_default"), span);
-        let constant_docs = format!("What the absence of `{name}` means.");
-        let accessor_docs = format!("`{name}`, or what its absence means.");
+        let constant_docs = format!("The meaning of an absent `{name}`.");
+        let accessor_docs = format!("Returns `{name}`, or its default if it is absent.");
         let (held, borrowed, value) = if is_string(ty) {
             (
                 quote_spanned!(span=> &'static ::core::primitive::str),

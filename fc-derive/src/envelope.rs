@@ -1,27 +1,23 @@
 //! `#[derive(Envelope)]`.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::parse::ParseStream;
-use syn::{Data, DeriveInput, Field, Fields, Ident, LitStr, Path, Type};
+use syn::{DeriveInput, Field, Ident, LitStr, Path, Type};
 
-/// Writes the envelope trait, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let envelope = Envelope::read(&input, &mut faults);
-    faults.finish(|| code(&envelope), || stub(&envelope))
+/// Writes the envelope trait, or errors and a stub.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let envelope = Envelope::read(input, &mut errors);
+    errors.finish(|| code(&envelope), || stub(&envelope))
 }
 
 struct Envelope<'a> {
     ident: &'a Ident,
     runtime: Path,
-    /// `None` if it is not said or said wrong.
+    /// `None` if it is missing or invalid.
     side: Option<Side>,
     time: Option<Part<'a>>,
     result_code: Option<Part<'a>>,
@@ -47,41 +43,33 @@ enum Role {
 }
 
 impl<'a> Envelope<'a> {
-    fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
+    fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut side = Slot::default();
-        attr::read(&input.attrs, faults, "an envelope", &mut |key, input| {
-            match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "envelope" => side.set(key, read_side(input)),
-                // `Message` reads the rest, and refuses what nobody reads.
-                _ => Ok(Item::Foreign),
+        let runtime = item::read_attributes(input, errors, "an envelope", &mut |key, input| {
+            if key == "envelope" {
+                return side.set(key, read_side(input));
             }
+            // `Message` reads all other keys and reports unknown ones.
+            Ok(Item::Foreign)
         });
         let message = "the side is missing: `#[fc(envelope = \"request\")]` or `\"response\"`";
-        let side = side.required(faults, &input.ident, message).copied();
+        let side = side.required(errors, &input.ident, message).copied();
         let mut envelope = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             side,
             time: None,
             result_code: None,
             result_text: None,
             rest: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => {
-                if let Fields::Named(fields) = &data.fields {
-                    for field in &fields.named {
-                        envelope.add(field, faults);
-                    }
-                }
+        if let Some(fields) = item::fields(input, errors, "an envelope is a struct", "") {
+            for field in fields {
+                envelope.add(field, errors);
             }
-            Data::Enum(data) => faults.on(&data.enum_token, "an envelope is a struct"),
-            Data::Union(data) => faults.on(&data.union_token, "an envelope is a struct"),
         }
         if envelope.result_text.is_some() && envelope.result_code.is_none() {
-            faults.on(
+            errors.on(
                 &input.ident,
                 "a result text says what a result code means, and no field has the role `result_code`",
             );
@@ -89,18 +77,18 @@ impl<'a> Envelope<'a> {
         envelope
     }
 
-    fn add(&mut self, field: &'a Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "an envelope's field",
             &mut |key, input| {
                 if key == "role" {
                     return role.set(key, read_role(input));
                 }
-                // `Message` reads the rest, and refuses what nobody reads.
+                // `Message` reads all other keys and reports unknown ones.
                 Ok(Item::Foreign)
             },
         );
@@ -114,13 +102,13 @@ impl<'a> Envelope<'a> {
             Role::ResultText => (&mut self.result_text, true),
         };
         if slot.is_some() {
-            faults.on(
+            errors.on(
                 &literal,
                 format!("another field has the role `{}`", literal.value()),
             );
         }
         if of_response && self.side == Some(Side::Request) {
-            faults.on(&literal, "a request has no result");
+            errors.on(&literal, "a request has no result");
         }
         *slot = Some((ident, &field.ty));
     }
@@ -142,7 +130,6 @@ fn read_role(input: ParseStream<'_>) -> syn::Result<(LitStr, Role)> {
 
 fn code(envelope: &Envelope<'_>) -> TokenStream {
     let Envelope {
-        ident,
         runtime,
         time,
         result_code,
@@ -173,90 +160,102 @@ fn code(envelope: &Envelope<'_>) -> TokenStream {
         )
     };
     let take_time = take_number(time);
-    let trait_name = trait_name(envelope);
-    let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let has_result = result_code.is_some();
-        let take_code = take_number(result_code);
-        let text = |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
-        let take_text = result_text.map_or_else(|| quote!(""), text);
-        let arguments = quote! {
-            time_ms: ::core::primitive::i64,
-            code: ::core::primitive::i64,
-            text: &::core::primitive::str,
-        };
-        let results = quote! {
-            const HAS_RESULT: ::core::primitive::bool = #has_result;
-
-            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> {
-                #take_code
-            }
-
-            fn result_text(&self) -> &::core::primitive::str {
-                #take_text
-            }
-        };
-        (arguments, Some(results))
-    } else {
-        (quote!(time_ms: ::core::primitive::i64), None)
-    };
-    quote! {
-        #[automatically_derived]
-        impl #runtime::protocol::#trait_name for #ident {
-            #[allow(unused_variables)]
-            fn at(#arguments) -> Self {
+    let text =
+        |(field, ty): Part<'_>| quote!(<#ty as #runtime::envelope::Text>::as_text(&self.#field));
+    implement(
+        envelope,
+        &Bodies {
+            at: quote! {
                 Self {
                     #make_time
                     #make_code
                     #make_text
                     #(#make_rest)*
                 }
-            }
-
-            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> {
-                #take_time
-            }
-
-            #results
-        }
-    }
+            },
+            time_ms: take_time,
+            has_result: result_code.is_some(),
+            result_code: take_number(result_code),
+            result_text: result_text.map_or_else(|| quote!(""), text),
+        },
+    )
 }
 
-fn trait_name(envelope: &Envelope<'_>) -> Ident {
-    let name = match envelope.side {
-        Some(Side::Response) => "ResponseEnvelope",
-        Some(Side::Request) | None => "RequestEnvelope",
-    };
-    Ident::new(name, Span::call_site())
-}
-
-/// An implementation that does nothing, for an envelope with faults.
+/// Returns an implementation that does nothing, for an envelope with errors.
 fn stub(envelope: &Envelope<'_>) -> TokenStream {
-    let Envelope { ident, runtime, .. } = envelope;
     if envelope.side.is_none() {
         return TokenStream::new();
     }
-    let trait_name = trait_name(envelope);
     let todo = quote!(::core::unimplemented!());
-    let (arguments, results) = if envelope.side == Some(Side::Response) {
-        let arguments = quote!(
-            _: ::core::primitive::i64,
-            _: ::core::primitive::i64,
-            _: &::core::primitive::str,
-        );
-        let results = quote! {
-            const HAS_RESULT: ::core::primitive::bool = false;
-            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
-            fn result_text(&self) -> &::core::primitive::str { #todo }
-        };
-        (arguments, Some(results))
+    implement(
+        envelope,
+        &Bodies {
+            at: todo.clone(),
+            time_ms: todo.clone(),
+            has_result: false,
+            result_code: todo.clone(),
+            result_text: todo,
+        },
+    )
+}
+
+/// The bodies of the methods of an envelope. A request has no result.
+struct Bodies {
+    at: TokenStream,
+    time_ms: TokenStream,
+    has_result: bool,
+    result_code: TokenStream,
+    result_text: TokenStream,
+}
+
+/// Implements the envelope trait.
+fn implement(envelope: &Envelope<'_>, bodies: &Bodies) -> TokenStream {
+    let Envelope { ident, runtime, .. } = envelope;
+    let Bodies {
+        at,
+        time_ms,
+        has_result,
+        result_code,
+        result_text,
+    } = bodies;
+    let is_response = envelope.side == Some(Side::Response);
+    let name = if is_response {
+        "ResponseEnvelope"
     } else {
-        (quote!(_: ::core::primitive::i64), None)
+        "RequestEnvelope"
     };
+    let trait_name = Ident::new(name, Span::call_site());
+    let result_arguments = is_response.then(|| {
+        quote! {
+            code: ::core::primitive::i64,
+            text: &::core::primitive::str,
+        }
+    });
+    let results = is_response.then(|| {
+        quote! {
+            const HAS_RESULT: ::core::primitive::bool = #has_result;
+
+            fn result_code(&self) -> ::core::option::Option<::core::primitive::i64> {
+                #result_code
+            }
+
+            fn result_text(&self) -> &::core::primitive::str {
+                #result_text
+            }
+        }
+    });
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::#trait_name for #ident {
-            fn at(#arguments) -> Self { #todo }
-            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> { #todo }
+        impl #runtime::#trait_name for #ident {
+            #[allow(unused_variables)]
+            fn at(time_ms: ::core::primitive::i64, #result_arguments) -> Self {
+                #at
+            }
+
+            fn time_ms(&self) -> ::core::option::Option<::core::primitive::i64> {
+                #time_ms
+            }
+
             #results
         }
     }

@@ -1,70 +1,56 @@
-//! `#[derive(Id)]`: an id with a type of its own, which travels as what it holds.
+//! `#[derive(Id)]`: an id with its own type, sent as its inner value.
 
-use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::attr::Item;
+use crate::errors::Errors;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::quote_spanned;
 use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
 
-/// What an id may hold beside a `String`.
+/// Inner types of an id besides `String`.
 const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
 
-/// Writes the implementations, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an id",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
-    let runtime = attr::runtime(runtime);
-    let held = held(&input, &mut faults);
-    faults.finish(
+/// Writes the implementations, or errors.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let runtime = item::read_attributes(input, &mut errors, "an id", &mut |_, _| Ok(Item::Unknown));
+    let held = held(input, &mut errors);
+    errors.finish(
         || held.map_or_else(TokenStream::new, |held| code(&input.ident, &runtime, &held)),
         TokenStream::new,
     )
 }
 
-/// What an id holds.
+/// The inner type of an id.
 enum Held<'a> {
     Integer(&'a Type),
     Text(&'a Type),
 }
 
-/// What it holds; a fault where that cannot be an id.
-fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
+/// Returns the inner type, or reports an invalid one.
+fn held<'a>(input: &'a DeriveInput, errors: &mut Errors) -> Option<Held<'a>> {
     const WANTED: &str =
         "an id is a struct of one integer or `String`, such as `struct StationId(pub i64)`";
     if !input.generics.params.is_empty() {
-        faults.on(&input.generics, "an id has no parameters");
+        errors.on(&input.generics, "an id has no parameters");
         return None;
     }
     let fields = match &input.data {
         Data::Struct(data) => match &data.fields {
             Fields::Unnamed(fields) => &fields.unnamed,
             Fields::Named(_) | Fields::Unit => {
-                faults.on(&input.ident, WANTED);
+                errors.on(&input.ident, WANTED);
                 return None;
             }
         },
         Data::Enum(_) | Data::Union(_) => {
-            faults.on(&input.ident, WANTED);
+            errors.on(&input.ident, WANTED);
             return None;
         }
     };
     let mut fields = fields.iter();
     let (Some(field), None) = (fields.next(), fields.next()) else {
-        faults.on(&input.ident, WANTED);
+        errors.on(&input.ident, WANTED);
         return None;
     };
     let last = match &field.ty {
@@ -77,7 +63,7 @@ fn held<'a>(input: &'a DeriveInput, faults: &mut Faults) -> Option<Held<'a>> {
         }
         Some(last) if last.ident == "String" => Some(Held::Text(&field.ty)),
         _ => {
-            faults.on(&field.ty, WANTED);
+            errors.on(&field.ty, WANTED);
             None
         }
     }
@@ -130,7 +116,7 @@ fn code(ident: &Ident, runtime: &Path, held: &Held<'_>) -> TokenStream {
     all.into_iter().chain(own).collect()
 }
 
-/// What a number may be on the wire besides itself, and its constraints.
+/// Returns the wire forms and constraints of an integer.
 fn of_integer(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     quote_spanned! {span_of(ty)=>
         #[automatically_derived]
@@ -166,7 +152,7 @@ fn of_integer(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     }
 }
 
-/// The constraints of a text, and the ways to make and to lend one.
+/// Returns the constraints and conversions of a string.
 fn of_text(ident: &Ident, runtime: &Path, ty: &Type) -> TokenStream {
     quote_spanned! {span_of(ty)=>
         #[automatically_derived]

@@ -1,11 +1,11 @@
 //! Derive macros for FC protocol messages, enums, headers and dispatch.
 //!
-//! A generated item is a data structure with attributes; what it does is written here. The same
-//! derives work on hand-written items. All of them read the attribute `#[fc(…)]`, and all take
-//! `#[fc(crate = path)]` where the runtime is not found as `::fc_runtime`.
+//! A generated item is a data structure with attributes, and the derives implement its behaviour. They work on
+//! handwritten items as well. All derives read the attribute `#[fc(…)]`. All accept `#[fc(crate = path)]` if the
+//! runtime is not at `::fc_runtime`.
 //!
-//! **Architecture invariant:** an expansion is small. It names fields, keys and numbers in order;
-//! what can be written once stands in `fc-runtime`.
+//! **Architecture invariant:** an expansion is small. It names fields, keys and numbers in order. Code that does not
+//! depend on the item belongs in `fc-runtime`.
 
 mod attr;
 #[cfg(any(feature = "client", feature = "server"))]
@@ -15,9 +15,11 @@ mod defaults;
 #[cfg(feature = "server")]
 mod dispatch;
 mod envelope;
-mod faults;
+mod errors;
 mod header;
 mod id;
+mod item;
+mod json;
 mod message;
 mod new;
 mod one_of;
@@ -33,30 +35,33 @@ mod tests;
 
 use proc_macro::TokenStream;
 
+fn derive(input: TokenStream, expand: item::Expand) -> TokenStream {
+    item::derive(input.into(), expand).into()
+}
+
 /// A JSON object with known keys: `FromJson`, `ToJson` and `Message`.
 ///
 /// On the struct:
 ///
-/// - `example = "…"`: the spec's example in wire form, own keys only.
+/// - `example = "…"`: the spec's example in wire form, without the keys of the envelope.
 ///
-/// On a field (an `Option` may be missing):
+/// On a field (an `Option` may be absent):
 ///
-/// - `key = "stationName"`: its key on the wire; without it, the field's name.
+/// - `key = "stationName"`: its wire key; by default the field's name.
 /// - `also("taskId", …)`: other keys that are read for it.
-/// - `wire = "string"`: a number or bool that travels inside a JSON string.
-/// - `wire = "number"`: a bool that travels as `1` or `0`.
+/// - `wire = "string"`: a number or bool that is sent inside a JSON string.
+/// - `wire = "number"`: a bool that is sent as `1` or `0`.
 /// - `lenient(number)`: read from a number, a decimal string or a `0x` string.
 /// - `lenient(bool)`: read from `true`, `false`, their strings, `0` or `1`.
 /// - `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as `None`.
-/// - `min = 0`, `max = 100`: of a number. `length = 15`, `length = 1..=32`: characters of a string,
-///   items of a list, bytes of base64. `pattern = "[0-9]{15}"`: of a whole string. `only(1, 6)`,
-///   `only("day")`: of an [`OpenEnum`], the values it takes, as they travel. Checked on reading, and by
-///   `Message::check`.
-/// - `when(mode = 2 | 3, on = true)`, of an `Option`: it is there exactly where each of these other fields has one of its
-///   values, those of an enum as they travel; `unless(…)`: everywhere else. Reading and sending ask nothing; a message with such a field
-///   has `checked`, which tells whether each is there as it should be.
+/// - `min = 0`, `max = 100`: limits of a number. `length = 15`, `length = 1..=32`: characters of a string, items of a
+///   list, bytes of base64. `pattern = "[0-9]{15}"`: for a whole string. `only(1, 6)`, `only("day")`: the allowed
+///   values of an [`OpenEnum`], as sent. Reading and `Message::check` check these constraints.
+/// - `when(mode = 2 | 3, on = true)`, for an `Option`: the field is present exactly if each of these other fields has
+///   one of its values; values of enums as sent. `unless(…)`: present in all other cases. Reading and sending ignore
+///   conditions. The method `checked` of the message verifies them.
 /// - `sensitive`: hidden by [`RedactedDebug`].
-/// - `extra`: an `Extra` that keeps the unknown keys.
+/// - `extra`: an `Extra` that keeps unknown keys.
 ///
 /// ```
 /// use fc_derive::Message;
@@ -75,14 +80,13 @@ use proc_macro::TokenStream;
 /// ```
 #[proc_macro_derive(Message, attributes(fc))]
 pub fn derive_message(input: TokenStream) -> TokenStream {
-    message::expand(input.into()).into()
+    derive(input, message::expand)
 }
 
-/// `new` with the required fields of a struct, in their order, and `with_…` for each that is an
-/// `Option`.
+/// `new` with the required fields of a struct in their order, and `with_…` for each `Option`.
 ///
-/// Beside `#[non_exhaustive]` it lets a message gain an optional field without breaking the code that
-/// makes one. For a `String`, anything is taken that becomes one. A field marked `#[fc(extra)]` starts empty.
+/// With `#[non_exhaustive]`, a message can get further optional fields without breaking code that creates one. A
+/// `String` field accepts any type that converts into a `String`. A field marked `#[fc(extra)]` is empty at first.
 ///
 /// ```
 /// use fc_derive::{Message, New};
@@ -99,14 +103,14 @@ pub fn derive_message(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(New, attributes(fc))]
 pub fn derive_new(input: TokenStream) -> TokenStream {
-    new::expand(input.into()).into()
+    derive(input, new::expand)
 }
 
-/// What the absence of a field means, beside [`Message`](derive@Message): for each `Option` with
-/// `#[fc(default = …)]` a constant `DEFAULT_…` and an accessor `…_or_default`.
+/// The meaning of absent fields, together with [`Message`](derive@Message): for each `Option` with `#[fc(default = …)]`
+/// a constant `DEFAULT_…` and an accessor `…_or_default`.
 ///
-/// The default of a `String` is a literal, and its accessor lends a `&str`. Reading and writing know nothing of
-/// defaults: what is absent stays absent.
+/// The default of a `String` is a literal, and its accessor returns a `&str`. Reading and writing ignore defaults: an
+/// absent field stays absent.
 ///
 /// ```
 /// use fc_derive::{Defaults, Message};
@@ -125,14 +129,14 @@ pub fn derive_new(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(Defaults, attributes(fc))]
 pub fn derive_defaults(input: TokenStream) -> TokenStream {
-    defaults::expand(input.into()).into()
+    derive(input, defaults::expand)
 }
 
-/// A choice of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type; without a
-/// variant `other` it is closed, and `TryFrom` takes the place of `From`.
+/// An enum of values: `FromJson`, `ToJson`, `wire()`, `VALUES`, and `From` its wire type. Without a variant `other` it
+/// is closed and has `TryFrom` instead of `From`.
 ///
-/// On the enum: `repr = u8` (any integer type up to 64 bits) or `repr = str`. On a variant:
-/// `value = 4` or `value = "gate"`; `other` on the one that keeps an unknown value.
+/// On the enum: `repr = u8` (any integer type up to 64 bits) or `repr = str`. On a variant: `value = 4` or `value =
+/// "gate"`; `other` on the variant that keeps an unknown value.
 ///
 /// ```
 /// use fc_derive::OpenEnum;
@@ -151,14 +155,14 @@ pub fn derive_defaults(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(OpenEnum, attributes(fc))]
 pub fn derive_open_enum(input: TokenStream) -> TokenStream {
-    open_enum::expand(input.into()).into()
+    derive(input, open_enum::expand)
 }
 
-/// An id with a type of its own, so that none is taken for another: `FromJson`, `ToJson`, `Display`, and `From` what it
-/// holds and back.
+/// An id with its own type, so that it cannot be mistaken for another: `FromJson`, `ToJson`, `Display`, and `From` in
+/// both directions.
 ///
-/// On a struct of one integer or `String`, as which it travels. A field of it may have what one of the integer or the
-/// text may have: `wire`, `lenient(number)`, `min`, `max`; `length`, `pattern`.
+/// On a struct of one integer or `String`, which is its wire form. A field of this type may have the attributes of a
+/// field of the inner type: `wire`, `lenient(number)`, `min`, `max`; `length`, `pattern`.
 ///
 /// ```
 /// use fc_derive::{Id, Message};
@@ -180,37 +184,35 @@ pub fn derive_open_enum(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(Id, attributes(fc))]
 pub fn derive_id(input: TokenStream) -> TokenStream {
-    id::expand(input.into()).into()
+    derive(input, id::expand)
 }
 
-/// A choice of messages, told apart by their required keys: `FromJson` and `ToJson`.
+/// A one-of: an enum of messages, distinguished by their required keys: `FromJson` and `ToJson`.
 ///
-/// Each variant holds one message. The first one whose required keys are all there is read. Unlike an
-/// [`OpenEnum`](derive@OpenEnum) it is closed: a value that has the required keys of none is refused.
+/// Each variant contains one message. The first variant whose required keys are all present is read. Unlike an
+/// [`OpenEnum`](derive@OpenEnum) it is closed: a value without all required keys of a variant is an error.
 #[proc_macro_derive(OneOf, attributes(fc))]
 pub fn derive_one_of(input: TokenStream) -> TokenStream {
-    one_of::expand(input.into()).into()
+    derive(input, one_of::expand)
 }
 
-/// A request with a code, beside [`Message`](derive@Message): `Command`.
+/// A request with a code, together with [`Message`](derive@Message): `Command`.
 ///
-/// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`;
-/// `effect` is `"read"`, `"config"`, `"motion"` or `"unknown"`. `error = SetTargetError` names the enum of what the
-/// command may be refused with, which derives [`DeclaredError`](derive@DeclaredError); without it, nothing is declared.
-/// `accepted_in(Door(Shut, Locked))` says in which values of an enum the command is accepted, and writes `AcceptedIn`
-/// for it.
-/// `sets_off(StationReached, RouteProgress(response.route = data?.route))` names the reports that the command sets off:
-/// `SetsOff`. In the parentheses of a report stands what ties it to the call, a field of the
-/// request or of the response and the field of the report that has the same value; a field that is an `Option` is
-/// marked with `?`.
+/// `#[fc(code = 0x0A03, name = "get_station", effect = "read", response = GetStationResponse)]`; `effect` is `"read"`,
+/// `"config"`, `"motion"` or `"unknown"`. `error = SetTargetError` is the enum of errors that the command declares,
+/// with [`DeclaredError`](derive@DeclaredError); without it, the command declares none. `accepted_in(Door(Shut,
+/// Locked))` lists the values of an enum in which the command is accepted, and implements `AcceptedIn`.
+/// `sets_off(StationReached, RouteProgress(response.route = data?.route))` lists the reports that the command sets off,
+/// and implements `SetsOff`. The parentheses of a report link it to the call: a field of the request or response, and
+/// the field of the report with the same value. A field that is an `Option` is marked with `?`.
 #[proc_macro_derive(Command, attributes(fc))]
 pub fn derive_command(input: TokenStream) -> TokenStream {
-    operation::expand_command(input.into()).into()
+    derive(input, operation::expand_command)
 }
 
-/// The results besides success with which a command may be refused, by name: `DeclaredError`.
+/// The errors that a command declares, by name: `DeclaredError`.
 ///
-/// On each variant: `code = 41`, the result code, and `text = "…"`, what is sent beside it.
+/// On each variant: `code = 41`, the result code, and `text = "…"`, its text.
 ///
 /// ```
 /// use fc_derive::DeclaredError;
@@ -227,59 +229,57 @@ pub fn derive_command(input: TokenStream) -> TokenStream {
 /// ```
 #[proc_macro_derive(DeclaredError, attributes(fc))]
 pub fn derive_declared_error(input: TokenStream) -> TokenStream {
-    declared::expand(input.into()).into()
+    derive(input, declared::expand)
 }
 
-/// A report with a code, beside [`Message`](derive@Message): `Report`.
+/// A report with a code, together with [`Message`](derive@Message): `Report`.
 ///
-/// `#[fc(code = 0x0B01, name = "recharge_progress", ack(timeout_ms = 2000, retries = 3))]`; without
-/// `ack` the protocol's default holds. `state(data.status: RechargeStatus)` names the field that says how far a process
-/// has come and its type, an enum of states; `failure(data.error)` names other fields by which it says that something
-/// failed. A field that is an `Option` is marked with `?`: `state(data?.status: RechargeStatus)`.
+/// `#[fc(code = 0x0B01, name = "recharge_progress", ack(timeout_ms = 2000, retries = 3))]`; without `ack` the
+/// protocol's default applies. `state(data.status: RechargeStatus)` is the field with the state of the process, and its
+/// type, an enum of states. `failure(data.error)` lists other fields that mean a failure. A field that is an `Option`
+/// is marked with `?`: `state(data?.status: RechargeStatus)`.
 #[proc_macro_derive(Report, attributes(fc))]
 pub fn derive_report(input: TokenStream) -> TokenStream {
-    operation::expand_report(input.into()).into()
+    derive(input, operation::expand_report)
 }
 
-/// The fixed bytes in front of a frame's data: `Header`.
+/// The fixed bytes in front of the data of a frame: `Header`.
 ///
-/// On the struct: `byte_order = "big"` or `"little"`. The fields are `u8`, `u16`, `u32`, `u64` or
-/// `[u8; N]`, in the order in which they travel. On a field, `role = "…"`: `head` (`[u8; N]`, the
-/// first field), `kind` (`u8`), `code` (`u16`), `id` (`u16` or `u32`) and `total_length` (`u32`), each
-/// exactly once; `encoding` (`u8`), `plain_length` (`u32`) and `digest`, each at most once. A digest
-/// is `[u8; 16]`, by MD5, or `u32` with `algorithm = "crc32"`. Every other field has `value = 0`, the
-/// value it is sent with (`role = "status"` may be given as well).
+/// On the struct: `byte_order = "big"` or `"little"`. The fields are `u8`, `u16`, `u32`, `u64` or `[u8; N]`, in the
+/// order in which they are sent. On a field, `role = "…"`: `head` (`[u8; N]`, the first field), `kind` (`u8`), `code`
+/// (`u16`), `id` (`u16` or `u32`) and `total_length` (`u32`), each exactly once; `encoding` (`u8`), `plain_length`
+/// (`u32`) and `digest`, each at most once. A digest is `[u8; 16]` for MD5, or `u32` with `algorithm = "crc32"`. Every
+/// other field has `value = 0`, its constant value (`role = "status"` is allowed as well).
 #[proc_macro_derive(Header, attributes(fc))]
 pub fn derive_header(input: TokenStream) -> TokenStream {
-    header::expand(input.into()).into()
+    derive(input, header::expand)
 }
 
-/// The keys beside a message's own, beside [`Message`](derive@Message): `RequestEnvelope` or
-/// `ResponseEnvelope`.
+/// The keys of an envelope, together with [`Message`](derive@Message): `RequestEnvelope` or `ResponseEnvelope`.
 ///
-/// On the struct: `envelope = "request"` or `"response"`. On its fields: `role = "time"` (`i64` or
-/// an `Option` of it); in a response also `role = "result_code"` (an integer) and
-/// beside it `role = "result_text"` (`String` or an `Option` of it). Without a result code a response
-/// says that all went well, and what did not is not answered. Other fields are sent as their `Default`.
+/// On the struct: `envelope = "request"` or `"response"`. On its fields: `role = "time"` (`i64` or an `Option` of it);
+/// in a response also `role = "result_code"` (an integer) and with it `role = "result_text"` (`String` or an `Option`
+/// of it). Without a result code, every response means success, and failed requests are not answered. Other fields are
+/// sent with their `Default`.
 #[proc_macro_derive(Envelope, attributes(fc))]
 pub fn derive_envelope(input: TokenStream) -> TokenStream {
-    envelope::expand(input.into()).into()
+    derive(input, envelope::expand)
 }
 
-/// A choice of reports, told apart by code: `from_raw`.
+/// An enum of reports, distinguished by code: `from_raw`.
 ///
-/// On the enum: `protocol = Fc`. Each variant holds one report; `unknown` marks the one that holds
-/// the raw report of any other code.
+/// On the enum: `protocol = Fc`. Each variant contains one report; `unknown` marks the variant with the raw report of
+/// any other code.
 #[cfg(feature = "client")]
 #[proc_macro_derive(Dispatch, attributes(fc))]
 pub fn derive_dispatch(input: TokenStream) -> TokenStream {
-    reports::expand(input.into()).into()
+    derive(input, reports::expand)
 }
 
 /// `Debug` that does not print the fields marked `#[fc(sensitive)]`.
 #[proc_macro_derive(RedactedDebug, attributes(fc))]
 pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
-    redacted::expand(input.into()).into()
+    derive(input, redacted::expand)
 }
 
 /// Makes a trait of `async` methods, one per command, into a service.
@@ -300,19 +300,18 @@ pub fn derive_redacted_debug(input: TokenStream) -> TokenStream {
 /// }
 /// ```
 ///
-/// makes the methods' futures `Send` and writes `RobotService<T>`, which serves any `T: Robot`. A
-/// code goes to the method of its command, else to that of its range, else to `unknown`.
+/// makes the futures of the methods `Send` and writes `RobotService<T>`, which serves any `T: Robot`. A code is passed
+/// to the method of its command, or else to the method of its range, or else to `unknown`.
 ///
-/// With `partial = PartialRobot` it also writes that trait, with the same methods, none of which has
-/// to be implemented: those without a body above are refused by `Context::not_implemented`.
-/// `RobotService` then serves either.
+/// With `partial = PartialRobot` it also writes that trait with the same methods, all of them optional. Methods without
+/// a body above refuse with `Context::not_implemented` by default. `RobotService` then serves either trait.
 #[cfg(feature = "server")]
 #[proc_macro_attribute]
 pub fn dispatch(attribute: TokenStream, item: TokenStream) -> TokenStream {
     dispatch::expand(attribute.into(), item.into()).into()
 }
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

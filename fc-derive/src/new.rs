@@ -1,40 +1,24 @@
-//! `#[derive(New)]`: how a message is made where its fields may become more.
+//! `#[derive(New)]`: constructors of messages that may get further fields.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote, quote_spanned};
 use syn::ext::IdentExt as _;
-use syn::{Data, DeriveInput, Fields, GenericArgument, Ident, PathArguments, Type};
+use syn::{DeriveInput, GenericArgument, Ident, PathArguments, Type};
 
-/// Writes `new`, the setters and, for two or more required fields, the struct that names them; or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut fields = Vec::new();
-    match &input.data {
-        Data::Struct(data) => match &data.fields {
-            Fields::Named(named) => {
-                for field in &named.named {
-                    fields.extend(Field::read(field, &mut faults));
-                }
-            }
-            Fields::Unit => {}
-            Fields::Unnamed(unnamed) => {
-                faults.on(unnamed, "`New` is for structs whose fields have names");
-            }
-        },
-        Data::Enum(data) => faults.on(&data.enum_token, "`New` is for structs"),
-        Data::Union(data) => faults.on(&data.union_token, "`New` is for structs"),
-    }
-    faults.finish(|| code(&input, &fields), TokenStream::new)
+/// Writes `new`, the setters and, for two or more required fields, a struct with these fields; or errors.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut errors, "New")
+        .into_iter()
+        .filter_map(|field| Field::read(field, &mut errors))
+        .collect();
+    errors.finish(|| code(input, &fields), TokenStream::new)
 }
 
-/// A field and where its value comes from.
+/// A field and the source of its value.
 struct Field<'a> {
     of: &'a syn::Field,
     ident: &'a Ident,
@@ -42,22 +26,22 @@ struct Field<'a> {
 }
 
 enum Value<'a> {
-    /// Given to `new`.
+    /// A parameter of `new`.
     Required(&'a Type),
-    /// A setter; absent until then.
+    /// A setter; absent by default.
     Optional(&'a Type),
     /// Empty.
     Extra,
 }
 
 impl<'a> Field<'a> {
-    fn read(field: &'a syn::Field, faults: &mut Faults) -> Option<Self> {
+    fn read(field: &'a syn::Field, errors: &mut Errors) -> Option<Self> {
         let mut extra = Slot::default();
-        attr::read(&field.attrs, faults, "a field", &mut |key, _| {
+        attr::read(&field.attrs, errors, "a field", &mut |key, _| {
             if key == "extra" {
                 return extra.set(key, Ok(()));
             }
-            // `Message` reads the rest, and refuses what nobody reads.
+            // `Message` reads all other keys and reports unknown ones.
             Ok(Item::Foreign)
         });
         let value = match (extra.get(), optional(&field.ty)) {
@@ -74,7 +58,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// What an `Option` holds.
+/// Returns the inner type of an `Option`.
 pub fn optional(ty: &Type) -> Option<&Type> {
     let Type::Path(path) = ty else { return None };
     let last = path.path.segments.last()?;
@@ -87,7 +71,7 @@ pub fn optional(ty: &Type) -> Option<&Type> {
     }
 }
 
-/// How a value is taken, and how it becomes the field's: a text may come as `&str`.
+/// Returns the parameter type and the conversion of a value. A string may be passed as `&str`.
 fn taken(ty: &Type, name: &Ident) -> (TokenStream, TokenStream) {
     match ty {
         Type::Path(path) if path.path.is_ident("String") => (
@@ -150,8 +134,8 @@ fn code(input: &DeriveInput, fields: &[Field<'_>]) -> TokenStream {
     }
 }
 
-/// The struct that names the required fields, if there are several, and the parameter of `new`. Several values of one
-/// type in a row could be swapped without a word from the compiler.
+/// Returns the struct with the required fields, if there are several, and the parameter of `new`. Without the struct,
+/// neighbouring values of one type could be swapped by mistake.
 fn required(input: &DeriveInput, fields: &[Field<'_>]) -> (Option<TokenStream>, TokenStream) {
     let DeriveInput { ident, vis, .. } = input;
     let required: Vec<_> = fields

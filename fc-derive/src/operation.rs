@@ -1,7 +1,7 @@
-//! `#[derive(Command)]` and `#[derive(Report)]`: what ties a message to its code.
+//! `#[derive(Command)]` and `#[derive(Report)]`: the code and further properties of a message.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
@@ -9,30 +9,7 @@ use quote::quote;
 use syn::parse::{Parse as _, ParseStream};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
 
-/// Writes `Command`, or the faults and a stub.
-pub fn expand_command(input: TokenStream) -> TokenStream {
-    expand(input, command)
-}
-
-/// Writes `Report`, or the faults and a stub.
-pub fn expand_report(input: TokenStream) -> TokenStream {
-    expand(input, report)
-}
-
-fn expand(
-    input: TokenStream,
-    code: fn(&DeriveInput, Operation, Faults) -> TokenStream,
-) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let operation = Operation::read(&input, &mut faults);
-    code(&input, operation, faults)
-}
-
-/// What the attributes say of an operation.
+/// The attributes of an operation.
 #[derive(Default)]
 struct Operation {
     runtime: Slot<Path>,
@@ -61,9 +38,9 @@ struct Ack {
 }
 
 impl Operation {
-    fn read(input: &DeriveInput, faults: &mut Faults) -> Self {
+    fn read(input: &DeriveInput, errors: &mut Errors) -> Self {
         let mut this = Self::default();
-        attr::read(&input.attrs, faults, "an operation", &mut |key, input| {
+        attr::read(&input.attrs, errors, "an operation", &mut |key, input| {
             this.item(key, input)
         });
         this
@@ -82,7 +59,7 @@ impl Operation {
             "sets_off" => self.sets_off.set(key, process::sets_off(input)),
             "state" => self.state.set(key, process::state(input)),
             "failure" => self.failure.set(key, process::ways(input)),
-            // `Message` reads the rest, and refuses what nobody reads.
+            // `Message` reads all other keys and reports unknown ones.
             _ => Ok(Item::Foreign),
         }
     }
@@ -135,8 +112,8 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
     let parentheses = syn::parenthesized!(content in input);
     let mut timeout_ms = Slot::default();
     let mut retries = Slot::default();
-    let mut faults = Faults::default();
-    attr::read_items(&content, &mut faults, "`ack`", &mut |key, input| match key
+    let mut errors = Errors::default();
+    attr::read_items(&content, &mut errors, "`ack`", &mut |key, input| match key
         .to_string()
         .as_str()
     {
@@ -144,7 +121,7 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
         "retries" => retries.set(key, attr::integer(input)),
         _ => Ok(Item::Unknown),
     })?;
-    faults.into_result()?;
+    errors.into_result()?;
     match (timeout_ms.get(), retries.get()) {
         (Some(&timeout_ms), Some(&retries)) => Ok(Ack {
             timeout_ms,
@@ -157,34 +134,36 @@ fn ack(input: ParseStream<'_>) -> syn::Result<Ack> {
     }
 }
 
-/// Refuses a struct that lacks an attribute, by showing one.
+/// Returns the error of a missing attribute, with an example.
 fn missing(key: &str, example: &str) -> String {
     format!("`{key}` is missing: `#[fc({key} = {example})]`")
 }
 
-fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+/// Writes `Command`, or errors and a stub.
+pub fn expand_command(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let operation = Operation::read(input, &mut errors);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code
-        .required(&mut faults, ident, &missing("code", "0x0A03"));
+        .required(&mut errors, ident, &missing("code", "0x0A03"));
     let name = operation
         .name
-        .required(&mut faults, ident, &missing("name", "\"get_station\""));
+        .required(&mut errors, ident, &missing("name", "\"get_station\""));
     let effect = operation
         .effect
-        .required(&mut faults, ident, &missing("effect", "\"read\""));
+        .required(&mut errors, ident, &missing("effect", "\"read\""));
     let response = operation.response.required(
-        &mut faults,
+        &mut errors,
         ident,
         &missing("response", "GetStationResponse"),
     );
     if let Some(key) = operation.ack.key() {
-        faults.at(key, "`ack` is for reports; a command is answered");
+        errors.at(key, "`ack` is for reports; a command is answered");
     }
     let states = [operation.state.key(), operation.failure.key()];
     for key in states.into_iter().flatten() {
-        faults.at(key, "what says how far a process has come is a report");
+        errors.at(key, "what says how far a process has come is a report");
     }
     let set_off = operation.sets_off.get().map(Vec::as_slice);
     let set_off = process::set_off(&runtime, ident, set_off.unwrap_or_default());
@@ -196,7 +175,7 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
     for States { ty, variants } in operation.accepted_in.get().map_or(&[][..], Vec::as_slice) {
         states.extend(quote! {
             #[automatically_derived]
-            impl #runtime::needs::AcceptedIn<#ty> for #ident {
+            impl #runtime::AcceptedIn<#ty> for #ident {
                 const STATES: &'static [#ty] = &[#(#ty::#variants),*];
             }
         });
@@ -206,18 +185,18 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
             #states
 
             #[automatically_derived]
-            impl #runtime::protocol::Command for #ident {
+            impl #runtime::Command for #ident {
                 type Response = #response;
                 type Error = #error;
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
-                const EFFECT: #runtime::protocol::Effect = #runtime::protocol::Effect::#effect;
+                const EFFECT: #runtime::Effect = #runtime::Effect::#effect;
             }
 
             #set_off
         }
     };
-    faults.finish(
+    errors.finish(
         || {
             let effect = effect
                 .cloned()
@@ -236,31 +215,33 @@ fn command(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Tok
     )
 }
 
-fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> TokenStream {
+/// Writes `Report`, or errors and a stub.
+pub fn expand_report(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let operation = Operation::read(input, &mut errors);
     let runtime = attr::runtime(operation.runtime);
     let ident = &input.ident;
     let code = operation
         .code
-        .required(&mut faults, ident, &missing("code", "0x0B01"));
+        .required(&mut errors, ident, &missing("code", "0x0B01"));
     let name = operation.name.required(
-        &mut faults,
+        &mut errors,
         ident,
         &missing("name", "\"recharge_progress\""),
     );
     if let Some(key) = operation.effect.key() {
-        faults.at(key, "`effect` is for commands");
+        errors.at(key, "`effect` is for commands");
     }
     if let Some(key) = operation.response.key() {
-        faults.at(key, "`response` is for commands; a report is acknowledged");
+        errors.at(key, "`response` is for commands; a report is acknowledged");
     }
     if let Some(key) = operation.error.key() {
-        faults.at(key, "`error` is for commands; a report is acknowledged");
+        errors.at(key, "`error` is for commands; a report is acknowledged");
     }
     if let Some(key) = operation.accepted_in.key() {
-        faults.at(key, "`accepted_in` is for commands");
+        errors.at(key, "`accepted_in` is for commands");
     }
     if let Some(key) = operation.sets_off.key() {
-        faults.at(
+        errors.at(
             key,
             "`sets_off` is for commands; a report is what is set off",
         );
@@ -277,7 +258,7 @@ fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Toke
             timeout_ms,
             retries,
         }) => quote! {
-            ::core::option::Option::Some(#runtime::protocol::AckPolicy {
+            ::core::option::Option::Some(#runtime::AckPolicy {
                 timeout: ::core::time::Duration::from_millis(#timeout_ms),
                 retries: #retries,
             })
@@ -286,16 +267,16 @@ fn report(input: &DeriveInput, operation: Operation, mut faults: Faults) -> Toke
     let write = |code: TokenStream, name: TokenStream| {
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::Report for #ident {
+            impl #runtime::Report for #ident {
                 const CODE: ::core::primitive::u16 = #code;
                 const NAME: &'static ::core::primitive::str = #name;
-                const ACK: ::core::option::Option<#runtime::protocol::AckPolicy> = #ack;
+                const ACK: ::core::option::Option<#runtime::AckPolicy> = #ack;
 
                 #process
             }
         }
     };
-    faults.finish(
+    errors.finish(
         || write(generated(code), quote!(#name)),
         || write(quote!(0), quote!("")),
     )

@@ -1,5 +1,4 @@
-//! What the attributes of an operation say of processes: which reports a command sets off, and where a report says how
-//! far one has come.
+//! Attributes about processes: the reports that a command sets off, and the state in a report.
 
 use crate::attr;
 use proc_macro2::TokenStream;
@@ -7,7 +6,7 @@ use quote::quote;
 use syn::parse::{Parse, ParseStream};
 use syn::{Ident, Path, Token, Type, token};
 
-/// The way to a field inside a message, such as `data?.status`; `?` marks what may be absent.
+/// The path to a field inside a message, such as `data?.status`. `?` marks an optional field.
 pub struct Way(Vec<(Ident, bool)>);
 
 impl Parse for Way {
@@ -25,7 +24,7 @@ impl Parse for Way {
 }
 
 impl Way {
-    /// The value at its end, as an `Option` of a reference.
+    /// Returns the value at its end, as an `Option` of a reference.
     fn within(&self, message: &TokenStream) -> TokenStream {
         let steps = self.0.iter().map(|(field, optional)| {
             let step = quote!(.map(|it| &it.#field));
@@ -39,7 +38,7 @@ impl Way {
     }
 }
 
-/// Where a report has its state, and what that is: `data.status: Status`.
+/// The field with the state of a report, and its type: `data.status: Status`.
 pub struct StateAt {
     way: Way,
     ty: Type,
@@ -54,13 +53,13 @@ impl Parse for StateAt {
     }
 }
 
-/// Which message of a command a tie begins in.
+/// The message of a command in which a link begins.
 enum Side {
     Request,
     Response,
 }
 
-/// A key of the command that has the value of one of the report: `response.job = job`.
+/// A field of the command and a field of the report with the same value: `response.job = job`.
 struct Tie {
     side: Side,
     command: Way,
@@ -90,7 +89,7 @@ impl Parse for Tie {
     }
 }
 
-/// A report that a command sets off, and what ties it: `SwitchMoved(response.job = job)`.
+/// A report that a command sets off, and its links: `SwitchMoved(response.job = job)`.
 pub struct SetOff {
     report: Path,
     ties: Vec<Tie>,
@@ -130,7 +129,7 @@ pub fn ways(input: ParseStream<'_>) -> syn::Result<Vec<Way>> {
     attr::listed(input, "expected a field", Way::parse)
 }
 
-/// `SetsOff` of each report.
+/// Implements `SetsOff` for each report.
 pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStream {
     let impls = set_off.iter().map(|SetOff { report, ties }| {
         let tests = ties.iter().map(|tie| {
@@ -139,7 +138,7 @@ pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStre
                 Side::Response => quote!(answer),
             });
             let report = tie.report.within(&quote!(report));
-            // What either does not say cannot tell them apart.
+            // An absent field cannot distinguish calls.
             quote! {
                 match (#command, #report) {
                     (::core::option::Option::Some(here), ::core::option::Option::Some(there)) => here == there,
@@ -157,7 +156,7 @@ pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStre
         });
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::SetsOff<#report> for #command {
+            impl #runtime::SetsOff<#report> for #command {
                 #test
             }
         }
@@ -165,10 +164,10 @@ pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStre
     quote!(#(#impls)*)
 }
 
-/// What `Report` says of the process.
+/// Returns the items of `Report` about the process.
 pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> TokenStream {
     let ty = state.map_or_else(
-        || quote!(#runtime::protocol::Stateless),
+        || quote!(#runtime::Stateless),
         |StateAt { ty, .. }| quote!(#ty),
     );
     let state = state.map(|StateAt { way, .. }| {
@@ -182,14 +181,14 @@ pub fn stage(runtime: &Path, state: Option<&StateAt>, failures: &[Way]) -> Token
     let failure = (!failures.is_empty()).then(|| {
         let own = state.as_ref().map(|_| {
             quote! {
-                #runtime::protocol::Report::state(self)
-                    .is_some_and(|state| #runtime::protocol::State::says_failed(&state)) ||
+                #runtime::Report::state(self)
+                    .is_some_and(|state| #runtime::State::says_failed(&state)) ||
             }
         });
         let failures = failures.iter().map(|way| way.within(&quote!(self)));
         quote! {
             fn is_failure(&self) -> ::core::primitive::bool {
-                #own #(#failures.is_some_and(#runtime::protocol::State::says_failed))||*
+                #own #(#failures.is_some_and(#runtime::State::says_failed))||*
             }
         }
     });

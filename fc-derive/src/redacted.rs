@@ -1,52 +1,30 @@
 //! `#[derive(RedactedDebug)]`.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::ext::IdentExt as _;
-use syn::{Data, DeriveInput, Field, Fields, Ident};
+use syn::{DeriveInput, Field, Ident};
 
-/// Writes `Debug`, or the faults and a stub.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut fields = Vec::new();
-    match &input.data {
-        Data::Struct(data) => match &data.fields {
-            Fields::Named(named) => {
-                fields.extend(
-                    named
-                        .named
-                        .iter()
-                        .filter_map(|field| read(field, &mut faults)),
-                );
-            }
-            Fields::Unit => {}
-            Fields::Unnamed(unnamed) => {
-                faults.on(
-                    unnamed,
-                    "`RedactedDebug` is for structs whose fields have names",
-                );
-            }
-        },
-        Data::Enum(data) => faults.on(&data.enum_token, "`RedactedDebug` is for structs"),
-        Data::Union(data) => faults.on(&data.union_token, "`RedactedDebug` is for structs"),
-    }
-    faults.finish(|| code(&input, &fields), || code(&input, &[]))
+/// Writes `Debug`, or errors and a stub.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let fields: Vec<_> = item::named_fields(input, &mut errors, "RedactedDebug")
+        .into_iter()
+        .filter_map(|field| read(field, &mut errors))
+        .collect();
+    errors.finish(|| code(input, &fields), || code(input, &[]))
 }
 
-/// A field and whether it is sensitive.
-fn read<'a>(field: &'a Field, faults: &mut Faults) -> Option<(&'a Ident, bool)> {
+/// Reads a field. The bool is `true` for a sensitive one.
+fn read<'a>(field: &'a Field, errors: &mut Errors) -> Option<(&'a Ident, bool)> {
     let mut sensitive = Slot::default();
-    attr::read(&field.attrs, faults, "a field", &mut |key, _| {
+    attr::read(&field.attrs, errors, "a field", &mut |key, _| {
         if key == "sensitive" {
             return sensitive.set(key, Ok(()));
         }
-        // `Message` reads the rest, and refuses what nobody reads.
+        // `Message` reads all other keys and reports unknown ones.
         Ok(Item::Foreign)
     });
     Some((field.ident.as_ref()?, sensitive.get().is_some()))

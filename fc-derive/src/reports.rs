@@ -1,59 +1,42 @@
-//! `#[derive(Dispatch)]`: an enum of reports, told apart by code.
+//! `#[derive(Dispatch)]`: an enum of reports, distinguished by code.
 
 use crate::attr::{self, Item, Slot};
 use crate::codes::distinct;
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
-use syn::{Data, DeriveInput, Fields, Ident, Path, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
 
-/// Writes `from_raw`, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let mut runtime = Slot::default();
+/// Writes `from_raw`, or errors.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
     let mut protocol = Slot::default();
-    attr::read(
-        &input.attrs,
-        &mut faults,
-        "an enum of reports",
-        &mut |key, input| match key.to_string().as_str() {
-            "crate" => runtime.set(key, attr::path(input)),
-            "protocol" => protocol.set(key, attr::path(input)),
-            _ => Ok(Item::Unknown),
-        },
-    );
-    let message = "`protocol` is missing: `#[fc(protocol = Fc)]`";
-    protocol.required(&mut faults, &input.ident, message);
-    let mut reports = Reports::default();
-    match &input.data {
-        Data::Enum(data) => {
-            for variant in &data.variants {
-                reports.add(variant, &mut faults);
-            }
-            if reports.unknown.is_none() {
-                faults.on(
-                    &input.ident,
-                    "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
-                );
-            }
+    let item = "an enum of reports";
+    let runtime = item::read_attributes(input, &mut errors, item, &mut |key, input| {
+        if key == "protocol" {
+            protocol.set(key, attr::path(input))
+        } else {
+            Ok(Item::Unknown)
         }
-        Data::Struct(data) => faults.on(&data.struct_token, "`Dispatch` is for enums of reports"),
-        Data::Union(data) => faults.on(&data.union_token, "`Dispatch` is for enums of reports"),
-    }
-    faults.finish(
-        || {
-            code(
+    });
+    let message = "`protocol` is missing: `#[fc(protocol = Fc)]`";
+    protocol.required(&mut errors, &input.ident, message);
+    let mut reports = Reports::default();
+    let message = "`Dispatch` is for enums of reports";
+    if let Some(variants) = item::variants(input, &mut errors, message, "") {
+        for variant in variants {
+            reports.add(variant, &mut errors);
+        }
+        if reports.unknown.is_none() {
+            errors.on(
                 &input.ident,
-                &attr::runtime(runtime),
-                protocol.get(),
-                &reports,
-            )
-        },
+                "one variant must hold what no other does: `#[fc(unknown)] Unknown(RawReport)`",
+            );
+        }
+    }
+    errors.finish(
+        || code(&input.ident, &runtime, protocol.get(), &reports),
         TokenStream::new,
     )
 }
@@ -65,11 +48,11 @@ struct Reports<'a> {
 }
 
 impl<'a> Reports<'a> {
-    fn add(&mut self, variant: &'a Variant, faults: &mut Faults) {
+    fn add(&mut self, variant: &'a Variant, errors: &mut Errors) {
         let mut unknown = Slot::default();
         attr::read(
             &variant.attrs,
-            faults,
+            errors,
             "a report's variant",
             &mut |key, _| {
                 if key == "unknown" {
@@ -88,14 +71,14 @@ impl<'a> Reports<'a> {
                 Fields::Unit => variant.ident.to_token_stream(),
                 fields => fields.to_token_stream(),
             };
-            faults.on(&place, "each variant holds one report");
+            errors.on(&place, "each variant holds one report");
             return;
         };
         let report = (&variant.ident, &field.ty);
         match (unknown.key(), self.unknown) {
             (None, _) => self.typed.push(report),
             (Some(_), None) => self.unknown = Some(report),
-            (Some(key), Some(_)) => faults.at(key, "`unknown` is given twice"),
+            (Some(key), Some(_)) => errors.at(key, "`unknown` is given twice"),
         }
     }
 }
@@ -113,7 +96,7 @@ fn code(
     let types: Vec<_> = reports.typed.iter().map(|(_, ty)| ty).collect();
     let codes: Vec<_> = types
         .iter()
-        .map(|ty| quote_spanned!(span_of(ty)=> <#ty as #runtime::protocol::Report>::CODE))
+        .map(|ty| quote_spanned!(span_of(ty)=> <#ty as #runtime::Report>::CODE))
         .collect();
     let distinct = distinct(runtime, &codes, types.iter().map(span_of));
     quote! {
@@ -121,10 +104,10 @@ fn code(
 
         #[automatically_derived]
         impl #ident {
-            /// Reads a report as the type that its code says.
+            /// Reads a report as the type of its code.
             ///
             /// # Errors
-            /// What is wrong with the report's text, or with a key of that type.
+            /// The error of the report's text or of a key of that type.
             pub fn from_raw(
                 raw: #raw,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {

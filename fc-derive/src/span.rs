@@ -1,23 +1,23 @@
-//! Where generated code is said to stand.
+//! Positions of generated code.
 
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use syn::spanned::Spanned;
 
-/// The place of `tokens`, as code that a macro wrote: errors point there, lints on hand-written code
-/// leave it alone.
+/// Returns the position of `tokens` for generated code: errors point there, and lints for handwritten code do not
+/// apply.
 pub fn span_of(tokens: &impl Spanned) -> Span {
     Span::call_site().located_at(tokens.span())
 }
 
-/// `tokens` as code that a macro wrote, each in its place.
+/// Returns `tokens` as generated code, each at its position.
 pub fn generated(tokens: impl ToTokens) -> TokenStream {
     respanned(tokens.into_token_stream(), &|span| {
         Span::call_site().located_at(span)
     })
 }
 
-/// `tokens` as if they all stood at `span`.
+/// Returns `tokens` with all positions set to `span`.
 pub fn moved(tokens: impl ToTokens, span: Span) -> TokenStream {
     respanned(tokens.into_token_stream(), &|_| span)
 }

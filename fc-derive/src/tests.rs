@@ -1,11 +1,10 @@
-//! The expansions as tokens, without a compiler.
+//! Expansions as tokens, without a compiler.
 
+use crate::item::{Expand, derive};
 use proc_macro2::{TokenStream, TokenTree};
 use std::fs;
 use std::path::Path;
 use std::str::FromStr as _;
-
-type Expand = fn(TokenStream) -> TokenStream;
 
 const DERIVES: [(&str, Expand); 13] = [
     ("Message", crate::message::expand),
@@ -23,7 +22,7 @@ const DERIVES: [(&str, Expand); 13] = [
     ("RedactedDebug", crate::redacted::expand),
 ];
 
-/// What each macro call of a program expands to.
+/// Returns the expansion of each macro call of a program.
 fn expansions(program: &str) -> Vec<TokenStream> {
     let mut expansions = Vec::new();
     let mut tokens = TokenStream::from_str(program)
@@ -31,7 +30,7 @@ fn expansions(program: &str) -> Vec<TokenStream> {
         .into_iter()
         .peekable();
     while let Some(token) = tokens.next() {
-        // Only attributes start with `#`, and only those of a whole item stand at this level.
+        // At this level, `#` starts an attribute of an item.
         let TokenTree::Punct(punct) = &token else {
             continue;
         };
@@ -46,7 +45,7 @@ fn expansions(program: &str) -> Vec<TokenStream> {
         let Some(TokenTree::Group(arguments)) = words.next() else {
             continue;
         };
-        // What is left of the item, its other attributes included, up to its body.
+        // The rest of the item up to its body, including its other attributes.
         let rest = || -> TokenStream {
             let mut ended = false;
             let rest = tokens.clone().take_while(|token| {
@@ -68,7 +67,7 @@ fn expansions(program: &str) -> Vec<TokenStream> {
                 let called = DERIVES
                     .iter()
                     .filter(|(name, _)| names.iter().any(|n| n == name));
-                expansions.extend(called.map(|(_, expand)| expand(rest())));
+                expansions.extend(called.map(|(_, expand)| derive(rest(), *expand)));
             }
             Some("dispatch") => {
                 expansions.push(crate::dispatch::expand(arguments.stream(), rest()));
@@ -107,7 +106,7 @@ fn is_refusal(expansion: &TokenStream) -> bool {
     !refusals(expansion.clone()).is_empty()
 }
 
-/// What an expansion has the compiler say: the texts of its `compile_error!`.
+/// Returns the texts of all `compile_error!` of an expansion.
 fn refusals(expansion: TokenStream) -> Vec<String> {
     let mut texts = Vec::new();
     let mut asked = false;
@@ -126,8 +125,8 @@ fn refusals(expansion: TokenStream) -> Vec<String> {
     texts
 }
 
-/// Programs whose name starts with `type_` are refused by the compiler, for what the expansion asks
-/// of a type; the others by the macro.
+/// The compiler rejects programs whose name starts with `type_`, because of a type in the expansion. The macro rejects
+/// all others.
 #[test]
 fn refuses_every_program() {
     let programs = programs("ui");
@@ -139,7 +138,7 @@ fn refuses_every_program() {
     }
 }
 
-/// Our own words, whatever the compiler; where they point, `tests/ui.rs` compares with the pinned one.
+/// Compares the texts of errors with any compiler. `tests/ui.rs` compares positions with the pinned one.
 #[test]
 fn refuses_in_the_words_that_are_written_down() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ui");
@@ -163,15 +162,14 @@ fn takes_every_program_that_is_right() {
     }
 }
 
-/// Compiling the generated crate is mostly compiling expansions.
+/// Expansions take most of the time to compile the generated crate.
 #[test]
 fn expansions_stay_small() {
     let size = |tokens: TokenStream| tokens.to_string().split_whitespace().count();
     let message = |fields: &str| {
         let item = format!("struct S {{ {fields} #[fc(extra)] extra: Extra }}");
-        size(crate::message::expand(
-            TokenStream::from_str(&item).unwrap_or_default(),
-        ))
+        let item = TokenStream::from_str(&item).unwrap_or_default();
+        size(derive(item, crate::message::expand))
     };
     let fields = |count: usize| -> String {
         let field = |n| format!("#[fc(key = \"field{n}\", min = 0)] field_{n}: i32,");
@@ -180,6 +178,6 @@ fn expansions_stay_small() {
     let [none, one, two] = [0, 1, 2].map(|count| message(&fields(count)));
     assert!(none < 400, "{none}");
     assert!(one - none < 260, "{}", one - none);
-    // What a field costs once there is one.
+    // Tokens per further field.
     assert!(two - one < 150, "{}", two - one);
 }

@@ -1,11 +1,10 @@
 //! Programs that the derives must refuse, and how (`tests/ui`), and programs that they must take
 //! (`tests/pass`).
 //!
-//! What an error looks like depends on the compiler. `tests/ui/*.stderr` was written by the one named
-//! here and is compared by it alone, which CI has to have (`FC_CI`). With any other, unit tests still see
-//! to it that each program is refused, and in the words written down; where the error points is not
-//! compared then, and the test says so. To write the files anew: `TRYBUILD=overwrite cargo test -p
-//! fc-derive --test ui -- --ignored`.
+//! The form of an error depends on the compiler. `tests/ui/*.stderr` was written by the compiler named here, and only
+//! that compiler compares it; CI must have it (`FC_CI`). With any other compiler, unit tests check that each program is
+//! rejected with the written text, but not the position of the error, and the test prints this. To write the files
+//! again: `TRYBUILD=overwrite cargo test -p fc-derive --test ui -- --ignored`.
 
 use std::io::Write as _;
 use std::process::Command;

@@ -1,17 +1,17 @@
-//! The client without `async`, for tools and tests: each call waits on the thread that makes it.
+//! The client without `async`, for tools and tests. Each call blocks its thread.
 //!
-//! A connection has a thread of its own, which reads, acknowledges and reconnects also while nobody
-//! calls anything. It ends with the last handle of the connection and the last of its reports.
+//! A connection has its own thread, which reads, acknowledges and reconnects even between calls. The thread ends with
+//! the last handle of the connection and the last of its reports.
 //!
-//! Nothing here needs a tokio runtime, and nothing panics within one: connecting, calling and dropping
-//! are allowed there too, but they hold up the thread that they are on, and with it the tasks of a
-//! runtime that has only this one. There, use [`client`] instead.
+//! These types need no tokio runtime, and they do not panic inside one. There, connecting, calling and dropping are
+//! allowed but block the thread, and with it the tasks of a single-threaded runtime. Use [`client`] there instead.
 
 use crate::client::{
     self, CallError, ClientConfig, ConnectError, FollowError, Followed, RawReports,
 };
 use crate::json::BodyError;
-use crate::protocol::{Command, Protocol, Report, SetsOff};
+use crate::operation::{Command, Report, SetsOff};
+use crate::protocol::Protocol;
 use crate::raw::RawReport;
 use std::fmt;
 use std::io;
@@ -24,11 +24,11 @@ use tokio::runtime::{Builder, Handle};
 use tokio::sync::oneshot;
 use tokio::task::unconstrained;
 
-/// A connection to a robot's command port, as [`client::Connection`] is, that is waited for.
+/// A connection to a robot's command port, like [`client::Connection`], with blocking methods.
 ///
 /// Clones are handles of the same connection.
 pub struct Connection<P: Protocol> {
-    // Dropped before the thread that drives it.
+    // Dropped before the thread that drives the connection.
     connection: client::Connection<P>,
     driver: Arc<Driver>,
 }
@@ -38,8 +38,8 @@ impl<P: Protocol> Connection<P> {
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails, or if the system has no thread to give; later
-    /// losses are handled in the background.
+    /// [`ConnectError`] if the first attempt fails, or if the system cannot create a thread. Later losses are handled
+    /// in the background.
     pub fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
         let driver = Driver::start().map_err(|source| {
             let (host, port) = config.command_address::<P>();
@@ -60,12 +60,12 @@ impl<P: Protocol> Connection<P> {
         self.wait(self.connection.call(request))
     }
 
-    /// Calls a command, waits for its response and follows what the command has set off, as
-    /// [`client::Call::follow`] does.
+    /// Calls a command, waits for its response and follows the reports that the command sets off, like
+    /// [`client::Call::follow`].
     ///
     /// # Errors
     ///
-    /// [`CallError`] if there is no such response in time; nothing is followed then.
+    /// [`CallError`] if there is no such response in time. In that case no reports are followed.
     pub fn follow<C: SetsOff<R>, R: Report>(
         &self,
         request: &C,
@@ -77,10 +77,9 @@ impl<P: Protocol> Connection<P> {
         })
     }
 
-    /// The robot's reports from here on. Each receiver gets all of them, and has a queue of its own.
+    /// Returns a receiver of all reports from now on. Each receiver has its own queue.
     ///
-    /// Reports are acknowledged as soon as a receiver has them in its queue, whether or not it is
-    /// asked for them.
+    /// A report is acknowledged once it is in the queue of a receiver, even before the app receives it.
     #[must_use]
     pub fn reports(&self) -> Reports<P> {
         Reports {
@@ -89,15 +88,15 @@ impl<P: Protocol> Connection<P> {
         }
     }
 
-    /// The same connection with `async` methods: its state and counters, options of a call, raw
-    /// commands, the data port. [`wait`](Self::wait) waits for them.
+    /// Returns the connection with `async` methods: state and counters, call options, raw commands, the data port.
+    /// [`wait`](Self::wait) waits for them.
     #[must_use]
     pub fn connection(&self) -> &client::Connection<P> {
         &self.connection
     }
 
-    /// Waits on this thread for a future, such as that of a method of [`connection`](Self::connection).
-    /// It may use what tokio has for I/O and time.
+    /// Blocks this thread until a future is ready, such as one of a method of [`connection`](Self::connection). The
+    /// future may use the I/O and timers of tokio.
     pub fn wait<F: Future>(&self, future: F) -> F::Output {
         self.driver.wait(future)
     }
@@ -118,23 +117,22 @@ impl<P: Protocol> fmt::Debug for Connection<P> {
     }
 }
 
-/// The reports of a connection, as [`RawReports`] has them, that are waited for.
+/// The reports of a connection, like [`RawReports`], with blocking methods.
 ///
-/// As an iterator it waits for each as long as it takes, and ends when the connection is closed for
-/// good.
+/// The iterator waits for each report without a limit, and ends when the connection is closed.
 pub struct Reports<P: Protocol> {
-    // Dropped before the thread that drives its connection.
+    // Dropped before the thread that drives the connection.
     reports: RawReports<P>,
     driver: Arc<Driver>,
 }
 
 impl<P: Protocol> Reports<P> {
-    /// The next report; `None` once the connection is closed and no report is left.
+    /// Returns the next report, or `None` if the connection is closed and the queue is empty.
     pub fn recv(&mut self) -> Option<RawReport> {
         self.driver.wait(self.reports.recv())
     }
 
-    /// The next report, if there is one within `timeout`. What comes later is not lost.
+    /// Returns the next report if it comes within `timeout`. A later report is not lost.
     ///
     /// # Errors
     ///
@@ -148,8 +146,8 @@ impl<P: Protocol> Reports<P> {
         }
     }
 
-    /// How many reports this receiver has missed since this was last asked, because its queue was
-    /// full while another receiver took them.
+    /// Returns the number of reports this receiver has missed since the last call. It misses a report if its queue is
+    /// full while another receiver takes the report.
     pub fn missed(&mut self) -> u64 {
         self.reports.missed()
     }
@@ -169,30 +167,29 @@ impl<P: Protocol> fmt::Debug for Reports<P> {
     }
 }
 
-/// A command that has been answered, and the reports `R` that it sets off, as [`client::Following`] has them, that
-/// are waited for.
+/// An answered command and the reports `R` that it sets off, like [`client::Following`], with blocking methods.
 ///
-/// As an iterator it waits for each as long as it takes.
+/// The iterator waits for each event without a limit.
 pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
-    // Dropped before the thread that drives its connection.
+    // Dropped before the thread that drives the connection.
     following: client::Following<P, C, R>,
     driver: Arc<Driver>,
 }
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
-    /// What the robot has answered to the command.
+    /// Returns the robot's response to the command.
     #[must_use]
     pub fn answer(&self) -> &C::Response {
         self.following.answer()
     }
 
-    /// What comes next; `None` after the end.
+    /// Returns the next event, or `None` after the end.
     pub fn recv(&mut self) -> Option<Result<Followed<R>, FollowError>> {
         self.driver.wait(self.following.recv())
     }
 
-    /// What comes next, if it comes within `timeout`: `Some(None)` after the end, `None` if nothing has come in
-    /// time. What comes later is not lost.
+    /// Returns the next event if it comes within `timeout`, `Some(None)` after the end, or `None` after the timeout. A
+    /// later event is not lost.
     pub fn recv_timeout(
         &mut self,
         timeout: Duration,
@@ -216,18 +213,18 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
     }
 }
 
-/// Why there is no report.
+/// The reason why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// None has come in time.
+    /// No report came in time.
     #[error("no report in time")]
     Timeout,
-    /// The connection is closed for good.
+    /// The connection is closed.
     #[error("the connection is closed; no more reports will come")]
     Closed,
-    /// It does not read as its type says. Only a connection to a protocol of other types has such
-    /// reports, for they are read before they are acknowledged.
+    /// The report cannot be read as its type. Only connections of another protocol's types have such reports, because
+    /// reports are checked before they are acknowledged.
     #[error(transparent)]
     Invalid(#[from] BodyError),
 }
@@ -242,7 +239,8 @@ impl Driver {
     fn start() -> io::Result<Self> {
         let (started, is_started) = mpsc::sync_channel(1);
         let (ends, is_over) = oneshot::channel::<()>();
-        // The runtime is built, run and dropped there: it must not be dropped on a thread of another.
+        // The runtime must not be dropped on a thread of another runtime, so it is built, run and dropped on its own
+        // thread.
         let drive = move || {
             let runtime = Builder::new_current_thread().enable_all().build();
             let runtime = match runtime {
@@ -253,7 +251,7 @@ impl Driver {
                 }
             };
             if started.send(Ok(runtime.handle().clone())).is_ok() {
-                // An error is how the end is told.
+                // The dropped sender signals the end.
                 let _ = runtime.block_on(is_over);
             }
         };
@@ -267,12 +265,12 @@ impl Driver {
         })
     }
 
-    /// Polls a future on this thread until it is ready, asleep in between.
+    /// Polls a future on this thread until it is ready. The thread sleeps in between.
     ///
     /// `Handle::block_on` would panic on a thread of another runtime.
     fn wait<F: Future>(&self, future: F) -> F::Output {
         let _entered = self.runtime.enter();
-        // Within a task of another runtime its budget would be used up, and never come back.
+        // In a task of another runtime, the budget of that task would run out and never be renewed.
         let mut future = pin!(unconstrained(future));
         let waker = Waker::from(Arc::new(Unpark(thread::current())));
         let mut context = Context::from_waker(&waker);

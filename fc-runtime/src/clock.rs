@@ -1,8 +1,8 @@
-//! The time, where it has to be asked for.
+//! The current time.
 
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-/// Milliseconds since 1970-01-01T00:00:00Z.
+/// Returns the milliseconds since 1970-01-01T00:00:00Z.
 #[must_use]
 pub(crate) fn unix_ms() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -11,13 +11,13 @@ pub(crate) fn unix_ms() -> i64 {
     })
 }
 
-/// The clock of deadlines. Tokio's, so that tests can hold it.
+/// Returns the time for deadlines. It comes from tokio, so that tests can stop it.
 #[must_use]
 pub(crate) fn now() -> Instant {
     tokio::time::Instant::now().into_std()
 }
 
-/// Where ids begin: the local time of day as the decimal digits `HHmmssSSS`.
+/// Returns the first message id: the local time of day as the decimal digits `HHmmssSSS`.
 #[must_use]
 pub(crate) fn first_id() -> u32 {
     let time = jiff::Zoned::now().time();

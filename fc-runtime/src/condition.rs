@@ -1,39 +1,39 @@
-//! Fields that are there only under certain values of the fields beside them.
+//! Fields that are present only under conditions on other fields.
 //!
-//! Reading and writing know nothing of conditions: what a peer sends is taken as it is. Who makes a message asks
-//! `checked`, which `#[derive(Message)]` gives to each that has such a field.
+//! Reading and writing ignore conditions: a received message is accepted unchanged. `checked` verifies them before a
+//! message is sent. `#[derive(Message)]` writes it for each message with such a field.
 
 use crate::json::Chosen;
 use std::fmt;
 
-/// Under which values of the fields beside it a field is there.
+/// The condition under which a field is present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// Exactly where all of these fields have one of their values.
+    /// Present exactly if all of these fields have one of their values.
     When(&'static [Asked]),
-    /// Everywhere else.
+    /// Present in all other cases.
     Unless(&'static [Asked]),
 }
 
-/// A field that a condition asks, and the values that it asks for.
+/// A field in a condition, and its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// Its wire key.
+    /// Wire key.
     pub key: &'static str,
-    /// The values, as people read them: any of them.
+    /// The values in readable form; any of them satisfies the condition.
     pub values: &'static [&'static str],
 }
 
-/// How a field contradicts its condition.
+/// The kind of a contradiction between a field and its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConditionErrorKind {
-    /// It is not there although its condition holds.
+    /// The field is absent although its condition is satisfied.
     Missing,
-    /// It is there although its condition does not hold.
+    /// The field is present although its condition is not satisfied.
     Unasked,
 }
 
-/// A message whose field contradicts its condition.
+/// A field of a message contradicts its condition.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConditionError {
     key: &'static str,
@@ -42,19 +42,19 @@ pub struct ConditionError {
 }
 
 impl ConditionError {
-    /// The wire key of the field.
+    /// Returns the wire key of the field.
     #[must_use]
     pub fn key(&self) -> &'static str {
         self.key
     }
 
-    /// Whether it is missing, or there without being asked for.
+    /// Returns the kind of the contradiction.
     #[must_use]
     pub fn kind(&self) -> ConditionErrorKind {
         self.kind
     }
 
-    /// What is asked.
+    /// Returns the condition.
     #[must_use]
     pub fn condition(&self) -> Condition {
         self.condition
@@ -98,12 +98,12 @@ impl fmt::Display for Condition {
     }
 }
 
-/// Values that a condition can compare: integers, bools, texts and enums.
+/// Values that a condition can compare: integers, bools, strings and enums.
 pub trait Comparable {
-    /// What it is compared with.
+    /// Type of the values it is compared with.
     type Wire: Copy + 'static;
 
-    /// Whether it is one of these.
+    /// Returns `true` if the value is one of these.
     fn is_among(&self, values: &[Self::Wire]) -> bool;
 }
 
@@ -138,7 +138,8 @@ impl<T: Chosen> Comparable for T {
     }
 }
 
-/// Checks whether a field is there exactly where its condition holds; `asked` is whether what it asks does.
+/// Checks that a field is present exactly if its condition is satisfied. `asked` is `true` if all fields in the
+/// condition have one of their values.
 ///
 /// # Errors
 /// The contradiction.

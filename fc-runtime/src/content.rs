@@ -1,20 +1,19 @@
-//! What a frame of a stream carries, by type.
+//! The content of a stream frame, by type.
 
 use crate::frame::Body;
 use crate::json::{Allowance, BodyError, decode};
 use crate::message::Message;
 
-/// What a frame of a stream carries: a [`Body`], the bytes as they are; or a [`Message`], a JSON object whose keys stand
-/// alone, without an envelope.
+/// The content of a stream frame: the raw bytes as a [`Body`], or a JSON object without an envelope as a [`Message`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not what a stream carries",
     note = "a stream carries a `Body` or a type with `derive(Message)`"
 )]
 pub trait StreamContent: Sized + Send + 'static {
-    /// Reads the data of a frame, within this allowance.
+    /// Reads the data of a frame within this allowance.
     ///
     /// # Errors
-    /// What is wrong with the JSON; raw bytes are always right.
+    /// The error of the JSON. Raw bytes have no errors.
     fn read(data: Body, allowance: Allowance) -> Result<Self, BodyError>;
 }
 

@@ -1,39 +1,38 @@
-//! How the fields of an envelope are made from what the runtime knows, and back.
-//! `#[derive(Envelope)]` calls this.
+//! Conversions between the fields of an envelope and the values of the runtime. `#[derive(Envelope)]` calls them.
 
-/// A field of an envelope that holds a `T`.
+/// A field of an envelope that is created from a `T`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be a field of an envelope with this role",
     note = "a time is `i64`, a result code an integer, a result text `String`; each may be an `Option`"
 )]
 pub trait Part<T> {
-    /// The field with this value.
+    /// Creates the field.
     fn make(value: T) -> Self;
 }
 
-/// A field of an envelope from which a `T` can be taken.
+/// A field of an envelope that is read as a `T`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be a field of an envelope with this role",
     note = "a time is `i64`, a result code an integer, a result text `String`; each may be an `Option`"
 )]
 pub trait Taken<T> {
-    /// Its value.
+    /// Returns the value.
     fn take(&self) -> T;
 }
 
-/// A field of an envelope that holds a text.
+/// A field of an envelope that contains a string.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be the result text of an envelope",
     note = "a result text is `String` or `Option<String>`"
 )]
 pub trait Text {
-    /// The text, empty if there is none.
+    /// Returns the string, or an empty one if the field is absent.
     fn as_text(&self) -> &str;
 }
 
 macro_rules! codes {
     ($($integer:ty)*) => {$(
-        /// A code that the field cannot hold becomes the nearest that it can.
+        /// A code outside the range of the field is clamped.
         impl Part<i64> for $integer {
             fn make(value: i64) -> Self {
                 let nearest = if value < 0 { Self::MIN } else { Self::MAX };

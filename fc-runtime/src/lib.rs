@@ -1,25 +1,25 @@
 //! Frame codec, session, TCP client and server for FC protocol stubs.
 //!
-//! A generated crate supplies structs with the derives of `fc-derive` and one [`Protocol`]
-//! implementation; everything that moves, times or checks bytes is here. From the inside out:
+//! A generated crate supplies structs with the derives of `fc-derive` and one [`Protocol`] implementation. All handling
+//! of bytes, timing and checks is in this crate. The layers from the inside out:
 //!
-//! | layer | what it does | what it knows nothing of |
+//! | Layer | Task | Independent of |
 //! |---|---|---|
-//! | [`json`], [`message`] | typed messages from and to text, in one pass | frames |
-//! | [`frame`] | frames from and to bytes, within limits | I/O, who waits for what |
-//! | [`session`] | which answer belongs to which request, what is due, what came before | I/O, clocks |
-//! | [`client`] | an app's connection: calls, reports, streams | |
-//! | [`server`] | a robot's port: handlers, pushed reports, streams | |
+//! | [`json`], [`message`] | Read and write typed messages in one pass | Frames |
+//! | [`frame`] | Decode and encode frames within limits | I/O, sessions |
+//! | [`session`] | Match responses, track deadlines, detect repetitions | I/O, clocks |
+//! | [`client`] | Connection of an app: calls, reports, streams | |
+//! | [`server`] | Ports of a robot: handlers, pushed reports, streams | |
 //!
-//! Features: `client` and `server` (both by default) bring the upper two layers and tokio; `frames`
-//! alone the two in the middle, which do no I/O. Without any there are messages and their JSON.
-//! `blocking` is the client without `async`. `serde` lets serde types be values of messages, `metrics`
-//! hands counters and times to a recorder of the `metrics` crate.
+//! Features: `client` and `server` (both by default) add the two upper layers and tokio. `frames` alone adds the two
+//! layers in the middle, which do no I/O. Without features there are messages and their JSON. `blocking` is the client
+//! without `async`. `serde` allows serde types as values of messages. `metrics` passes counters and times to a recorder
+//! of the `metrics` crate.
 //!
 //! ```
 //! use fc_runtime::{Decoder, FrameError, Protocol};
 //!
-//! /// Codes of all frames in a capture.
+//! /// Returns the codes of all frames in a capture.
 //! fn codes<P: Protocol>(capture: &[u8]) -> Result<Vec<u16>, FrameError> {
 //!     let mut decoder = Decoder::<P>::new();
 //!     decoder.push(capture);
@@ -40,6 +40,8 @@ pub mod client;
 mod clock;
 pub mod condition;
 #[cfg(feature = "net")]
+mod connection_settings;
+#[cfg(feature = "net")]
 mod content;
 pub mod digest;
 pub mod envelope;
@@ -47,19 +49,23 @@ pub mod envelope;
 pub mod frame;
 pub mod json;
 #[cfg(feature = "net")]
-mod keys;
-#[cfg(feature = "net")]
 mod link;
+#[cfg(feature = "net")]
+mod log_limiter;
 pub mod message;
 #[cfg(feature = "net")]
 mod metrics;
-pub mod needs;
+#[cfg(feature = "net")]
+mod open_message;
+pub mod operation;
+pub mod preconditions;
 #[cfg(feature = "client")]
 mod progress;
 pub mod protocol;
 #[cfg(feature = "net")]
 mod rate;
 mod raw;
+mod refusal;
 #[cfg(feature = "server")]
 pub mod server;
 #[cfg(feature = "frames")]
@@ -67,9 +73,10 @@ pub mod session;
 #[cfg(feature = "net")]
 mod stream;
 #[cfg(feature = "net")]
-mod thin;
+mod sync;
 #[cfg(feature = "net")]
 mod trace;
+pub mod wire;
 
 #[cfg(feature = "client")]
 pub use client::{
@@ -92,13 +99,14 @@ pub use json::{
 #[cfg(feature = "net")]
 pub use link::Transport;
 pub use message::{Empty, Enveloped, Message, read_enveloped, transcode, write_enveloped};
-pub use needs::{AcceptedIn, AcceptedStates, Cadence, Preconditions, States};
-pub use protocol::{
-    AckPolicy, BodyInfo, Command, DeclaredError, Defaults, Effect, Header, Limits, OperationInfo,
-    OperationKind, Protocol, Report, RequestEnvelope, ResponseEnvelope, ResultText, Results,
-    SetsOff, State, Stateless, Undeclared,
+pub use operation::{
+    AcceptedIn, AckPolicy, BodyInfo, Command, DeclaredError, Effect, OperationInfo, OperationKind,
+    Report, ResultText, SetsOff, State, Stateless, Undeclared,
 };
-pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse, Refusal};
+pub use preconditions::{AcceptedStates, Cadence, Preconditions, States};
+pub use protocol::{Defaults, Protocol, RequestEnvelope, ResponseEnvelope, Results};
+pub use raw::{RawAnswer, RawReport, RawRequest, RawResponse};
+pub use refusal::Refusal;
 #[cfg(feature = "server")]
 pub use server::{
     AckOutcome, Acknowledgement, AppStream, AppStreams, Audience, ConnectionId, Context, Handling,
@@ -109,8 +117,9 @@ pub use server::{
 pub use session::{Busy, Due, Incoming, Session};
 #[cfg(feature = "net")]
 pub use stream::StreamFrame;
+pub use wire::{Header, Limits};
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! One connection's bytes: a stream, the decoder behind it and the outlet in front of it.
+//! A connection: a stream, its decoder and its send buffer.
 
 use crate::frame::Decoder;
 use crate::protocol::Protocol;
@@ -12,19 +12,16 @@ use tokio::io::ReadBuf;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
 use tokio::net::TcpStream;
 
-/// After how much silence TCP asks whether the peer is still there, unless told otherwise.
-pub(crate) const KEEPALIVE: Duration = Duration::from_secs(30);
-/// How long a closing connection tries to send what is left, and waits for the peer's goodbye.
+/// Longest time for a closing connection to send the rest and to receive the end of the stream.
 pub(crate) const CLOSING: Duration = Duration::from_secs(1);
-/// Memory an emptied buffer may keep for what is sent next, in bytes.
+/// Memory that an empty buffer may keep for the next frames, in bytes.
 const KEEP: usize = 2 * 1024 * 1024;
 
-/// How much of a frame is read before there is memory for more, in bytes: most requests as a whole.
+/// Bytes read before memory is reserved. Most requests are not longer.
 #[cfg(feature = "server")]
 pub(crate) const FIRST: usize = 1024;
 
-/// Sets up a TCP connection: small frames leave at once, and a peer that is gone without a word is
-/// noticed.
+/// Configures a TCP connection: small frames are sent at once, and a vanished peer is detected.
 pub(crate) fn prepare(stream: &TcpStream, keepalive: Option<Duration>) -> io::Result<()> {
     stream.set_nodelay(true)?;
     if let Some(silence) = keepalive {
@@ -33,20 +30,20 @@ pub(crate) fn prepare(stream: &TcpStream, keepalive: Option<Duration>) -> io::Re
             .with_interval((silence / 3).max(Duration::from_secs(1)));
         let socket = SockRef::from(stream);
         socket.set_tcp_keepalive(&probes)?;
-        // Keepalive asks only while nothing is on its way; this bounds the other case, which would
-        // take a quarter of an hour otherwise.
+        // Keepalive works only while no data is unacknowledged. This covers the other case, which would take a quarter
+        // of an hour otherwise.
         #[cfg(any(target_os = "android", target_os = "linux"))]
         socket.set_tcp_user_timeout(Some(silence.saturating_mul(2)))?;
     }
     Ok(())
 }
 
-/// What a connection runs over: TCP, TLS on top of it, or a pipe in a test.
+/// A byte stream for a connection: TCP, TLS on top of it, or a pipe in a test.
 pub trait Transport: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<S: AsyncRead + AsyncWrite + Send + Unpin + 'static> Transport for S {}
 
-/// What is to be written to a stream, in front of it.
+/// Bytes to be written to a stream.
 #[derive(Debug, Default)]
 pub(crate) struct Outlet {
     out: Vec<u8>,
@@ -54,13 +51,13 @@ pub(crate) struct Outlet {
 }
 
 impl Outlet {
-    /// How much is still to be written, in bytes.
+    /// Returns the number of unwritten bytes.
     pub(crate) fn unwritten(&self) -> usize {
         self.out.len() - self.written
     }
 
-    /// Takes over what is in `out`, if the last has been written: the buffers change places, so
-    /// that both keep their memory.
+    /// If everything has been written, takes the bytes of `out`. The buffers are swapped, so that both keep their
+    /// memory.
     pub(crate) fn load(&mut self, out: &mut Vec<u8>) {
         if self.unwritten() == 0 && !out.is_empty() {
             self.out.clear();
@@ -72,7 +69,7 @@ impl Outlet {
         }
     }
 
-    /// Writes all that has been loaded; ready once nothing is left.
+    /// Writes all bytes. Ready when none are left.
     pub(crate) fn poll_write(
         &mut self,
         stream: &mut (impl AsyncWrite + Unpin),
@@ -81,7 +78,7 @@ impl Outlet {
         self.poll_some(stream, cx, usize::MAX)
     }
 
-    /// Writes at most so many bytes of what has been loaded; ready once they or all are written.
+    /// Writes up to `most` bytes. Ready when they or all bytes are written.
     fn poll_some(
         &mut self,
         stream: &mut (impl AsyncWrite + Unpin),
@@ -102,7 +99,7 @@ impl Outlet {
         Pin::new(stream).poll_flush(cx)
     }
 
-    /// Says goodbye to the peer once all has been written, and waits for its own.
+    /// Writes everything, closes the sending side and waits for the peer to close its side.
     pub(crate) async fn goodbye(
         &mut self,
         stream: &mut (impl AsyncRead + AsyncWrite + Unpin),
@@ -116,7 +113,7 @@ impl Outlet {
     }
 }
 
-/// Reads once into the decoder; 0 at the end of the stream.
+/// Reads once into the decoder. Returns 0 at the end of the stream.
 pub(crate) fn poll_read<P: Protocol>(
     stream: &mut (impl AsyncRead + Unpin),
     decoder: &mut Decoder<P>,
@@ -127,7 +124,7 @@ pub(crate) fn poll_read<P: Protocol>(
     Future::poll(read.as_mut(), cx)
 }
 
-/// A stream with one owner, the decoder behind it and the outlet in front of it.
+/// A stream with its decoder and send buffer, owned by one task.
 #[cfg(feature = "server")]
 #[derive(Debug)]
 pub(crate) struct Link<S, P: Protocol> {
@@ -146,12 +143,12 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         }
     }
 
-    /// Reads once into the decoder; 0 at the end of the stream.
+    /// Reads once into the decoder. Returns 0 at the end of the stream.
     pub(crate) fn poll_read(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         poll_read(&mut self.stream, &mut self.decoder, cx)
     }
 
-    /// The same for a decoder that is bare: until something has come, no memory is needed for it.
+    /// Reads once into a bare decoder. No memory is reserved before bytes have arrived.
     pub(crate) fn poll_begin(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         let mut first = [0; FIRST];
         let mut first = ReadBuf::new(&mut first);
@@ -160,17 +157,17 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         Poll::Ready(Ok(first.filled().len()))
     }
 
-    /// How much is still to be written, in bytes.
+    /// Returns the number of unwritten bytes.
     pub(crate) fn unwritten(&self) -> usize {
         self.outlet.unwritten()
     }
 
-    /// Memory of the buffer in front of the stream, in bytes.
+    /// Returns the memory of the send buffer, in bytes.
     pub(crate) fn capacity(&self) -> usize {
         self.outlet.out.capacity()
     }
 
-    /// Gives back the memory that is not needed at this moment.
+    /// Releases unused memory.
     pub(crate) fn tidy(&mut self) {
         self.decoder.tidy();
         if self.outlet.unwritten() == 0 {
@@ -178,24 +175,24 @@ impl<S: Transport, P: Protocol> Link<S, P> {
         }
     }
 
-    /// Takes over what is in `out`, if the last has been written.
+    /// If everything has been written, takes the bytes of `out`.
     pub(crate) fn load(&mut self, out: &mut Vec<u8>) {
         self.outlet.load(out);
     }
 
-    /// Writes at most so many bytes of what has been loaded; ready once they or all are written.
+    /// Writes up to `most` bytes. Ready when they or all bytes are written.
     pub(crate) fn poll_write(&mut self, cx: &mut Context<'_>, most: usize) -> Poll<io::Result<()>> {
         self.outlet.poll_some(&mut self.stream, cx, most)
     }
 
-    /// Says goodbye to the peer once all has been written, and waits for its own.
+    /// Writes everything, closes the sending side and waits for the peer to close its side.
     pub(crate) async fn goodbye(&mut self) -> io::Result<()> {
         self.outlet.goodbye(&mut self.stream).await
     }
 }
 
-/// Reads on to the end: a socket that is closed while something is unread is reset, and what the peer has
-/// not read yet is lost to it.
+/// Reads and drops everything up to the end. A socket that is closed with unread data is reset, and the peer then loses
+/// what it has not read yet.
 pub(crate) async fn skip_to_end(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<()> {
     let mut unread = [0; 4096];
     while stream.read(&mut unread).await? > 0 {}

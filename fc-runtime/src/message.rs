@@ -1,58 +1,55 @@
-//! Messages: JSON objects with known keys, alone or beside the keys of an envelope.
+//! Messages: JSON objects with known keys, alone or together with the keys of an envelope.
 
 use crate::json::{Allowance, BodyError, FromJson, ObjectWriter, Reader, ToJson, Writer, decode};
 
-/// A JSON object with known keys. `#[derive(Message)]` writes it.
+/// A JSON object with known keys. `#[derive(Message)]` implements it.
 ///
-/// A message is read in steps, so that one pass over an object can fill two of them: an envelope
-/// and a body. It names its fields in one place, [`read_fields`](Self::read_fields), whatever a
-/// reader wants to know of them.
+/// A message is read in steps, so that one pass over an object can fill an envelope and a body. All readers get the
+/// fields from [`read_fields`](Self::read_fields).
 #[diagnostic::on_unimplemented(message = "`{Self}` is not a message", note = "derive `Message`")]
 pub trait Message: Sized + Send + Sync + 'static {
-    /// What has been read so far: a slot for each field.
+    /// The values read so far, with a slot for each field.
     type Slots;
 
-    /// The spec's example in wire form, own keys only; `{}` if there is none.
+    /// The spec's example in wire form, without the keys of the envelope; `{}` if there is none.
     const EXAMPLE: &'static str = "{}";
 
-    /// The slots before anything is read, all empty: a slot that is full belongs to a key that has
-    /// come.
+    /// Returns empty slots. A full slot means that its key has occurred.
     fn slots() -> Self::Slots;
 
-    /// Names every field to the reader, in the order in which they are written, and then the place
-    /// for unknown keys, if there is one. The reader fills the slots of those it finds; a value it
-    /// cannot read ends the reading.
+    /// Names every field to the reader in the order in which they are written, followed by the field for unknown keys.
+    /// The reader fills the slots of the fields it finds. A value that cannot be read ends the reading.
     fn read_fields(slots: &mut Self::Slots, reader: &mut Reader<'_>);
 
-    /// Makes the message, unless a required field has not been read. A field that may be missing is
-    /// then [absent](FromJson::absent).
+    /// Creates the message, or returns `None` if a required field is missing. A missing optional field is
+    /// [absent](FromJson::absent).
     fn finish(slots: Self::Slots) -> Option<Self>;
 
-    /// Writes the own keys.
+    /// Writes the keys of this message.
     fn write_fields(&self, object: &mut ObjectWriter<'_>);
 
-    /// Whether the constraints on the own fields hold, whatever may be inside them.
+    /// Checks the constraints on the fields of this message, but not those of messages inside.
     ///
     /// # Errors
-    /// The first that does not: `out_of_range`, `bad_length` or `bad_pattern`.
+    /// The first violation: `out_of_range`, `bad_length` or `bad_pattern`.
     fn check_own(&self) -> Result<(), BodyError> {
         Ok(())
     }
 
-    /// Whether the constraints of the spec hold, here and in everything inside, and whether every float
-    /// is a number. Reading checks them too.
+    /// Checks all constraints of the spec, also in messages inside, and that every float is finite. Reading checks the
+    /// same.
     ///
     /// # Errors
-    /// The first that does not: `out_of_range`, also of NaN and infinities, `bad_length` or `bad_pattern`.
+    /// The first violation: `out_of_range`, also for NaN and infinities, `bad_length` or `bad_pattern`.
     fn check(&self) -> Result<(), BodyError> {
         self.check_own()
     }
 
-    /// The spec's example.
+    /// Returns the spec's example.
     ///
     /// # Panics
-    /// If [`EXAMPLE`](Self::EXAMPLE) is not such a message. It is source code, not data: a
-    /// generated one has been checked, a hand-written one deserves a test that calls this.
+    /// If [`EXAMPLE`](Self::EXAMPLE) is not such a message. A generated example has been checked. Test a handwritten
+    /// one by calling this.
     #[must_use]
     #[allow(
         clippy::panic,
@@ -86,23 +83,22 @@ impl<M: Message> ToJson for M {
     }
 }
 
-/// What one pass over a message with an envelope makes of it.
+/// A message with its envelope, read in one pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Enveloped<E, B> {
     /// The keys of the envelope.
     pub envelope: E,
-    /// The message's own keys, or what is wrong with them: a refusal that carries nothing but an
-    /// envelope is still understood.
+    /// The message, or its error. A refusal consists of an envelope alone, so an error here does not lose the envelope.
     pub body: Result<B, BodyError>,
 }
 
-/// Reads the keys of an envelope, of a body and unknown ones in any order, in one pass.
+/// Reads the keys of an envelope and of a body in any order, in one pass.
 ///
-/// Empty text is read as `{}`. Unknown keys go to the body.
+/// Empty text is read as `{}`. Unknown keys belong to the body.
 ///
 /// # Errors
-/// What keeps even the envelope from being read: `not_utf8`, `bad_json`, `not_an_object`,
-/// `too_deep`, `too_many_values`, `lone_surrogate` in a key, or a fault of an envelope key.
+/// An error of the whole text or the envelope: `not_utf8`, `bad_json`, `not_an_object`, `too_deep`, `too_many_values`,
+/// `lone_surrogate` in a key, or the error of an envelope key.
 pub fn read_enveloped<E: Message, B: Message>(
     text: &[u8],
     allowance: Allowance,
@@ -110,7 +106,7 @@ pub fn read_enveloped<E: Message, B: Message>(
     crate::json::enveloped(text, allowance).map(|(read, _)| read)
 }
 
-/// Writes the keys of an envelope and of a body as one object to the end of `out`.
+/// Appends the keys of an envelope and of a body to `out`, as one object.
 pub fn write_enveloped<E: Message, B: Message>(envelope: &E, body: &B, out: &mut Vec<u8>) {
     let mut writer = Writer::new(out);
     let mut object = writer.object();
@@ -119,10 +115,10 @@ pub fn write_enveloped<E: Message, B: Message>(envelope: &E, body: &B, out: &mut
     object.end();
 }
 
-/// Reads the own keys as the message `M` and writes it again, in canonical form.
+/// Reads the keys of the body as the message `M` and writes it again in canonical form.
 ///
 /// # Errors
-/// What is wrong with the body, or that it takes more than [`Allowance::DEFAULT`].
+/// The error of the body, also if it exceeds [`Allowance::DEFAULT`].
 pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
     match decode::<M>(text, Allowance::DEFAULT) {
         Ok(message) => {
@@ -134,12 +130,12 @@ pub fn transcode<M: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> {
     }
 }
 
-/// Reads the own keys as the message `M`, and keeps nothing.
+/// Checks that the keys of the body can be read as the message `M`.
 pub(crate) fn check<M: Message>(text: &[u8], allowance: Allowance) -> Result<(), BodyError> {
     decode::<M>(text, allowance).map(drop)
 }
 
-/// A message without keys of its own; unknown ones are skipped.
+/// A message without keys. Unknown keys are skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Empty;
 

@@ -1,43 +1,43 @@
-//! Whether a frame that has begun goes on.
+//! Detects frames that stall while they arrive.
 //!
-//! Not the rule of [`Least`](crate::rate::Least), which counts in windows. An app's danger is a wrong
-//! length that swallows the answers while it keeps asking, and they may come at some KiB per second. In
-//! windows, a rate above that would cost a good frame over a slow link its connection; counted over the
-//! whole frame, with the stall timeout ahead, it does not.
+//! [`MinimumRate`](crate::rate::MinimumRate) counts in windows. An app needs another rule, because a frame with a wrong
+//! length swallows the following responses, which may arrive at some KiB per second. A limit above that in each window
+//! would break a good frame on a slow link. A limit over the whole frame, plus the stall timeout, does not.
 
 use crate::session::after;
 use std::time::{Duration, Instant};
 
-/// What a frame has to bring beside the stall timeout, in bytes per second: a robot that claims a length
-/// that is wrong swallows what follows, and that must not pass for progress.
+/// Minimum rate of a frame besides the stall timeout, in bytes per second. Responses swallowed by a wrong length must
+/// not count as progress.
 const LEAST: u64 = 16 * 1024;
 
-/// The watch over the frame that is arriving.
+/// Detects when the arriving frame stalls.
 #[derive(Debug)]
-pub(crate) struct Progress {
+pub(crate) struct FrameProgress {
     limit: Duration,
-    /// When the frame began, and when bytes of it last came.
+    /// Start of the frame, and arrival of its last bytes.
     since: Option<(Instant, Instant)>,
 }
 
-impl Progress {
+impl FrameProgress {
     pub(crate) fn new(limit: Duration) -> Self {
         Self { limit, since: None }
     }
 
-    /// A frame is whole, or has been skipped.
-    pub(crate) fn whole(&mut self) {
+    /// Notes that a frame is complete or has been skipped.
+    pub(crate) fn complete(&mut self) {
         self.since = None;
     }
 
-    /// Bytes have come.
-    pub(crate) fn came(&mut self, now: Instant) {
+    /// Notes that bytes have arrived.
+    pub(crate) fn received(&mut self, now: Instant) {
         if let Some((_, last)) = &mut self.since {
             *last = now;
         }
     }
 
-    /// When a frame of which `received` bytes have come stalls; `None` in between frames.
+    /// Returns the time at which the arriving frame stalls, or `None` between frames. `received` bytes of it have
+    /// arrived.
     pub(crate) fn deadline(&mut self, received: usize, now: Instant) -> Option<Instant> {
         if received == 0 {
             self.since = None;

@@ -1,17 +1,17 @@
-//! Whether bytes come, or go, as fast as they have to.
+//! Minimum rates of transfers.
 
 use std::time::{Duration, Instant};
 
-/// So many bytes in so much time are progress; fewer are none. A byte now and then would otherwise
-/// hold whatever has come before it.
+/// The minimum number of bytes in a time. Without it, a peer that sends a byte now and then would keep its memory for
+/// ever.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Least {
+pub(crate) struct MinimumRate {
     pub(crate) bytes: usize,
     pub(crate) within: Duration,
 }
 
-impl Least {
-    /// `rate` in bytes per second.
+impl MinimumRate {
+    /// Creates a minimum from a rate in bytes per second.
     pub(crate) fn new(rate: u32, within: Duration) -> Self {
         let bytes = within.as_millis().saturating_mul(rate.into()) / 1000;
         Self {
@@ -21,15 +21,15 @@ impl Least {
     }
 }
 
-/// How far it has come since there was enough of it.
+/// Bytes transferred since the last progress.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flow<I = Instant> {
-    /// When there was, or when it began to matter.
+pub(crate) struct RateMeter<I = Instant> {
+    /// Time of the last progress, or the start.
     pub(crate) since: I,
     bytes: usize,
 }
 
-impl<I> Flow<I> {
+impl<I> RateMeter<I> {
     pub(crate) fn new(now: I) -> Self {
         Self {
             since: now,
@@ -37,7 +37,7 @@ impl<I> Flow<I> {
         }
     }
 
-    /// Counts bytes that have come, or gone.
+    /// Counts transferred bytes. `least` bytes are progress.
     pub(crate) fn add(&mut self, bytes: usize, least: usize, now: I) {
         self.bytes = self.bytes.saturating_add(bytes);
         if self.bytes >= least {

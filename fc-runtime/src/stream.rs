@@ -1,8 +1,7 @@
-//! Frames of raw bytes: the two halves of a data connection, the same on either side.
+//! Frames of raw bytes: the two halves of a data connection, for client and server.
 //!
-//! Nothing is queued here. A receiver reads from the socket when asked to, and a sender
-//! waits until the socket has taken what it sends, so that a slow reader slows the sender down and
-//! nobody's memory grows.
+//! This module has no queues. The receiver reads from the socket on demand, and the sender waits until the socket has
+//! taken the frame. So a slow reader slows the sender down, and memory does not grow.
 
 use crate::content::StreamContent;
 #[cfg(feature = "server")]
@@ -13,9 +12,10 @@ use crate::json::{Allowance, BodyError};
 use crate::link::FIRST;
 use crate::link::skip_to_end;
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{Header, Protocol, ResponseEnvelope};
-use crate::rate::{Flow, Least};
-use crate::raw::Refusal;
+use crate::protocol::{Protocol, ResponseEnvelope};
+use crate::rate::{MinimumRate, RateMeter};
+use crate::refusal::Refusal;
+use crate::wire::Header;
 use std::fmt;
 use std::io::{self, IoSlice};
 use std::time::Duration;
@@ -26,25 +26,25 @@ use tokio::time::{Instant, timeout_at};
 /// A frame of raw bytes.
 #[derive(Clone, PartialEq, Eq)]
 pub struct StreamFrame {
-    /// Command code of what the bytes belong to.
+    /// Command code of the stream.
     pub code: u16,
-    /// Message id of the request that asked for them.
+    /// Message id of the request that asked for the bytes.
     pub id: u32,
     /// The bytes, decompressed.
     pub data: Body,
 }
 
 impl StreamFrame {
-    /// What it carries, read within this allowance.
+    /// Reads the content within this allowance.
     ///
     /// # Errors
-    /// What is wrong with the JSON; raw bytes are always right.
+    /// The error of the JSON. Raw bytes have no errors.
     pub fn read<T: StreamContent>(self, allowance: Allowance) -> Result<T, BodyError> {
         T::read(self.data, allowance)
     }
 }
 
-/// Shows the length alone: pictures and maps are no reading.
+/// Shows only the length, because pictures and maps are not readable.
 impl fmt::Debug for StreamFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("StreamFrame")
@@ -55,17 +55,17 @@ impl fmt::Debug for StreamFrame {
     }
 }
 
-/// What can go wrong on a data connection.
+/// An error of a data connection.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StreamError {
     /// The connection broke.
     #[error("the data connection broke: {0}")]
     Io(#[from] io::Error),
-    /// A frame could not be read or does not fit. Unless [`FrameError::is_fatal`], the connection
-    /// stays open.
+    /// A frame could not be read, or is too long to be sent. The connection stays open, unless
+    /// [`FrameError::is_fatal`].
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The peer has refused a frame sent to it. The connection stays open.
+    /// The peer refused a frame. The connection stays open.
     #[error("the peer has refused the {frame}: {refusal}")]
     Refused {
         /// The frame.
@@ -73,16 +73,16 @@ pub(crate) enum StreamError {
         /// The peer's answer.
         refusal: Refusal,
     },
-    /// A frame arrived that is not a stream frame. It has been skipped, and the connection stays open.
+    /// The received frame is not a stream frame. It was skipped, and the connection stays open.
     #[error("no stream: {0}")]
     Unexpected(FrameId),
-    /// The peer has stopped in the middle of a frame, or does not read.
+    /// The peer stopped in the middle of a frame, or does not read.
     #[error("the peer has stalled")]
     Stalled,
 }
 
 impl StreamError {
-    /// The error's fixed name.
+    /// Returns the fixed name of the error.
     #[cfg(feature = "server")]
     pub(crate) fn name(&self) -> &'static str {
         match self {
@@ -94,7 +94,7 @@ impl StreamError {
         }
     }
 
-    /// Whether the connection is of no more use.
+    /// Returns `true` if the connection cannot be used any more.
     #[cfg(feature = "server")]
     pub(crate) fn is_fatal(&self) -> bool {
         match self {
@@ -104,7 +104,7 @@ impl StreamError {
         }
     }
 
-    /// The frame that was skipped, if there was one that may be answered.
+    /// Returns the skipped frame if it was a request, which may be answered.
     #[cfg(feature = "server")]
     pub(crate) fn answerable(&self) -> Option<FrameId> {
         match self {
@@ -115,13 +115,13 @@ impl StreamError {
     }
 }
 
-/// Bounds on waiting in the middle of a frame.
+/// Limits on waits in the middle of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Patience {
-    /// For a header, from its first byte on.
+    /// Limit for a header, from its first byte on.
     pub(crate) header: Option<Duration>,
-    /// For progress in the middle of a frame, either way.
-    pub(crate) stall: Option<Least>,
+    /// Minimum rate in the middle of a frame, in both directions.
+    pub(crate) stall: Option<MinimumRate>,
 }
 
 /// The receiving half.
@@ -131,9 +131,9 @@ pub(crate) struct Receiver<R, P: Protocol> {
     decoder: Decoder<P>,
     patience: Patience,
     header_since: Option<Instant>,
-    /// How long the frame that has begun has been waited for without progress.
+    /// Time waited for the arriving frame since the last progress.
     waited: Duration,
-    /// What has come meanwhile and is not progress yet, in bytes.
+    /// Bytes received since the last progress.
     gathered: usize,
     received: usize,
 }
@@ -151,7 +151,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         }
     }
 
-    /// The next frame; `None` at the end. Cancellation safe.
+    /// Returns the next frame, or `None` at the end. Cancellation safe.
     #[cfg(feature = "client")]
     pub(crate) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         loop {
@@ -165,7 +165,8 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         }
     }
 
-    /// Reads the first bytes of what comes, without memory until then; 0 at the end of the stream.
+    /// Reads the first bytes of a frame. No memory is reserved before bytes have arrived. Returns 0 at the end of the
+    /// stream.
     #[cfg(feature = "server")]
     pub(crate) async fn begin(&mut self) -> io::Result<usize> {
         let mut first = [0; FIRST];
@@ -178,30 +179,30 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         Ok(n)
     }
 
-    /// Reads on to the end of the stream, and looks at nothing.
+    /// Reads and drops everything up to the end of the stream.
     pub(crate) async fn skip_to_end(&mut self) -> io::Result<()> {
         skip_to_end(&mut self.read).await
     }
 
-    /// How many bytes of the frame that arrives have come, and how long it is, if that is known.
+    /// Returns the number of received bytes of the arriving frame, and its length if known.
     #[cfg(feature = "client")]
     pub(crate) fn arriving(&self) -> (usize, Option<usize>) {
         (self.decoder.pending(), self.decoder.expected())
     }
 
-    /// Bytes received since this was last asked.
+    /// Returns the number of bytes received since the last call.
     #[cfg(feature = "server")]
     pub(crate) fn take_received(&mut self) -> usize {
         std::mem::take(&mut self.received)
     }
 
-    /// What has come and is no frame yet.
+    /// Returns the decoder, which holds the incomplete frame.
     #[cfg(feature = "server")]
     pub(crate) fn decoder(&mut self) -> &mut Decoder<P> {
         &mut self.decoder
     }
 
-    /// The next frame that has arrived.
+    /// Returns the next complete frame.
     pub(crate) fn take(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let Some(frame) = self.decoder.next()? else {
             return Ok(None);
@@ -232,7 +233,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
         })
     }
 
-    /// Reads once; 0 at the end of the stream.
+    /// Reads once. Returns 0 at the end of the stream.
     pub(crate) async fn fill(&mut self) -> Result<usize, StreamError> {
         let now = Instant::now();
         let pending = self.decoder.pending();
@@ -257,12 +258,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
             since: now,
         };
         let read = self.read.read_buf(self.decoder.room());
-        let n = match deadline {
-            None => read.await?,
-            Some(deadline) => timeout_at(deadline, read)
-                .await
-                .map_err(|_| StreamError::Stalled)??,
-        };
+        let n = until(deadline, read).await?;
         drop(waiting);
         self.received += n;
         self.gathered = self.gathered.saturating_add(n);
@@ -275,8 +271,22 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
     }
 }
 
-/// Adds up how long is waited, also by a future that is dropped: an app that asks again and again for a
-/// short time waits as long as one who asks once. The time in between is nobody's.
+/// Waits for an operation of a socket, but not beyond `deadline`.
+async fn until(
+    deadline: Option<Instant>,
+    operation: impl Future<Output = io::Result<usize>>,
+) -> Result<usize, StreamError> {
+    let done = match deadline {
+        None => operation.await,
+        Some(deadline) => timeout_at(deadline, operation)
+            .await
+            .map_err(|_| StreamError::Stalled)?,
+    };
+    Ok(done?)
+}
+
+/// Adds up the time of waiting, also of futures that are dropped. So an app that waits often for a short time waits as
+/// long as an app that waits once. The time in between does not count.
 struct Waiting<'a> {
     waited: &'a mut Duration,
     since: Instant,
@@ -288,7 +298,7 @@ impl Drop for Waiting<'_> {
     }
 }
 
-/// Lets other tasks of this thread have their turn after work on so many bytes.
+/// Yields to other tasks after work on this many bytes.
 #[cfg(feature = "client")]
 pub(crate) async fn give_way(bytes: usize) {
     if bytes >= LONG {
@@ -296,7 +306,7 @@ pub(crate) async fn give_way(bytes: usize) {
     }
 }
 
-/// Prepares a body and lets others have their turn meanwhile.
+/// Prepares a body, with pauses for other tasks.
 #[cfg(feature = "server")]
 pub(crate) async fn prepare<P: Protocol>(
     encoder: &mut Encoder<P>,
@@ -314,13 +324,13 @@ pub(crate) async fn prepare<P: Protocol>(
 pub(crate) struct Sender<W> {
     write: W,
     out: Vec<u8>,
-    /// What follows `out`.
+    /// Body after `out`.
     body: Option<Prepared>,
-    /// Of both.
+    /// Written bytes of both.
     written: usize,
-    stall: Option<Least>,
-    /// Of what is to be sent, while it is sent.
-    flow: Option<Flow<Instant>>,
+    stall: Option<MinimumRate>,
+    /// Rate of the frame that is being sent.
+    flow: Option<RateMeter<Instant>>,
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
@@ -335,7 +345,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         }
     }
 
-    /// Sends a frame. When the future is dropped, what is left of it can still be flushed.
+    /// Sends a frame. If the future is dropped, the rest of the frame can still be flushed.
     #[cfg(feature = "client")]
     pub(crate) async fn send(&mut self, frame: Vec<u8>) -> Result<(), StreamError> {
         self.flush().await?;
@@ -345,8 +355,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         Ok(())
     }
 
-    /// The same with a body prepared before, which is sent from where it lies. Gives the number of
-    /// bytes sent.
+    /// Sends a frame with a prepared body without copying the body. Returns the number of bytes sent.
     #[cfg(feature = "server")]
     pub(crate) async fn send_prepared<P: Protocol>(
         &mut self,
@@ -361,7 +370,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         Ok(length)
     }
 
-    /// Sends what is left.
+    /// Sends the rest.
     pub(crate) async fn flush(&mut self) -> Result<(), StreamError> {
         loop {
             let body = self.body.as_ref().map_or(&[][..], Prepared::data);
@@ -374,7 +383,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             if self.written > 0 {
                 yield_now().await;
             }
-            // Nothing of the back as long as not all of the front fits.
+            // Send bytes of the body only if the whole header fits.
             let room = LONG.saturating_sub(front.len());
             let piece = [
                 IoSlice::new(front.get(..LONG).unwrap_or(front)),
@@ -384,13 +393,8 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             let n = match self.stall {
                 None => write.await?,
                 Some(least) => {
-                    let flow = self.flow.get_or_insert(Flow::new(Instant::now()));
-                    let n = match flow.since.checked_add(least.within) {
-                        None => write.await?,
-                        Some(deadline) => timeout_at(deadline, write)
-                            .await
-                            .map_err(|_| StreamError::Stalled)??,
-                    };
+                    let flow = self.flow.get_or_insert(RateMeter::new(Instant::now()));
+                    let n = until(flow.since.checked_add(least.within), write).await?;
                     flow.add(n, least.bytes, Instant::now());
                     n
                 }
@@ -408,7 +412,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         Ok(())
     }
 
-    /// Sends what is left and says goodbye.
+    /// Sends the rest and closes the sending side.
     pub(crate) async fn close(&mut self) -> Result<(), StreamError> {
         self.flush().await?;
         Ok(self.write.shutdown().await?)

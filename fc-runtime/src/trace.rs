@@ -1,11 +1,11 @@
-//! Whether anybody listens to spans.
+//! A fast check for enabled spans.
 
 use tracing::level_filters::LevelFilter;
 
-/// Whether a span at debug level may reach a subscriber.
+/// Returns `true` if a subscriber may accept spans at debug level.
 ///
-/// `tracing` asks the same before it makes one; but where another crate has switched its `log`
-/// feature on, a span that nobody listens to still has its fields looked at in every call.
+/// `tracing` checks the same before it creates a span. But if another crate enables its feature `log`, the fields of a
+/// span are evaluated in every call even without a subscriber.
 #[inline]
 pub(crate) fn is_traced() -> bool {
     LevelFilter::current() >= LevelFilter::DEBUG

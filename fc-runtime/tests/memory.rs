@@ -1,4 +1,4 @@
-//! What messages cost in memory, as an allocator counts it.
+//! The memory of messages, measured by an allocator.
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
@@ -24,8 +24,8 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 /// Tests of one process share its allocator.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// What `work` gives, the most memory that was held during it, and what its result holds, in bytes
-/// beyond what was held before.
+/// Returns the result of `work`, the peak memory during it, and the memory of its result, in bytes beyond those held
+/// before.
 fn measured<T>(work: impl FnOnce() -> T) -> (T, usize, usize) {
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
@@ -63,7 +63,7 @@ fn unknown_keys_cost_what_their_text_does() {
         let text = object_of(member, MIB);
         let (open, peak, held) =
             measured(|| decode::<Open>(text.as_bytes(), Allowance::depth(64)).unwrap());
-        // A buffer that grows lies twice in memory while it is moved.
+        // A growing buffer is in memory twice while it is moved.
         assert!(
             held <= text.len() + 1024,
             "{member}: {held} of {}",
@@ -136,7 +136,7 @@ struct Required {
     extra: Extra,
 }
 
-/// Texts that make much of little, of about `length` bytes.
+/// Texts of about `length` bytes with a large result.
 fn bombs(length: usize) -> Vec<(&'static str, String)> {
     let list = |key: &str, item: &str| {
         let items = vec![item; length / (item.len() + 1)].join(",");
@@ -193,8 +193,7 @@ fn bombs(length: usize) -> Vec<(&'static str, String)> {
 /// Receiving, inflating and reading together, for each byte received or inflated.
 const FACTOR: usize = 4;
 
-/// What does not depend on the frame: the receive buffer, the state of the decompressor, and lists
-/// with what moves while they grow.
+/// Memory independent of the frame: the receive buffer, the state of the decompressor, and growing lists.
 const CONSTANT: usize = MIB / 2;
 
 #[fc_test::test]
@@ -217,7 +216,7 @@ fn no_frame_costs_much_more_than_was_received_and_inflated() {
             drop(encoder);
             let (_, peak, _) = measured(|| {
                 let mut decoder = Decoder::<Toy>::new();
-                // As it comes from a socket.
+                // In pieces, like from a socket.
                 bytes.chunks(1500).for_each(|piece| decoder.push(piece));
                 let frame = decoder.next().unwrap().unwrap();
                 let read = read_enveloped::<Required, Lists>(frame.body(), allowance);
@@ -234,7 +233,7 @@ fn no_frame_costs_much_more_than_was_received_and_inflated() {
 #[fc_test::test]
 fn no_text_costs_much_more_than_its_length() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    // Lists are paid for by their own limit: of it and of what moves while they grow.
+    // Lists have their own limit, which includes their growth.
     let allowance = Allowance {
         list_bytes: MIB / 8,
         ..Allowance::depth(64)
@@ -259,11 +258,10 @@ fn no_text_costs_much_more_than_its_length() {
     }
 }
 
-/// What a robot of these tests may be made to hold.
+/// Memory limit of the robots in these tests.
 const MEMORY: usize = 16 * MIB;
 
-/// Everything at once: frames that do not end, bombs of keys, answers that nobody reads, requests that
-/// wait.
+/// Everything at once: endless frames, bombs of keys, unread responses, waiting requests.
 #[fc_test::test]
 fn a_robot_stays_within_its_memory() {
     use common::net::{Robot, loopback, service};

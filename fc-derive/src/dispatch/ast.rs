@@ -1,8 +1,8 @@
-//! The trait, as far as it matters here. (Parsing it by `syn` needs the feature `full`, which costs
-//! every user of a generated crate a second.)
+//! The relevant parts of the trait. Parsing it with `syn` needs the feature `full`, which costs every user of a
+//! generated crate a second.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use proc_macro2::{Group, TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};
 use syn::{Attribute, Ident, Path, Token, Type, Visibility, braced, parenthesized, token};
@@ -15,13 +15,13 @@ pub struct Options {
     pub protocol: Option<Path>,
     /// Name of the service.
     pub service: Option<Ident>,
-    /// Name of the trait of which every method may be left out, if there is to be one.
+    /// Name of the trait with optional methods, if there is one.
     pub partial: Option<Ident>,
 }
 
 impl Options {
     /// Reads the attribute's arguments.
-    pub fn read(arguments: TokenStream, faults: &mut Faults) -> Self {
+    pub fn read(arguments: TokenStream, errors: &mut Errors) -> Self {
         let mut runtime = Slot::default();
         let mut protocol = Slot::default();
         let mut service = Slot::default();
@@ -29,7 +29,7 @@ impl Options {
         let place = "a service's trait";
         let parser =
             |input: ParseStream<'_>| {
-                attr::read_items(input, faults, place, &mut |key, input| match key
+                attr::read_items(input, errors, place, &mut |key, input| match key
                     .to_string()
                     .as_str()
                 {
@@ -41,11 +41,11 @@ impl Options {
                 })
             };
         let result = parser.parse2(arguments);
-        faults.ok(result);
-        // There is nothing to point at but the attribute itself, which is where `None` ends up.
+        errors.ok(result);
+        // `None` points at the attribute, because there is no other token.
         let nothing = TokenStream::new();
-        protocol.required(faults, &nothing, "`protocol = …` is missing");
-        service.required(faults, &nothing, "`service = …` is missing");
+        protocol.required(errors, &nothing, "`protocol = …` is missing");
+        service.required(errors, &nothing, "`service = …` is missing");
         Self {
             runtime: attr::runtime(runtime),
             protocol: protocol.into_value(),
@@ -67,7 +67,7 @@ pub struct Service {
     pub visibility: Visibility,
     pub trait_token: Token![trait],
     pub ident: Ident,
-    /// What stands between the name and the methods.
+    /// Tokens between the name and the methods.
     pub bounds: TokenStream,
     pub methods: Vec<Method>,
 }
@@ -82,10 +82,10 @@ pub struct Method {
     pub ident: Ident,
     /// Everything between the parentheses.
     pub arguments: TokenStream,
-    /// The types of the arguments behind `&self`.
+    /// Types of the arguments after `&self`.
     pub types: Vec<Type>,
     pub has_self: bool,
-    /// What it answers.
+    /// Return type.
     pub output: Option<Type>,
     pub body: Option<Group>,
 }
@@ -176,7 +176,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(bool, Vec<Type>)> {
         }
     }
     while !input.is_empty() {
-        // The name of an argument, whatever it looks like.
+        // Skips the pattern of an argument.
         while !input.is_empty() && (!input.peek(Token![:]) || input.peek(Token![::])) {
             input.parse::<TokenTree>()?;
         }
@@ -189,7 +189,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(bool, Vec<Type>)> {
     Ok((has_self, types))
 }
 
-/// The item without `#[fc(…)]`, which nobody would know once this macro has gone.
+/// Returns the item without `#[fc(…)]`, which is unknown after this macro.
 pub fn without_attributes(item: TokenStream) -> TokenStream {
     let mut tokens: Vec<TokenTree> = Vec::new();
     for token in item {

@@ -1,11 +1,11 @@
-//! The declaration of a service: its trait as it was written, with `Send` futures.
+//! The declaration of a service: the trait as written, with `Send` futures.
 
 use super::ast::{Method, Service};
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 
-/// The trait with `Send` futures.
+/// Returns the trait with `Send` futures.
 pub fn declaration(service: &Service) -> TokenStream {
     let Service {
         attributes,
@@ -24,7 +24,7 @@ pub fn declaration(service: &Service) -> TokenStream {
     }
 }
 
-/// A method whose future is `Send`. `async fn` would leave that open.
+/// Returns a method with a `Send` future, which `async fn` would not guarantee.
 pub fn method(method: &Method) -> TokenStream {
     let Method {
         attributes,

@@ -10,7 +10,7 @@ use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 use syn::{Ident, Visibility};
 
-/// The trait with `Send` futures and the service that dispatches to it.
+/// Returns the trait with `Send` futures and its service.
 pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStream {
     let Options {
         runtime,
@@ -27,10 +27,10 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         visibility,
         ..
     } = service;
-    // What is served: a complete service is a partial one that leaves nothing out.
+    // The served trait. Every complete service is also a partial one.
     let ident = partial.as_ref().unwrap_or(complete);
 
-    // By its full path: a method may be called like one that every `Arc` has.
+    // Calls by full path, because a method may have the name of one of `Arc`.
     let call = |name: &Ident| quote_spanned!(span_of(name)=> <T as #ident>::#name);
     let requests: Vec<_> = roles
         .commands
@@ -39,9 +39,9 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
         .collect();
     let codes: Vec<_> = requests
         .iter()
-        .map(|(_, request)| {
-            quote_spanned!(span_of(request)=> <#request as #runtime::protocol::Command>::CODE)
-        })
+        .map(
+            |(_, request)| quote_spanned!(span_of(request)=> <#request as #runtime::Command>::CODE),
+        )
         .collect();
     let distinct = distinct(
         runtime,
@@ -105,7 +105,7 @@ pub fn code(options: &Options, service: &Service, roles: &Roles<'_>) -> TokenStr
     }
 }
 
-/// The type that serves what has the trait, without what it does.
+/// Returns the type of the service with its constructors.
 fn service_type(visibility: &Visibility, name: Option<&Ident>, ident: &Ident) -> TokenStream {
     let docs = format!("Serves a [`{ident}`]: hands each request to the method of its command.");
     quote! {

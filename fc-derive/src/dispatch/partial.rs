@@ -1,5 +1,4 @@
-//! A service that is not complete yet: a second trait with the same methods, each of which refuses
-//! unless it is there.
+//! A second trait with the same methods for a service that is not complete yet. Its methods refuse by default.
 
 use super::ast::{Method, Options, Service};
 use super::declaration::{method, output};
@@ -8,7 +7,7 @@ use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 use syn::Ident;
 
-/// The trait of which every method may be left out, and what makes it of the complete one.
+/// Returns the trait with optional methods, and its implementation for complete services.
 pub fn code(options: &Options, service: &Service, partial: &Ident) -> TokenStream {
     let Service {
         visibility,
@@ -36,9 +35,9 @@ pub fn code(options: &Options, service: &Service, partial: &Ident) -> TokenStrea
         }
     });
     let docs = format!(
-        "A [`{ident}`] that is not complete yet: it has the methods of those commands that it \
-         carries out. All others are refused as not implemented, counted and logged; a command that \
-         is added does not break it. Once nothing is missing, `impl {ident}` holds it to that."
+        "An incomplete [`{ident}`] with the methods of the commands that it implements. All other \
+         commands are refused as not implemented, counted and logged. A new command does not break \
+         it. When nothing is missing, `impl {ident}` requires every method."
     );
     let message = format!("`{{Self}}` is neither a `{ident}` nor a `{partial}`");
     let note = format!(
@@ -57,7 +56,7 @@ pub fn code(options: &Options, service: &Service, partial: &Ident) -> TokenStrea
     }
 }
 
-/// A method that refuses, unless it has a body of its own.
+/// Returns a method that refuses, unless it has a body.
 fn optional(options: &Options, method: &Method) -> TokenStream {
     let Options {
         runtime, protocol, ..
@@ -79,7 +78,7 @@ fn optional(options: &Options, method: &Method) -> TokenStream {
     let refusal = if method.role.is_empty() {
         quote!(#runtime::Context::not_implemented(&context))
     } else {
-        // Codes that no command of the spec has.
+        // For codes without a command in the spec.
         quote!({
             let _ = context;
             #runtime::Refusal::unknown::<#protocol>()

@@ -1,21 +1,21 @@
-//! Which codes each method serves, and what a service's trait must be like.
+//! The codes that each method serves, and requirements of the trait.
 
 use super::ast::{Method, Service};
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use syn::{LitInt, Token};
 
-/// The methods by what they serve.
+/// The methods by their codes.
 pub struct Roles<'s> {
-    /// Each serves the command that its request type says.
+    /// Methods for the command of their request type.
     pub commands: Vec<&'s Method>,
-    /// Each serves the codes of a range.
+    /// Methods for a range of codes.
     pub ranges: Vec<(&'s Method, Range)>,
-    /// Serves every other code.
+    /// The method for all other codes.
     pub unknown: &'s Method,
 }
 
-/// Codes from the first to the last, both included, as they are written.
+/// A range of codes as written, both ends included.
 pub struct Range {
     pub first: LitInt,
     pub last: LitInt,
@@ -28,8 +28,8 @@ impl Range {
     }
 }
 
-/// Finds the faults of each method's signature.
-pub fn check(service: &Service, faults: &mut Faults) {
+/// Reports invalid method signatures.
+pub fn check(service: &Service, errors: &mut Errors) {
     for method in &service.methods {
         let message = if !method.is_async {
             "a service's method is `async`"
@@ -42,12 +42,12 @@ pub fn check(service: &Service, faults: &mut Faults) {
         } else {
             continue;
         };
-        faults.on(&method.ident, message);
+        errors.on(&method.ident, message);
     }
 }
 
-/// Finds out what each method serves; `None` if that has a fault.
-pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>> {
+/// Returns the codes of each method, or `None` after an error.
+pub fn roles<'s>(service: &'s Service, errors: &mut Errors) -> Option<Roles<'s>> {
     let mut commands = Vec::new();
     let mut ranges: Vec<(&Method, Range)> = Vec::new();
     let mut unknown: Option<&Method> = None;
@@ -56,7 +56,7 @@ pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>>
         let mut rest = Slot::default();
         attr::read(
             &method.role,
-            faults,
+            errors,
             "a service's method",
             &mut |key, input| match key.to_string().as_str() {
                 "range" => range.set(key, read_range(input)),
@@ -66,23 +66,23 @@ pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>>
         );
         match (range.key(), rest.key()) {
             (Some(_), Some(key)) => {
-                faults.at(key, "a method serves a range or what is unknown, not both");
+                errors.at(key, "a method serves a range or what is unknown, not both");
             }
             (Some(_), None) => {
                 if let Some(range) = range.into_value() {
-                    check_overlap(&range, &ranges, faults);
+                    check_overlap(&range, &ranges, errors);
                     ranges.push((method, range));
                 }
             }
             (None, Some(key)) if unknown.is_some() => {
-                faults.at(key, "another method serves what is unknown");
+                errors.at(key, "another method serves what is unknown");
             }
             (None, Some(_)) => unknown = Some(method),
             (None, None) => commands.push(method),
         }
     }
     if unknown.is_none() {
-        faults.on(
+        errors.on(
             &service.ident,
             "one method must serve the codes that no other does: mark it `#[fc(unknown)]`",
         );
@@ -94,13 +94,13 @@ pub fn roles<'s>(service: &'s Service, faults: &mut Faults) -> Option<Roles<'s>>
     })
 }
 
-fn check_overlap(range: &Range, earlier: &[(&Method, Range)], faults: &mut Faults) {
+fn check_overlap(range: &Range, earlier: &[(&Method, Range)], errors: &mut Errors) {
     let (first, last) = range.bounds();
     for (method, other) in earlier {
         let (other_first, other_last) = other.bounds();
         if first <= other_last && other_first <= last {
             let message = format!("the range overlaps that of `{}`", method.ident);
-            faults.on(&range.first, message);
+            errors.on(&range.first, message);
         }
     }
 }

@@ -1,9 +1,10 @@
-//! What a header is made of, as its attributes say.
+//! A header with its attributes.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use syn::parse::ParseStream;
-use syn::{Data, DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
+use syn::{DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
 
 /// A struct with `#[derive(Header)]`.
 pub struct Header<'a> {
@@ -13,11 +14,11 @@ pub struct Header<'a> {
     pub runtime: Path,
     /// `byte_order`.
     pub byte_order: ByteOrder,
-    /// Fields in the order in which they travel.
+    /// Fields in the order in which they are sent.
     pub fields: Vec<Field<'a>>,
 }
 
-/// Order of the bytes of an integer.
+/// The byte order of integers.
 #[derive(Clone, Copy)]
 pub enum ByteOrder {
     /// Most significant byte first.
@@ -32,9 +33,9 @@ pub struct Field<'a> {
     pub ident: &'a Ident,
     /// Its type.
     pub ty: &'a Type,
-    /// Its width and kind; `None` if its type has a fault.
+    /// Width and kind, or `None` if the type is invalid.
     pub shape: Option<Shape>,
-    /// Bytes before it.
+    /// Offset in bytes.
     pub offset: usize,
     /// `role`.
     pub role: Slot<(LitStr, Role)>,
@@ -44,17 +45,17 @@ pub struct Field<'a> {
     pub algorithm: Slot<(LitStr, Algorithm)>,
 }
 
-/// Width and kind of a field.
+/// The width and kind of a field.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// An integer of so many bytes.
+    /// An integer of this many bytes.
     Int(usize),
-    /// A run of bytes.
+    /// A byte array.
     Bytes(usize),
 }
 
 impl Field<'_> {
-    /// What it digests by: MD5 unless it says so.
+    /// Returns the digest algorithm; MD5 by default.
     pub fn algorithm(&self) -> Algorithm {
         self.algorithm
             .get()
@@ -63,7 +64,7 @@ impl Field<'_> {
 }
 
 impl Shape {
-    /// Width in bytes.
+    /// Returns the width in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Int(size) | Self::Bytes(size) => size,
@@ -71,10 +72,10 @@ impl Shape {
     }
 }
 
-/// What the runtime uses a field for.
+/// The role of a field in the runtime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The bytes that open a frame.
+    /// The first bytes of a frame.
     Head,
     /// Kind of the data.
     Kind,
@@ -82,7 +83,7 @@ pub enum Role {
     Code,
     /// Message id.
     Id,
-    /// How the data is packed.
+    /// Encoding of the data.
     Encoding,
     /// Length of the whole frame.
     TotalLength,
@@ -90,11 +91,11 @@ pub enum Role {
     PlainLength,
     /// Digest of the data as sent.
     Digest,
-    /// Travels, and is never interpreted.
+    /// Sent but never interpreted.
     Status,
 }
 
-/// How the data is digested.
+/// A digest algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Algorithm {
     /// 16 bytes.
@@ -108,7 +109,7 @@ pub const ALGORITHMS: [(&str, Algorithm); 2] =
     [("md5", Algorithm::Md5), ("crc32", Algorithm::Crc32)];
 
 impl Algorithm {
-    /// Its type in the runtime; the type of a field that holds a digest, and how that travels.
+    /// Returns the type in the runtime, the type of the field, and its shape.
     pub fn facts(self) -> (&'static str, &'static str, Shape) {
         match self {
             Self::Md5 => ("Md5", "[u8; 16]", Shape::Bytes(16)),
@@ -132,54 +133,45 @@ pub const ROLES: [(&str, Role); 9] = [
 
 impl<'a> Header<'a> {
     /// Reads the struct and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut byte_order = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "a header",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "byte_order" => byte_order.set(key, read_byte_order(input)),
-                _ => Ok(Item::Unknown),
-            },
-        );
+        let runtime = item::read_attributes(input, errors, "a header", &mut |key, input| {
+            if key == "byte_order" {
+                byte_order.set(key, read_byte_order(input))
+            } else {
+                Ok(Item::Unknown)
+            }
+        });
         let message = "the byte order is missing: `#[fc(byte_order = \"big\")]`";
-        let byte_order = byte_order.required(faults, &input.ident, message).copied();
-        if !input.generics.params.is_empty() {
-            faults.on(&input.generics.params, "a header has no parameters");
-        }
+        let byte_order = byte_order.required(errors, &input.ident, message).copied();
+        item::forbid_parameters(&input.generics, errors, "a header");
         let mut header = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             byte_order: byte_order.unwrap_or(ByteOrder::Big),
             fields: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => match &data.fields {
-                Fields::Named(fields) => {
-                    for field in &fields.named {
-                        header.add(field, faults);
-                    }
+        match item::fields(input, errors, "a header is a struct", "") {
+            Some(Fields::Named(fields)) => {
+                for field in &fields.named {
+                    header.add(field, errors);
                 }
-                Fields::Unnamed(fields) => faults.on(fields, "the fields of a header have names"),
-                Fields::Unit => faults.on(&input.ident, "a header has fields"),
-            },
-            Data::Enum(data) => faults.on(&data.enum_token, "a header is a struct"),
-            Data::Union(data) => faults.on(&data.union_token, "a header is a struct"),
+            }
+            Some(Fields::Unnamed(fields)) => errors.on(fields, "the fields of a header have names"),
+            Some(Fields::Unit) => errors.on(&input.ident, "a header has fields"),
+            None => {}
         }
         header
     }
 
-    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a syn::Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
         let mut role = Slot::default();
         let mut value = Slot::default();
         let mut algorithm = Slot::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "a header's field",
             &mut |key, input| match key.to_string().as_str() {
                 "role" => role.set(key, attr::word(input, &ROLES)),
@@ -188,7 +180,7 @@ impl<'a> Header<'a> {
                 _ => Ok(Item::Unknown),
             },
         );
-        let shape = faults.ok(read_shape(&field.ty));
+        let shape = errors.ok(read_shape(&field.ty));
         let offset = self.len();
         self.fields.push(Field {
             ident,
@@ -201,7 +193,7 @@ impl<'a> Header<'a> {
         });
     }
 
-    /// Length in bytes.
+    /// Returns the length in bytes.
     pub fn len(&self) -> usize {
         self.fields
             .iter()
@@ -226,21 +218,21 @@ fn read_value(input: ParseStream<'_>) -> syn::Result<LitInt> {
 
 fn read_shape(ty: &Type) -> syn::Result<Shape> {
     const MESSAGE: &str = "a header's field is `u8`, `u16`, `u32`, `u64` or `[u8; N]`";
-    let fault = || syn::Error::new_spanned(ty, MESSAGE);
+    let error = || syn::Error::new_spanned(ty, MESSAGE);
     match ty {
         Type::Path(path) => match path.path.get_ident().map(ToString::to_string).as_deref() {
             Some("u8") => Ok(Shape::Int(1)),
             Some("u16") => Ok(Shape::Int(2)),
             Some("u32") => Ok(Shape::Int(4)),
             Some("u64") => Ok(Shape::Int(8)),
-            _ => Err(fault()),
+            _ => Err(error()),
         },
-        Type::Array(array) => read_bytes(array).ok_or_else(fault),
-        _ => Err(fault()),
+        Type::Array(array) => read_bytes(array).ok_or_else(error),
+        _ => Err(error()),
     }
 }
 
-/// The length is needed for offsets, so it must be a literal.
+/// Reads a byte array. Its length must be a literal, because it is needed for offsets.
 fn read_bytes(array: &TypeArray) -> Option<Shape> {
     let Type::Path(element) = &*array.elem else {
         return None;

@@ -6,10 +6,10 @@ use crate::span::generated;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-/// Bytes of the longest digest, as the runtime has room for.
+/// Length of the longest digest of the runtime, in bytes.
 const DIGEST: usize = 16;
 
-/// The implementation of `Header`.
+/// Returns the implementation of `Header`.
 pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     let Header { ident, runtime, .. } = header;
     let len = Literal::usize_unsuffixed(header.len());
@@ -42,7 +42,7 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     let digest = digest.map_or_else(|| quote!([0; 16]), read_digest);
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::Header for #ident {
+        impl #runtime::Header for #ident {
             type Digest = #runtime::digest::#algorithm;
 
             const LEN: ::core::primitive::usize = #len;
@@ -122,7 +122,7 @@ fn to_bytes(order: ByteOrder) -> TokenStream {
     }
 }
 
-/// The fields with their sizes; the check of types has passed.
+/// Returns the fields with their shapes. All types have been checked.
 fn sized<'h>(header: &'h Header<'h>) -> impl Iterator<Item = (&'h Field<'h>, Shape)> {
     header
         .fields
@@ -130,7 +130,7 @@ fn sized<'h>(header: &'h Header<'h>) -> impl Iterator<Item = (&'h Field<'h>, Sha
         .filter_map(|field| Some((field, field.shape?)))
 }
 
-/// One expression for each field, from the array `bytes`.
+/// Returns one expression for each field, from the array `bytes`.
 fn read(header: &Header<'_>) -> TokenStream {
     let from_bytes = from_bytes(header.byte_order);
     sized(header)
@@ -151,7 +151,7 @@ fn read(header: &Header<'_>) -> TokenStream {
         .collect()
 }
 
-/// Fills the array `out` as a whole.
+/// Returns code that fills the whole array `out`.
 fn write(header: &Header<'_>) -> TokenStream {
     let to_bytes = to_bytes(header.byte_order);
     let parts = sized(header).map(|(Field { ident, .. }, shape)| match shape {
@@ -205,13 +205,13 @@ fn new(header: &Header<'_>) -> TokenStream {
     }
 }
 
-/// A field as it is.
+/// Returns the value of a field.
 fn own(field: &Field<'_>) -> TokenStream {
     let ident = field.ident;
     quote!(self.#ident)
 }
 
-/// The largest id, and the id as the runtime has it.
+/// Returns the largest id, and the id as a `u32`.
 fn read_id(field: &Field<'_>) -> (TokenStream, TokenStream) {
     let ident = field.ident;
     match field.shape {
@@ -223,7 +223,7 @@ fn read_id(field: &Field<'_>) -> (TokenStream, TokenStream) {
     }
 }
 
-/// The low bits of an id.
+/// Returns the low bits of an id.
 fn write_id(shape: Shape) -> TokenStream {
     if shape != Shape::Int(2) {
         return quote!(id);
@@ -234,7 +234,7 @@ fn write_id(shape: Shape) -> TokenStream {
     })
 }
 
-/// A digest's field as the first bytes of all that a digest may have.
+/// Returns a digest field as the first bytes of a digest.
 fn read_digest(field: &Field<'_>) -> TokenStream {
     let ident = field.ident;
     let (_, _, shape) = field.algorithm().facts();
@@ -251,7 +251,7 @@ fn read_digest(field: &Field<'_>) -> TokenStream {
     })
 }
 
-/// The reverse.
+/// Returns code that sets a digest field.
 fn write_digest(field: &Field<'_>) -> TokenStream {
     let (ident, ty) = (field.ident, field.ty);
     let (_, _, shape) = field.algorithm().facts();
@@ -286,13 +286,13 @@ fn seal(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     }
 }
 
-/// An implementation that does nothing, for a header with faults.
+/// Returns an implementation that does nothing, for a header with errors.
 pub fn stub(header: &Header<'_>) -> TokenStream {
     let Header { ident, runtime, .. } = header;
     let todo = quote!(::core::unimplemented!());
     quote! {
         #[automatically_derived]
-        impl #runtime::protocol::Header for #ident {
+        impl #runtime::Header for #ident {
             type Digest = #runtime::digest::NoDigest;
             const LEN: ::core::primitive::usize = 0;
             const TOTAL_LENGTH_END: ::core::primitive::usize = 0;

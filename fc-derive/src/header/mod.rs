@@ -4,21 +4,16 @@ mod ast;
 mod expand;
 mod valid;
 
-use crate::faults::Faults;
+use crate::errors::Errors;
 use ast::Header;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes `Header`, or the faults.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let header = Header::read(&input, &mut faults);
-    let roles = valid::check(&header, &mut faults);
-    faults.finish(
+/// Writes `Header`, or errors.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let header = Header::read(input, &mut errors);
+    let roles = valid::check(&header, &mut errors);
+    errors.finish(
         || {
             roles
                 .map(|roles| expand::code(&header, &roles))

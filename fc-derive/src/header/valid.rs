@@ -1,9 +1,9 @@
-//! What a header must have.
+//! Requirements of a header.
 
 use super::ast::{Field, Header, ROLES, Role, Shape};
-use crate::faults::Faults;
+use crate::errors::Errors;
 
-/// The fields the runtime uses.
+/// The fields with a role.
 pub struct Roles<'h> {
     pub head: &'h Field<'h>,
     pub kind: &'h Field<'h>,
@@ -15,10 +15,10 @@ pub struct Roles<'h> {
     pub digest: Option<&'h Field<'h>>,
 }
 
-/// Finds every fault between fields; the roles, if each is there.
-pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h>> {
+/// Reports all conflicts between fields. Returns the roles if none is missing.
+pub fn check<'h>(header: &'h Header<'h>, errors: &mut Errors) -> Option<Roles<'h>> {
     for field in &header.fields {
-        check_field(field, faults);
+        check_field(field, errors);
     }
     let mut roles = [None; ROLES.len()];
     for ((name, role), slot) in ROLES.iter().zip(&mut roles) {
@@ -29,14 +29,14 @@ pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h
         *slot = holders.next();
         for again in holders {
             if let Some((literal, _)) = again.role.get() {
-                faults.on(literal, format!("another field has the role `{name}`"));
+                errors.on(literal, format!("another field has the role `{name}`"));
             }
         }
         if slot.is_none() && is_needed(*role) && has_sound_roles(header) {
-            faults.on(header.ident, format!("no field has the role `{name}`"));
+            errors.on(header.ident, format!("no field has the role `{name}`"));
         }
     }
-    check_head_is_first(header, faults);
+    check_head_is_first(header, errors);
     let [
         head,
         kind,
@@ -60,7 +60,7 @@ pub fn check<'h>(header: &'h Header<'h>, faults: &mut Faults) -> Option<Roles<'h
     })
 }
 
-/// Whether there is no frame without a field of this role.
+/// Returns `true` if every frame needs this role.
 fn is_needed(role: Role) -> bool {
     match role {
         Role::Head | Role::Kind | Role::Code | Role::Id | Role::TotalLength => true,
@@ -68,7 +68,7 @@ fn is_needed(role: Role) -> bool {
     }
 }
 
-/// A role that is written wrong may be the one that seems to be missing.
+/// Returns `true` if all roles are valid. An invalid one may be the role that seems to be missing.
 fn has_sound_roles(header: &Header<'_>) -> bool {
     header
         .fields
@@ -76,17 +76,17 @@ fn has_sound_roles(header: &Header<'_>) -> bool {
         .all(|field| field.role.key().is_none() || field.role.get().is_some())
 }
 
-fn check_field(field: &Field<'_>, faults: &mut Faults) {
+fn check_field(field: &Field<'_>, errors: &mut Errors) {
     let role = field.role.get().map(|(_, role)| *role);
     match (role, field.value.key()) {
         (Some(Role::Status) | None, None) if field.role.key().is_none() || role.is_some() => {
-            faults.on(
+            errors.on(
                 field.ident,
                 "the field needs `#[fc(role = …)]` or `#[fc(value = …)]`, what it is sent as",
             );
         }
         (Some(role), Some(value)) if role != Role::Status => {
-            faults.at(
+            errors.at(
                 value,
                 "a field with a role is filled by the runtime; it has no `value`",
             );
@@ -96,29 +96,29 @@ fn check_field(field: &Field<'_>, faults: &mut Faults) {
     if let Some(algorithm) = field.algorithm.key()
         && role != Some(Role::Digest)
     {
-        faults.at(algorithm, "only the digest has an `algorithm`");
+        errors.at(algorithm, "only the digest has an `algorithm`");
     }
     let Some(shape) = field.shape else { return };
     if let Some((wanted, fits)) = role.map(|role| wanted(field, role, shape))
         && !fits
     {
-        faults.on(field.ty, format!("a field with this role is `{wanted}`"));
+        errors.on(field.ty, format!("a field with this role is `{wanted}`"));
     }
     if let Some(value) = field.value.get() {
         let number: u64 = value.base10_parse().unwrap_or_default();
         match shape {
             Shape::Int(size) if size < 8 && number >> (8 * size) != 0 => {
-                faults.on(value, format!("the value must fit `u{}`", 8 * size));
+                errors.on(value, format!("the value must fit `u{}`", 8 * size));
             }
             Shape::Bytes(_) if number != 0 => {
-                faults.on(value, "a run of bytes can only be sent as `value = 0`");
+                errors.on(value, "a run of bytes can only be sent as `value = 0`");
             }
             _ => {}
         }
     }
 }
 
-/// The type of a role's field, and whether a field has it.
+/// Returns the required type of a role, and `true` if the field has it.
 fn wanted(field: &Field<'_>, role: Role, shape: Shape) -> (&'static str, bool) {
     match role {
         Role::Head => ("[u8; N]", matches!(shape, Shape::Bytes(_))),
@@ -137,11 +137,11 @@ fn wanted(field: &Field<'_>, role: Role, shape: Shape) -> (&'static str, bool) {
     }
 }
 
-/// A frame is known for one by its first bytes.
-fn check_head_is_first(header: &Header<'_>, faults: &mut Faults) {
+/// Reports a head that is not the first field.
+fn check_head_is_first(header: &Header<'_>, errors: &mut Errors) {
     for field in header.fields.iter().skip(1) {
         if let Some((literal, Role::Head)) = field.role.get() {
-            faults.on(
+            errors.on(
                 literal,
                 "the head opens a frame: its field must be the first",
             );

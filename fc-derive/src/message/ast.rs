@@ -1,23 +1,22 @@
-//! What a message is made of, as its attributes say.
+//! A message with its attributes.
 
 use super::condition::{self, Asked};
 use crate::attr::{self, Item, Number, NumberValue, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::{Parse, ParseStream};
-use syn::{
-    Data, DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility,
-};
+use syn::{DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
     /// Its name.
     pub ident: &'a Ident,
-    /// Who sees it.
+    /// Visibility.
     pub vis: &'a Visibility,
-    /// Its parameters; a message has none.
+    /// Generic parameters, which a message must not have.
     pub generics: &'a Generics,
     /// Path of the runtime crate.
     pub runtime: Path,
@@ -25,7 +24,7 @@ pub struct Message<'a> {
     pub example: Slot<LitStr>,
     /// Fields with keys, in the order in which they are sent.
     pub fields: Vec<Field<'a>>,
-    /// The fields that keep unknown keys; at most one is right.
+    /// Fields that keep unknown keys; at most one is allowed.
     pub extra: Vec<(&'a Ident, &'a Type)>,
 }
 
@@ -37,9 +36,9 @@ pub struct Field<'a> {
     pub ty: &'a Type,
     /// Its key on the wire.
     pub key: String,
-    /// Where the key stands.
+    /// Position of the key.
     pub key_span: Span,
-    /// What else its attributes say.
+    /// Other attributes.
     pub attributes: FieldAttributes,
 }
 
@@ -76,7 +75,7 @@ pub struct FieldAttributes {
     extra: Slot<()>,
 }
 
-/// In which form a field travels that is not its type's own.
+/// A wire form other than that of the type.
 #[derive(Clone, Copy)]
 pub enum WireForm {
     /// `wire = "string"`.
@@ -85,7 +84,7 @@ pub enum WireForm {
     Number,
 }
 
-/// What a lenient field is.
+/// The kind of a lenient field.
 #[derive(Clone, Copy)]
 pub enum Lenient {
     /// `lenient(number)`.
@@ -96,55 +95,48 @@ pub enum Lenient {
 
 impl<'a> Message<'a> {
     /// Reads the struct and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut example = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "a message",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
+        let runtime =
+            item::read_attributes(input, errors, "a message", &mut |key, input| match key
+                .to_string()
+                .as_str()
+            {
                 "example" => example.set(key, attr::text(input)),
                 "code" | "name" | "effect" | "response" | "error" | "ack" | "accepted_in"
                 | "envelope" | "sets_off" | "state" | "failure" => Ok(Item::Foreign),
                 _ => Ok(Item::Unknown),
-            },
-        );
+            });
         let mut message = Self {
             ident: &input.ident,
             vis: &input.vis,
             generics: &input.generics,
-            runtime: attr::runtime(runtime),
+            runtime,
             example,
             fields: Vec::new(),
             extra: Vec::new(),
         };
-        match &input.data {
-            Data::Struct(data) => match &data.fields {
-                Fields::Named(fields) => {
-                    for field in &fields.named {
-                        message.add(field, faults);
-                    }
+        let hint = "; a choice of messages is `OneOf`, a choice of values `OpenEnum`";
+        match item::fields(input, errors, "a message is a struct", hint) {
+            Some(Fields::Named(fields)) => {
+                for field in &fields.named {
+                    message.add(field, errors);
                 }
-                Fields::Unit => {}
-                Fields::Unnamed(fields) => faults.on(fields, "the fields of a message have names"),
-            },
-            Data::Enum(data) => faults.on(
-                &data.enum_token,
-                "a message is a struct; a choice of messages is `OneOf`, a choice of values `OpenEnum`",
-            ),
-            Data::Union(data) => faults.on(&data.union_token, "a message is a struct"),
+            }
+            Some(Fields::Unnamed(fields)) => {
+                errors.on(fields, "the fields of a message have names");
+            }
+            Some(Fields::Unit) | None => {}
         }
         message
     }
 
-    fn add(&mut self, field: &'a syn::Field, faults: &mut Faults) {
+    fn add(&mut self, field: &'a syn::Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
-        let attributes = FieldAttributes::read(field, faults);
+        let attributes = FieldAttributes::read(field, errors);
         if let Some(extra) = attributes.extra.key() {
             if attributes.says_more_than_extra() {
-                faults.at(
+                errors.at(
                     extra,
                     "`extra` keeps all unknown keys; nothing else can be said of it",
                 );
@@ -167,11 +159,11 @@ impl<'a> Message<'a> {
 }
 
 impl FieldAttributes {
-    fn read(field: &syn::Field, faults: &mut Faults) -> Self {
+    fn read(field: &syn::Field, errors: &mut Errors) -> Self {
         let mut this = Self::default();
         attr::read(
             &field.attrs,
-            faults,
+            errors,
             "a message's field",
             &mut |key, input| this.item(key, input),
         );
@@ -199,7 +191,7 @@ impl FieldAttributes {
         }
     }
 
-    /// Whether a constraint has to be checked.
+    /// Returns `true` if there are constraints.
     pub fn has_constraints(&self) -> bool {
         self.min.get().is_some()
             || self.max.get().is_some()
@@ -236,7 +228,7 @@ fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
     let content;
     syn::parenthesized!(content in input);
     let word: Ident = content.parse()?;
-    // What is left over would be a fault of its own.
+    // Read the rest here, because a leftover would be reported separately.
     let rest: TokenStream = content.parse()?;
     match word.to_string().as_str() {
         _ if !rest.is_empty() => Err(syn::Error::new_spanned(rest, "expected `)`")),

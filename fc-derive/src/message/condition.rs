@@ -1,8 +1,8 @@
-//! `when(…)` and `unless(…)`: fields that are there only under certain values of the fields beside them.
+//! `when(…)` and `unless(…)`: fields that are present only under conditions on other fields.
 
 use super::ast::{Field, Message};
 use crate::attr::{self, NumberValue};
-use crate::faults::Faults;
+use crate::errors::Errors;
 use crate::new::optional;
 use crate::span::{generated, span_of};
 use proc_macro2::TokenStream;
@@ -11,18 +11,18 @@ use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::{Ident, LitBool, LitStr, Token};
 
-/// What a condition asks of one field.
+/// One field in a condition.
 pub struct Asked {
     /// The field.
     ident: Ident,
-    /// Its values: any of them.
+    /// Its values; any of them satisfies the condition.
     values: Vec<Wanted>,
 }
 
-/// A value that is asked for.
+/// A value in a condition.
 struct Wanted {
     tokens: TokenStream,
-    /// As people read it.
+    /// Readable form.
     text: String,
 }
 
@@ -69,15 +69,15 @@ fn read_wanted(input: ParseStream<'_>) -> syn::Result<Wanted> {
     }
 }
 
-/// Finds what a condition must not ask, and where none may stand.
-pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
+/// Reports invalid conditions and fields that cannot have one.
+pub fn check(message: &Message<'_>, field: &Field<'_>, errors: &mut Errors) {
     let attributes = &field.attributes;
     let (when, unless) = (&attributes.when, &attributes.unless);
     if let (Some(_), Some(unless)) = (when.key(), unless.key()) {
-        faults.at(unless, "a field has either `when` or `unless`");
+        errors.at(unless, "a field has either `when` or `unless`");
     }
     if let (Some(at), None) = (when.key().or(unless.key()), optional(field.ty)) {
-        faults.at(
+        errors.at(
             at,
             "a condition is for an `Option`: it says when there is a value",
         );
@@ -85,13 +85,13 @@ pub fn check(message: &Message<'_>, field: &Field<'_>, faults: &mut Faults) {
     for asked in when.get().into_iter().chain(unless.get()).flatten() {
         let ident = &asked.ident;
         if ident.unraw() == field.ident.unraw() {
-            faults.on(ident, "a field cannot depend on its own value");
+            errors.on(ident, "a field cannot depend on its own value");
             continue;
         }
         match find(message, ident) {
-            None => faults.on(ident, format!("there is no field `{}`", ident.unraw())),
+            None => errors.on(ident, format!("there is no field `{}`", ident.unraw())),
             Some(beside) if optional(beside.ty).is_some() => {
-                faults.on(ident, "a condition asks a field that is always there");
+                errors.on(ident, "a condition asks a field that is always there");
             }
             Some(_) => {}
         }
@@ -103,7 +103,7 @@ fn find<'m, 'a>(message: &'m Message<'a>, ident: &Ident) -> Option<&'m Field<'a>
     fields.find(|field| field.ident.unraw() == ident.unraw())
 }
 
-/// `checked`, where a field has a condition.
+/// Returns `checked`, if a field has a condition.
 pub fn checked(message: &Message<'_>) -> Option<TokenStream> {
     let Message {
         ident,
@@ -119,11 +119,11 @@ pub fn checked(message: &Message<'_>) -> Option<TokenStream> {
     Some(quote! {
         #[automatically_derived]
         impl #ident {
-            /// This message, if each field that is there only under a condition is there exactly where that holds. A
-            /// message that is sent or received is not asked; nor are the messages inside this one.
+            /// Returns this message if each field with a condition is present exactly when its condition holds. Sending
+            /// and receiving do not check this, and messages inside this one are not checked.
             ///
             /// # Errors
-            /// The first field that is missing although it is asked for, or there although it is not.
+            /// The first field that contradicts its condition.
             #vis fn checked(
                 self,
             ) -> ::core::result::Result<Self, #runtime::condition::ConditionError> {
@@ -134,7 +134,7 @@ pub fn checked(message: &Message<'_>) -> Option<TokenStream> {
     })
 }
 
-/// The check of one field; `None` where it has no condition.
+/// Returns the check of one field, or `None` without a condition.
 fn code(message: &Message<'_>, field: &Field<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
     let Field {

@@ -8,7 +8,7 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
 use syn::{Path, Type};
 
-/// The implementation of `Message`.
+/// Returns the implementation of `Message`.
 pub fn code(message: &Message<'_>) -> TokenStream {
     let Message { ident, runtime, .. } = message;
     let example = message.example.get().map(|literal| {
@@ -55,7 +55,7 @@ pub fn code(message: &Message<'_>) -> TokenStream {
     }
 }
 
-/// The form in which a field is read where that is not its type's own.
+/// Returns the form in which a field is read, if it is not that of the type.
 fn form(runtime: &Path, attributes: &FieldAttributes) -> Option<TokenStream> {
     let form = match (attributes.lenient.get(), attributes.wire.get()) {
         (Some(Lenient::Number), _) => Some(quote!(#runtime::json::LenientNumber)),
@@ -75,7 +75,7 @@ fn read_fields(message: &Message<'_>) -> TokenStream {
     let runtime = &message.runtime;
     let mut out = TokenStream::new();
     for (index, field) in message.fields.iter().enumerate() {
-        // A type that does not travel is at fault, not the derive.
+        // Point errors about a type without JSON at the type, not at the derive.
         let ty = field.ty;
         let span = span_of(ty);
         let slot = slot(index, span);
@@ -103,7 +103,7 @@ fn read_fields(message: &Message<'_>) -> TokenStream {
     out
 }
 
-/// The index of a slot.
+/// Returns the index of a slot.
 fn slot(index: usize, span: Span) -> Literal {
     let mut slot = Literal::usize_unsuffixed(index);
     slot.set_span(span);
@@ -123,7 +123,7 @@ fn finish(message: &Message<'_>) -> TokenStream {
         let value = moved(ident, span_of(ty));
         quote!(#ident: #value)
     });
-    // Without fields that may be missing there is nothing to refuse.
+    // Without fields, the pattern always matches.
     let otherwise = fields.clone().next().map(|_| quote!(else { return None; }));
     quote! {
         use ::core::option::Option::{None, Some};
@@ -163,7 +163,7 @@ fn write_fields(message: &Message<'_>) -> TokenStream {
     out
 }
 
-/// The check of what is inside, left out where nothing can be.
+/// Returns the check of inner values, or `None` if there are none.
 fn check(message: &Message<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
     let fields = message.fields.iter();
@@ -183,8 +183,8 @@ fn check(message: &Message<'_>) -> Option<TokenStream> {
     })
 }
 
-/// Whether a type is known by its name to hold neither a message nor a float, which may be NaN. A type of the user's own with such a name
-/// is only checked less when it is sent.
+/// Returns `true` if the name of a type shows that it contains neither a message nor a float, which may be NaN. A user
+/// type with such a name is only checked less when it is sent.
 fn is_leaf(ty: &Type) -> bool {
     const LEAVES: [&str; 12] = [
         "bool", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64", "String", "Json", "Bytes64",
@@ -273,7 +273,7 @@ fn limit(message: &Message<'_>, number: &Number) -> TokenStream {
     quote!(#runtime::json::Limit::#variant(#tokens))
 }
 
-/// What stands in front of a value, escaped as the writer of the runtime does it.
+/// Returns the text in front of a value, escaped like in the writer of the runtime.
 fn name(key: &str) -> String {
     let mut out = String::from("\"");
     for character in key.chars() {

@@ -1,12 +1,12 @@
-//! What stands in for a message with faults.
+//! The stub of a message with errors.
 
 use super::ast::Message;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// Implementations that do nothing, for a message with faults.
+/// Returns implementations that do nothing, for a message with errors.
 pub fn stub(message: &Message<'_>) -> TokenStream {
-    // With parameters it would need bounds that the struct may not have.
+    // With generic parameters, it would need bounds that the struct may not have.
     if !message.generics.params.is_empty() {
         return TokenStream::new();
     }

@@ -6,19 +6,14 @@ mod expand;
 mod fallback;
 mod valid;
 
-use crate::faults::Faults;
+use crate::errors::Errors;
 use ast::Message;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes the implementations, or the faults and stubs.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let message = Message::read(&input, &mut faults);
-    valid::check(&message, &mut faults);
-    faults.finish(|| expand::code(&message), || fallback::stub(&message))
+/// Writes the implementations, or errors and stubs.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let message = Message::read(input, &mut errors);
+    valid::check(&message, &mut errors);
+    errors.finish(|| expand::code(&message), || fallback::stub(&message))
 }

@@ -1,34 +1,29 @@
-//! What the attributes of a message must not say together.
+//! Conflicts between attributes of a message.
 
 use super::ast::{Field, Message};
 use super::condition;
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use std::collections::HashSet;
 
-/// Finds every fault between attributes.
-pub fn check(message: &Message<'_>, faults: &mut Faults) {
-    check_generics(message, faults);
-    check_keys(message, faults);
+/// Reports all conflicts between attributes.
+pub fn check(message: &Message<'_>, errors: &mut Errors) {
+    item::forbid_parameters(message.generics, errors, "a message");
+    check_keys(message, errors);
     for (extra, _) in message.extra.iter().skip(1) {
-        faults.on(
+        errors.on(
             extra,
             "unknown keys are kept by one field; `extra` is given twice",
         );
     }
     for field in &message.fields {
-        check_limits(field, faults);
-        condition::check(message, field, faults);
+        check_limits(field, errors);
+        condition::check(message, field, errors);
     }
 }
 
-fn check_generics(message: &Message<'_>, faults: &mut Faults) {
-    if !message.generics.params.is_empty() {
-        faults.on(&message.generics.params, "a message has no parameters");
-    }
-}
-
-/// Two fields must not read the same key.
-fn check_keys(message: &Message<'_>, faults: &mut Faults) {
+/// Reports a key that two fields read.
+fn check_keys(message: &Message<'_>, errors: &mut Errors) {
     let mut seen = HashSet::new();
     for field in &message.fields {
         let also = field.attributes.also.get().into_iter().flatten();
@@ -36,23 +31,23 @@ fn check_keys(message: &Message<'_>, faults: &mut Faults) {
             .chain(also.map(|literal| (literal.value(), literal.span())));
         for (key, span) in keys {
             if key.is_empty() {
-                faults.at(span, "a key has at least one character");
+                errors.at(span, "a key has at least one character");
             } else if key
                 .chars()
                 .any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
             {
-                faults.at(span, "a key has no control characters");
+                errors.at(span, "a key has no control characters");
             } else if !seen.insert(key.clone()) {
-                faults.at(span, format!("the key `{key}` is read already"));
+                errors.at(span, format!("the key `{key}` is read already"));
             }
         }
     }
 }
 
-fn check_limits(field: &Field<'_>, faults: &mut Faults) {
+fn check_limits(field: &Field<'_>, errors: &mut Errors) {
     if let (Some(min), Some(max)) = (field.attributes.min.get(), field.attributes.max.get())
         && min.as_f64() > max.as_f64()
     {
-        faults.on(&max.tokens, "no number is possible: `max` is below `min`");
+        errors.on(&max.tokens, "no number is possible: `max` is below `min`");
     }
 }

@@ -1,12 +1,13 @@
-//! What an enum of values is made of, as its attributes say.
+//! An enum of values with its attributes.
 
 use crate::attr::{self, Item, Slot};
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::item;
 use proc_macro2::TokenStream;
 use quote::ToTokens as _;
 use std::collections::HashSet;
 use syn::parse::{Parse as _, ParseStream};
-use syn::{Data, DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
 
 /// An enum with `#[derive(OpenEnum)]`.
 pub struct OpenEnum<'a> {
@@ -14,41 +15,41 @@ pub struct OpenEnum<'a> {
     pub ident: &'a Ident,
     /// Path of the runtime crate.
     pub runtime: Path,
-    /// What travels.
+    /// The wire type.
     pub repr: Repr,
-    /// In what sense values follow each other.
+    /// The order of values.
     pub order: Option<Order>,
     /// Variants with a value, as written.
     pub values: Vec<(&'a Ident, Value)>,
-    /// What is said of the variants with a value as states, in step with them.
+    /// States of the variants with a value, in the same order.
     pub states: Vec<State>,
-    /// The variants that keep an unknown value; at most one is right.
+    /// Variants that keep an unknown value; at most one is allowed.
     pub other: Vec<&'a Ident>,
 }
 
-/// In what sense values follow each other.
+/// The order of values.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// Normally; other changes occur as well.
+    /// The normal order; other changes may occur.
     Normal,
-    /// No other change occurs.
+    /// The complete order; no other change occurs.
     Complete,
 }
 
-/// What is said of a variant as the state of a process.
+/// A variant as the state of a process.
 #[derive(Default)]
 pub struct State {
-    /// Variants that follow it.
+    /// Variants that may follow it.
     pub then: Vec<Ident>,
-    /// Set if it is a final state.
+    /// `true` for a final state.
     pub is_final: bool,
-    /// Whether something failed.
+    /// `true` for a failure.
     pub is_error: bool,
 }
 
-/// What travels.
+/// The wire type.
 pub enum Repr {
-    /// An integer of this type, and its smallest and largest value.
+    /// An integer type with its smallest and largest value.
     Int(Ident, i128, i128),
     /// A string.
     Str,
@@ -56,9 +57,9 @@ pub enum Repr {
 
 /// The value of a variant, as written.
 pub struct Value {
-    /// As it is written.
+    /// Tokens as written.
     pub tokens: TokenStream,
-    /// What tells it from other values.
+    /// Unique text of the value.
     identity: String,
     /// `None` for a string.
     number: Option<i128>,
@@ -66,56 +67,39 @@ pub struct Value {
 
 impl<'a> OpenEnum<'a> {
     /// Reads the enum and its attributes.
-    pub fn read(input: &'a DeriveInput, faults: &mut Faults) -> Self {
-        let mut runtime = Slot::default();
+    pub fn read(input: &'a DeriveInput, errors: &mut Errors) -> Self {
         let mut repr = Slot::default();
         let mut order = Slot::default();
-        attr::read(
-            &input.attrs,
-            faults,
-            "an enum",
-            &mut |key, input| match key.to_string().as_str() {
-                "crate" => runtime.set(key, attr::path(input)),
-                "repr" => repr.set(key, read_repr(input)),
-                "order" => order.set(key, read_order(input)),
-                _ => Ok(Item::Unknown),
-            },
-        );
+        let runtime = item::read_attributes(input, errors, "an enum", &mut |key, input| match key
+            .to_string()
+            .as_str()
+        {
+            "repr" => repr.set(key, read_repr(input)),
+            "order" => order.set(key, read_order(input)),
+            _ => Ok(Item::Unknown),
+        });
         let message = "what travels must be given: `#[fc(repr = u8)]` or `#[fc(repr = str)]`";
-        let readable = repr.required(faults, &input.ident, message).is_some();
+        let readable = repr.required(errors, &input.ident, message).is_some();
         let mut this = Self {
             ident: &input.ident,
-            runtime: attr::runtime(runtime),
+            runtime,
             repr: repr.into_value().unwrap_or(Repr::Str),
             order: order.into_value(),
             values: Vec::new(),
             states: Vec::new(),
             other: Vec::new(),
         };
-        if !input.generics.params.is_empty() {
-            faults.on(
-                &input.generics.params,
-                "an enum of values has no parameters",
-            );
-        }
-        match &input.data {
-            Data::Enum(data) => {
-                for variant in &data.variants {
-                    this.add(variant, readable, faults);
-                }
+        item::forbid_parameters(&input.generics, errors, "an enum of values");
+        let hint = "; a struct is a `Message`";
+        if let Some(variants) = item::variants(input, errors, "`OpenEnum` is for enums", hint) {
+            for variant in variants {
+                this.add(variant, readable, errors);
             }
-            Data::Struct(data) => {
-                faults.on(
-                    &data.struct_token,
-                    "`OpenEnum` is for enums; a struct is a `Message`",
-                );
-            }
-            Data::Union(data) => faults.on(&data.union_token, "`OpenEnum` is for enums"),
         }
         this
     }
 
-    fn add(&mut self, variant: &'a Variant, readable: bool, faults: &mut Faults) {
+    fn add(&mut self, variant: &'a Variant, readable: bool, errors: &mut Errors) {
         let mut value = Slot::default();
         let mut other = Slot::default();
         let mut then = Slot::default();
@@ -123,7 +107,7 @@ impl<'a> OpenEnum<'a> {
         let mut is_error = Slot::default();
         attr::read(
             &variant.attrs,
-            faults,
+            errors,
             "a variant",
             &mut |key, input| match key.to_string().as_str() {
                 "value" => value.set(key, read_value(input)),
@@ -135,28 +119,28 @@ impl<'a> OpenEnum<'a> {
             },
         );
         if let Some((_, tokens)) = &variant.discriminant {
-            faults.on(tokens, "the value stands in `#[fc(value = …)]`");
+            errors.on(tokens, "the value stands in `#[fc(value = …)]`");
         }
         if let Some(other) = other.key() {
             if value.key().is_some() {
-                faults.at(other, "the variant `other` has no value of its own");
+                errors.at(other, "the variant `other` has no value of its own");
             }
             let said = [then.key(), is_final.key(), is_error.key()];
             if let Some(said) = said.into_iter().flatten().next() {
-                faults.at(said, "of unknown values nothing is said as states");
+                errors.at(said, "of unknown values nothing is said as states");
             }
-            self.check_payload(variant, readable, faults);
+            self.check_payload(variant, readable, errors);
             self.other.push(&variant.ident);
             return;
         }
         let message = "the variant needs `#[fc(value = …)]` or `#[fc(other)]`";
-        value.required(faults, &variant.ident, message);
+        value.required(errors, &variant.ident, message);
         if !matches!(variant.fields, Fields::Unit) {
-            faults.on(&variant.fields, "a variant with a value holds nothing");
+            errors.on(&variant.fields, "a variant with a value holds nothing");
         }
         if let Some(value) = value.into_value() {
             if readable {
-                self.repr.check(&value, faults);
+                self.repr.check(&value, errors);
             }
             self.values.push((&variant.ident, value));
             self.states.push(State {
@@ -167,13 +151,13 @@ impl<'a> OpenEnum<'a> {
         }
     }
 
-    /// The variant `other` holds what travels.
-    fn check_payload(&self, variant: &Variant, readable: bool, faults: &mut Faults) {
+    /// Checks the payload of the variant `other`.
+    fn check_payload(&self, variant: &Variant, readable: bool, errors: &mut Errors) {
         let wanted = match &self.repr {
             Repr::Int(int, ..) => int.to_string(),
             Repr::Str => "String".to_owned(),
         };
-        let fault = match &variant.fields {
+        let misplaced = match &variant.fields {
             Fields::Unnamed(fields) if fields.unnamed.len() == 1 => {
                 let ty = fields.unnamed.first().map(|field| &field.ty);
                 let right = ty.is_some_and(|ty| last_name(ty).is_some_and(|name| *name == wanted));
@@ -182,43 +166,43 @@ impl<'a> OpenEnum<'a> {
             Fields::Unit => Some(variant.ident.to_token_stream()),
             fields => Some(fields.to_token_stream()),
         };
-        if let Some(place) = fault
+        if let Some(place) = misplaced
             && readable
         {
-            faults.on(
+            errors.on(
                 &place,
                 format!("the variant `other` holds the value: `({wanted})`"),
             );
         }
     }
 
-    /// Finds every fault between variants.
-    pub fn check(&self, faults: &mut Faults) {
+    /// Reports all conflicts between variants.
+    pub fn check(&self, errors: &mut Errors) {
         for other in self.other.iter().skip(1) {
-            faults.on(
+            errors.on(
                 other,
                 "unknown values are kept by one variant; `other` is given twice",
             );
         }
         for name in self.states.iter().flat_map(|state| &state.then) {
             if self.order.is_none() {
-                faults.on(name, "what follows needs `order` on the enum: `order = \"normal\"` or `order = \"complete\"`");
+                errors.on(name, "what follows needs `order` on the enum: `order = \"normal\"` or `order = \"complete\"`");
             }
             if !self.values.iter().any(|(known, _)| *known == name) {
-                faults.on(name, "no variant with a value has this name");
+                errors.on(name, "no variant with a value has this name");
             }
         }
         let mut seen = HashSet::new();
         for (_, value) in &self.values {
             if !seen.insert(&value.identity) {
-                faults.on(&value.tokens, "another variant has this value");
+                errors.on(&value.tokens, "another variant has this value");
             }
         }
     }
 }
 
 impl Repr {
-    fn check(&self, value: &Value, faults: &mut Faults) {
+    fn check(&self, value: &Value, errors: &mut Errors) {
         let message = match (self, value.number) {
             (Self::Str, None) => return,
             (Self::Str, Some(_)) => "the value must be a string, as `repr` says".to_owned(),
@@ -228,11 +212,11 @@ impl Repr {
                 format!("the value must fit `{name}`: from {min} to {max}")
             }
         };
-        faults.on(&value.tokens, message);
+        errors.on(&value.tokens, message);
     }
 }
 
-/// The last name of a type's path.
+/// Returns the last name of a type's path.
 fn last_name(ty: &Type) -> Option<&Ident> {
     match ty {
         Type::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
@@ -264,15 +248,8 @@ fn read_repr(input: ParseStream<'_>) -> syn::Result<Repr> {
 
 /// Reads `= "normal"` or `= "complete"`.
 fn read_order(input: ParseStream<'_>) -> syn::Result<Order> {
-    let word = attr::text(input)?;
-    match word.value().as_str() {
-        "normal" => Ok(Order::Normal),
-        "complete" => Ok(Order::Complete),
-        _ => Err(syn::Error::new_spanned(
-            word,
-            "expected \"normal\" or \"complete\"",
-        )),
-    }
+    let words = [("normal", Order::Normal), ("complete", Order::Complete)];
+    attr::word(input, &words).map(|(_, order)| order)
 }
 
 /// Reads `(Ready, Done)`.

@@ -1,12 +1,13 @@
 //! The code of an enum of values.
 
 use super::ast::{OpenEnum, Order, Repr, State};
+use crate::json::{self, Bodies};
 use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::Ident;
 
-/// The values, the conversions and how the enum travels.
+/// Returns values, conversions and wire forms.
 pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
     let inherent = inherent(choice);
     let convert = if choice.other.is_empty() {
@@ -14,7 +15,7 @@ pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
     } else {
         from(choice)
     };
-    let json = json(choice);
+    let json = implement_json(choice);
     let forms = match &choice.repr {
         Repr::Int(int, ..) => number_forms(choice, int),
         Repr::Str => TokenStream::new(),
@@ -24,7 +25,7 @@ pub fn code(choice: &OpenEnum<'_>) -> TokenStream {
     quote!(#inherent #convert #json #forms #chosen #states)
 }
 
-/// What is said of the values as states of a process; nothing is made of what is not said.
+/// Returns the methods and the implementation for states, if there are any.
 fn states(choice: &OpenEnum<'_>) -> TokenStream {
     let ident = choice.ident;
     let marked = |mark: fn(&State) -> bool| {
@@ -63,7 +64,7 @@ fn states(choice: &OpenEnum<'_>) -> TokenStream {
         let in_order = in_order(choice, &failed);
         quote! {
             #[automatically_derived]
-            impl #runtime::protocol::State for #ident {
+            impl #runtime::State for #ident {
                 fn is_end(&self) -> ::core::primitive::bool {
                     #end
                 }
@@ -156,7 +157,7 @@ fn follows(choice: &OpenEnum<'_>, order: Order) -> TokenStream {
     }
 }
 
-/// What a value is made from.
+/// Returns the type from which a value is created.
 fn source(choice: &OpenEnum<'_>) -> TokenStream {
     match &choice.repr {
         Repr::Int(int, ..) => quote!(::core::primitive::#int),
@@ -164,7 +165,7 @@ fn source(choice: &OpenEnum<'_>) -> TokenStream {
     }
 }
 
-/// Names and wire values of the variants, in step.
+/// Returns names and wire values of the variants in the same order.
 fn arms(choice: &OpenEnum<'_>) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let names = choice
         .values
@@ -204,7 +205,7 @@ fn inherent(choice: &OpenEnum<'_>) -> TokenStream {
             /// Every value of the spec, in its order.
             pub const VALUES: &'static [Self] = &[#(#names),*];
 
-            /// The value as it travels.
+            /// Returns the value as it is sent.
             #[must_use]
             pub #constant fn wire(&self) -> #wire {
                 match self {
@@ -216,7 +217,7 @@ fn inherent(choice: &OpenEnum<'_>) -> TokenStream {
     }
 }
 
-/// Of an open enum, which takes every value.
+/// Implements `From` for an open enum, which accepts every value.
 fn from(choice: &OpenEnum<'_>) -> TokenStream {
     let ident = choice.ident;
     let source = source(choice);
@@ -239,7 +240,7 @@ fn from(choice: &OpenEnum<'_>) -> TokenStream {
     }
 }
 
-/// Of a closed enum, which refuses what it does not know.
+/// Implements `TryFrom` for a closed enum, which rejects unknown values.
 fn try_from(choice: &OpenEnum<'_>) -> TokenStream {
     let OpenEnum { ident, runtime, .. } = choice;
     let source = source(choice);
@@ -285,33 +286,20 @@ fn read(choice: &OpenEnum<'_>, form: &str) -> TokenStream {
 }
 
 /// `FromJson` and `ToJson`.
-fn json(choice: &OpenEnum<'_>) -> TokenStream {
-    let OpenEnum { ident, runtime, .. } = choice;
-    let read = read(choice, "Plain");
+fn implement_json(choice: &OpenEnum<'_>) -> TokenStream {
     let write = match choice.repr {
         Repr::Int(..) => quote!(integer),
         Repr::Str => quote!(string),
     };
-    quote! {
-        #[automatically_derived]
-        impl #runtime::json::FromJson for #ident {
-            fn read(
-                reader: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                #read
-            }
-        }
-
-        #[automatically_derived]
-        impl #runtime::json::ToJson for #ident {
-            fn write(&self, writer: &mut #runtime::json::Writer<'_>) {
-                writer.#write(self.wire());
-            }
-        }
-    }
+    let bodies = Bodies {
+        read: read(choice, "Plain"),
+        write: quote!(writer.#write(self.wire());),
+        check_value: None,
+    };
+    json::implement(choice.ident, &choice.runtime, &bodies)
 }
 
-/// What the attribute `only(…)` of a field needs.
+/// Implements the trait for the attribute `only(…)` of a field.
 fn chosen(choice: &OpenEnum<'_>) -> TokenStream {
     let OpenEnum { ident, runtime, .. } = choice;
     let wire = match &choice.repr {
@@ -330,7 +318,7 @@ fn chosen(choice: &OpenEnum<'_>) -> TokenStream {
     }
 }
 
-/// What the attributes `wire = "string"` and `lenient(number)` of a field need.
+/// Implements the traits for the attributes `wire = "string"` and `lenient(number)` of a field.
 fn number_forms(choice: &OpenEnum<'_>, int: &Ident) -> TokenStream {
     let OpenEnum { ident, runtime, .. } = choice;
     let quoted = read(choice, "Quoted");
@@ -362,28 +350,6 @@ fn number_forms(choice: &OpenEnum<'_>, int: &Ident) -> TokenStream {
                 reader: &mut #runtime::json::Reader<'_>,
             ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
                 #lenient
-            }
-        }
-    }
-}
-
-/// Implementations that do nothing, for an enum with faults.
-pub fn stub(choice: &OpenEnum<'_>) -> TokenStream {
-    let OpenEnum { ident, runtime, .. } = choice;
-    quote! {
-        #[automatically_derived]
-        impl #runtime::json::FromJson for #ident {
-            fn read(
-                _: &mut #runtime::json::Reader<'_>,
-            ) -> ::core::result::Result<Self, #runtime::json::BodyError> {
-                ::core::unimplemented!()
-            }
-        }
-
-        #[automatically_derived]
-        impl #runtime::json::ToJson for #ident {
-            fn write(&self, _: &mut #runtime::json::Writer<'_>) {
-                ::core::unimplemented!()
             }
         }
     }

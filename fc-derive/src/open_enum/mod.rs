@@ -3,19 +3,18 @@
 mod ast;
 mod expand;
 
-use crate::faults::Faults;
+use crate::errors::Errors;
+use crate::json;
 use ast::OpenEnum;
 use proc_macro2::TokenStream;
 use syn::DeriveInput;
 
-/// Writes the implementations, or the faults and stubs.
-pub fn expand(input: TokenStream) -> TokenStream {
-    let input: DeriveInput = match syn::parse2(input) {
-        Ok(input) => input,
-        Err(error) => return error.into_compile_error(),
-    };
-    let mut faults = Faults::default();
-    let choice = OpenEnum::read(&input, &mut faults);
-    choice.check(&mut faults);
-    faults.finish(|| expand::code(&choice), || expand::stub(&choice))
+/// Writes the implementations, or errors and stubs.
+pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
+    let choice = OpenEnum::read(input, &mut errors);
+    choice.check(&mut errors);
+    errors.finish(
+        || expand::code(&choice),
+        || json::stub(choice.ident, &choice.runtime),
+    )
 }

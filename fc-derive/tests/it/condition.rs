@@ -1,4 +1,4 @@
-//! Fields that are there only under certain values of the fields beside them.
+//! Fields that are present only under conditions on other fields.
 
 use fc_derive::{Message, New, OpenEnum};
 use fc_runtime::condition::{Asked, Condition};
@@ -137,7 +137,7 @@ fn an_error_names_wire_keys_and_values() {
     );
 }
 
-/// What a peer sends is taken as it is, and sent so again.
+/// Received messages are accepted unchanged, and sent again unchanged.
 #[test]
 fn reading_and_writing_ask_nothing() {
     for text in [

@@ -1,4 +1,4 @@
-//! What `#[derive(Header)]` reads and writes.
+//! Headers with `#[derive(Header)]`, read and written.
 
 use fc_derive::Header;
 use fc_runtime::Header as _;

@@ -1,4 +1,4 @@
-//! What `#[derive(Id)]` makes: a type of its own, which travels as what it holds.
+//! Types with `#[derive(Id)]`, which are sent as their inner value.
 
 use fc_derive::{Defaults, Id, Message, New};
 use fc_runtime::json::{from_str, to_vec};
@@ -46,7 +46,7 @@ fn read<T: fc_runtime::Message>(text: &str) -> Result<T, BodyError> {
     Ok(message)
 }
 
-/// What is sent and what is refused, word for word, is as without them.
+/// Sent and rejected values are the same as without ids, word for word.
 #[test]
 fn an_id_travels_as_what_it_holds() {
     for text in [

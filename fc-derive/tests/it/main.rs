@@ -1,6 +1,6 @@
 //! The integration tests, as one program: a program per file would link the crate each time. `ui` compiles programs.
 
-// What the derives write must pass for people whose lints are strict.
+// Expansions must pass strict lints of users.
 #![deny(clippy::pedantic)]
 #![allow(
     clippy::indexing_slicing,

@@ -1,4 +1,4 @@
-//! What `#[derive(Message)]` makes of each attribute.
+//! Messages with `#[derive(Message)]`, for each attribute.
 
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{decode, to_vec};
@@ -256,7 +256,7 @@ fn a_known_key_comes_once_under_one_of_its_names() {
     ] {
         assert_eq!(error::<Active>(text), ("duplicate_key", path.to_owned()));
     }
-    // In an open value, and under a key that nobody knows, everything stays as it is.
+    // Open values and unknown keys keep everything unchanged.
     let text = r#","any":{"a":1,"a":2},"new":1,"new":2"#;
     assert!(written(&station(text).unwrap()).ends_with(&format!("{text}}}")));
 }
@@ -519,7 +519,7 @@ fn a_choice_goes_by_required_keys() {
         assert_eq!(read(text).unwrap_err().name(), "no_variant", "{text}");
     }
     assert_eq!(read("[]").unwrap_err().name(), "wrong_type");
-    // Chosen by its keys; what is wrong inside is that variant's fault.
+    // Chosen by its keys. Errors inside are errors of that variant.
     assert_eq!(
         read(r#"{"activeIndex":"1"}"#).unwrap_err().name(),
         "wrong_type"
@@ -546,7 +546,7 @@ fn fields_say_what_is_required() {
         let keys: Vec<_> = keys.iter().map(|&key| key.into()).collect();
         fc_runtime::json::lacking::<Station>(&keys)
     };
-    // By their names, as they stand in front of the value.
+    // By their names in front of the value.
     let required = [r#""stationId":"#, r#""x":"#, r#""name":"#, r#""serial":"#];
     assert_eq!(lacking(&[]), required);
     assert_eq!(lacking(&["title", "serial", "stationId"]), [r#""x":"#]);

@@ -1,4 +1,4 @@
-//! What `#[derive(OpenEnum)]` makes of open and closed enums.
+//! Open and closed enums with `#[derive(OpenEnum)]`.
 
 use fc_derive::OpenEnum;
 use fc_runtime::State as _;
@@ -164,7 +164,7 @@ fn what_follows_is_what_is_said() {
     }
 }
 
-/// The same again and a failure break nothing, and where nothing is said nothing can be broken.
+/// A repeated state and a failure are always in order, as is any state without a rule.
 #[test]
 fn what_is_in_order_is_all_that_nothing_said_speaks_against() {
     let unknown = Job::from("paused");

@@ -1,4 +1,4 @@
-//! What `#[derive(RedactedDebug)]` prints.
+//! The output of `#[derive(RedactedDebug)]`.
 
 use fc_derive::{Message, RedactedDebug};
 use fc_runtime::Message as _;

@@ -195,7 +195,7 @@ impl Protocol for Fc {
     }
 }
 
-/// What the robot of this test answers.
+/// The responses of the robot in this test.
 #[dispatch(protocol = Fc, service = RobotService)]
 trait Robot: Send + Sync + 'static {
     /// A command.
@@ -219,7 +219,7 @@ trait Robot: Send + Sync + 'static {
     }
 }
 
-/// The same, of which a robot may leave out what it does not have.
+/// The same with optional methods.
 #[dispatch(protocol = Fc, service = CartService, partial = PartialCart)]
 trait Cart: Send + Sync + 'static {
     /// A command.
@@ -276,7 +276,7 @@ impl Cart for Finished {
 async fn what_a_partial_robot_leaves_out_is_refused_as_not_implemented() {
     let (app, handle) = connected(CartService::new(Begun)).await;
     assert_eq!(app.call(&GetStation { id: 7 }).await.unwrap().id, 7);
-    // Known to the protocol, but not to this robot: the text says so, and the robot counts it.
+    // Known to the protocol but not implemented: the text says this, and the robot counts it.
     assert_eq!(
         refused(app.call(&Drive {}).await),
         (2001, "protocol: not implemented".into())

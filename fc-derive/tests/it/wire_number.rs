@@ -1,4 +1,4 @@
-//! What `wire = "number"` makes of a bool.
+//! A bool with `wire = "number"`.
 
 use fc_derive::Message;
 use fc_runtime::json::{decode, to_vec};

@@ -1,4 +1,4 @@
-//! The expansions do not depend on what names mean where they stand, and give no cause for lints.
+//! The expansions do not depend on names in scope, and cause no lints.
 
 #![deny(warnings, missing_docs, rust_2018_idioms)]
 #![allow(dead_code)]

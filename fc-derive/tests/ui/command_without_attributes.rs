@@ -1,4 +1,4 @@
-//! A command that says nothing.
+//! A command without attributes.
 
 #![allow(unused_imports)]
 

@@ -1,4 +1,4 @@
-//! Each variant of an enum of errors has a result code of its own, a text, and nothing else.
+//! Each variant of an enum of errors has a unique result code, a text, and nothing else.
 
 use fc_derive::DeclaredError;
 

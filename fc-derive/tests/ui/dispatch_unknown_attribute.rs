@@ -1,4 +1,4 @@
-//! An attribute that nobody reads.
+//! An unknown attribute.
 
 #![allow(unused_imports)]
 

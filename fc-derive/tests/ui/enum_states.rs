@@ -1,4 +1,4 @@
-//! What is said of states needs an order, and is said of variants with a value.
+//! States need an order, and only variants with a value can be states.
 
 #[derive(fc_derive::OpenEnum)]
 #[fc(repr = u8)]

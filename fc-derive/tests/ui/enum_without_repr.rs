@@ -1,4 +1,4 @@
-//! What travels is not said.
+//! The wire type is missing.
 
 use fc_derive::OpenEnum;
 

@@ -1,4 +1,4 @@
-//! Ids of what cannot be one.
+//! Ids with invalid inner types.
 
 use fc_derive::Id;
 

@@ -1,4 +1,4 @@
-//! A key that nobody can have meant.
+//! A key with a control character.
 
 use fc_derive::Message;
 

@@ -1,4 +1,4 @@
-//! An attribute that nobody reads.
+//! An unknown attribute.
 
 use fc_derive::Message;
 

@@ -1,4 +1,4 @@
-//! What is said of a process stands on the operation that it is about, and leads to fields.
+//! Attributes about a process belong on the operation they describe, and name fields.
 
 use fc_derive::{Command, Message, Report};
 use fc_runtime::Extra;

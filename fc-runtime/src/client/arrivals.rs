@@ -1,4 +1,4 @@
-//! What each frame from the robot means.
+//! Handling of frames from the robot.
 
 use super::error::CallError;
 use super::state::State;
@@ -7,41 +7,44 @@ use crate::digest::{Compute as _, Sum};
 use crate::frame::{Body, Frame, FrameError, FrameId};
 use crate::json::{Allowance, BodyError};
 use crate::message::{Empty, read_enveloped};
-use crate::protocol::{DigestOf, Header, OperationKind, Protocol, ResponseEnvelope, ResultText};
-use crate::raw::{RawReport, Refusal};
+use crate::operation::{OperationKind, ResultText};
+use crate::protocol::{DigestOf, Protocol, ResponseEnvelope};
+use crate::raw::RawReport;
+use crate::refusal::Refusal;
 use crate::session::Incoming;
+use crate::wire::Header;
 use std::task::Waker;
 use std::time::Instant;
 
-/// Beyond this much unsent, reports are not acknowledged: a robot that does not read must not make
-/// the app collect acknowledgements for it.
+/// Unsent bytes beyond which reports are not acknowledged. A robot that does not read must not make the app collect
+/// acknowledgements.
 const ACKNOWLEDGE_UP_TO: usize = 256 * 1024;
 
-/// A frame that has arrived, out of the decoder.
+/// A received frame, taken out of the decoder.
 #[derive(Debug)]
 pub(super) struct Arrival {
     pub(super) id: FrameId,
-    /// As the header has it; zeros where the frame could not be read.
+    /// Digest in the header; zeros if the frame could not be read.
     pub(super) digest: Sum,
-    pub(super) body: Result<Body, Fault>,
+    pub(super) body: Result<Body, ArrivalError>,
 }
 
-/// Why a frame cannot be handed on.
+/// The reason why a frame cannot be delivered.
 #[derive(Debug)]
-pub(super) enum Fault {
+pub(super) enum ArrivalError {
     /// The frame could not be read.
     Frame(FrameError),
-    /// A report does not read as what its code says, or has no proper envelope.
+    /// The report cannot be read as the type of its code, or has no valid envelope.
     Report(BodyError),
 }
 
-/// How reports are read, by code; what is not listed is any JSON object.
+/// Checks of reports by code. Reports with other codes may be any JSON object.
 #[derive(Debug)]
-pub(super) struct Readers(Vec<(u16, Check)>);
+pub(super) struct ReportChecks(Vec<(u16, Check)>);
 
 type Check = fn(&[u8], Allowance) -> Result<(), BodyError>;
 
-impl Readers {
+impl ReportChecks {
     pub(super) fn of<P: Protocol>() -> Self {
         let reports = P::operations()
             .iter()
@@ -59,7 +62,7 @@ impl Readers {
         text: &[u8],
         allowance: Allowance,
     ) -> Result<(), BodyError> {
-        // Not more than the app itself may read of it later.
+        // At most the limits within which the app reads the report later.
         let most = RawReport::allowance::<P>();
         let allowance = Allowance {
             depth: allowance.depth,
@@ -73,12 +76,12 @@ impl Readers {
 }
 
 impl Arrival {
-    /// Takes a frame out of the decoder, and looks at reports: what the app could not read is
-    /// refused here, and not acknowledged to be found out later.
+    /// Takes a frame out of the decoder and checks reports. A report that the app cannot read is refused here instead
+    /// of acknowledged.
     pub(super) fn of<P: Protocol>(
         frame: Frame<'_, P>,
         spare: &mut Vec<u8>,
-        readers: &Readers,
+        report_checks: &ReportChecks,
         allowance: Allowance,
     ) -> Self {
         let id = frame.id();
@@ -90,19 +93,19 @@ impl Arrival {
             sum
         };
         let checked = if is_report {
-            readers.check::<P>(id.code, frame.body(), allowance)
+            report_checks.check::<P>(id.code, frame.body(), allowance)
         } else {
             Ok(())
         };
         let body = match checked {
             Ok(()) => Ok(frame.into_body_for(spare)),
-            Err(error) => Err(Fault::Report(error)),
+            Err(error) => Err(ArrivalError::Report(error)),
         };
         Self { id, digest, body }
     }
 }
 
-/// Deals with one frame.
+/// Handles one frame.
 pub(super) fn arrive<P: Protocol>(
     state: &mut State<P>,
     Arrival { id, digest, body }: Arrival,
@@ -111,19 +114,19 @@ pub(super) fn arrive<P: Protocol>(
 ) {
     let body = match body {
         Ok(body) => Ok(body),
-        Err(Fault::Report(error)) => {
+        Err(ArrivalError::Report(error)) => {
             state.counters.reports_invalid += 1;
             let (code, msg_id, name) = (id.code, id.id, error.name());
-            if let Some(held) = state.lines.invalid.line(now) {
+            if let Some(held) = state.limiters.invalid.admit(now) {
                 let (protocol, held) = (P::NAME, held.shown());
                 tracing::warn!(protocol, code, msg_id, error = name, held, "report refused");
             }
             let refusal = Refusal::invalid::<P>(error);
             return answer_with(state, id, refusal.code, &refusal.text);
         }
-        Err(Fault::Frame(error)) => {
+        Err(ArrivalError::Frame(error)) => {
             state.counters.bad_frames += 1;
-            if let Some(held) = state.lines.bad_frame.line(now) {
+            if let Some(held) = state.limiters.bad_frame.admit(now) {
                 let (protocol, held) = (P::NAME, held.shown());
                 tracing::warn!(protocol, error = error.name(), held, "{error}");
             }
@@ -152,7 +155,7 @@ pub(super) fn arrive<P: Protocol>(
             state.counters.repeated_reports += 1;
             answer(state, id, P::RESULTS.success);
         }
-        // Apps serve no commands, and streams have a port of their own.
+        // Apps serve no commands, and streams have their own port.
         (Incoming::Command | Incoming::Stream | Incoming::Report, _) => {
             answer(state, id, P::RESULTS.protocol);
         }
@@ -167,9 +170,9 @@ fn report<P: Protocol>(
     now: Instant,
     wakers: &mut Vec<Waker>,
 ) {
-    if let Some(since) = state.beats.came(id.code, now) {
+    if let Some(since) = state.report_watchdog.received(id.code, now) {
         state.counters.reports_late += 1;
-        if let Some(held) = state.lines.late.line(now) {
+        if let Some(held) = state.limiters.late.admit(now) {
             tracing::warn!(
                 protocol = P::NAME,
                 code = id.code,
@@ -185,8 +188,8 @@ fn report<P: Protocol>(
         id: id.id,
         text: body.into_vec(),
     };
-    // Whoever takes reports may have seen the end already.
-    let room = !state.life.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
+    // Receivers may already have seen the end of the connection.
+    let room = !state.connection.now().is_closed() && state.out.len() < ACKNOWLEDGE_UP_TO;
     let missed = if room {
         state.reports.push(report, wakers)
     } else {
@@ -199,7 +202,7 @@ fn report<P: Protocol>(
         answer(state, id, P::RESULTS.success);
     } else {
         state.counters.reports_refused += 1;
-        if let Some(held) = state.lines.untaken.line(now) {
+        if let Some(held) = state.limiters.untaken.admit(now) {
             tracing::warn!(
                 protocol = P::NAME,
                 code = id.code,
@@ -211,7 +214,7 @@ fn report<P: Protocol>(
     }
 }
 
-/// Replies to a request of the robot with nothing but a result; not at all where no response can carry it.
+/// Responds to a request of the robot with only a result, or not at all if responses have no result.
 fn answer<P: Protocol>(state: &mut State<P>, id: FrameId, result: ResultText) {
     answer_with(state, id, result.code, result.text);
 }
@@ -223,7 +226,7 @@ fn answer_with<P: Protocol>(state: &mut State<P>, id: FrameId, code: i64, text: 
     }
     let envelope = P::Response::at(clock::unix_ms(), code, text);
     let before = state.out.len();
-    // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
+    // An envelope alone fits into any sensible frame limit. Otherwise the robot repeats its report.
     let _ = state
         .encoder
         .message(&mut state.out, id.answer(), &envelope, &Empty);

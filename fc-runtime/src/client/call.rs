@@ -1,19 +1,23 @@
-//! One call: a future without a task.
+//! A call: a future without a task.
 
 use super::error::CallError;
-use super::following::{Following, Subscription};
-use super::life::ConnectionState;
+use super::following::Following;
 use super::loss::Loss;
+use super::reports::Receiver;
 use super::state::{Handle, Progress, State};
+use super::state_watch::ConnectionState;
 use crate::clock;
 use crate::frame::{Body, FrameId, Staged};
 use crate::json::Allowance;
-use crate::keys::Keys;
 use crate::message::{Message, read_enveloped, write_enveloped};
 use crate::metrics::{Held, Since};
-use crate::protocol::{AckPolicy, Command, Effect, Protocol, Report, RequestEnvelope, SetsOff};
-use crate::raw::{RawResponse, Refusal};
+use crate::open_message::OpenMessage;
+use crate::operation::{AckPolicy, Command, Effect, Report, SetsOff};
+use crate::protocol::{Protocol, RequestEnvelope};
+use crate::raw::RawResponse;
+use crate::refusal::Refusal;
 use crate::session::after;
+use crate::sync::register;
 use crate::trace::is_traced;
 use std::fmt;
 use std::pin::Pin;
@@ -21,21 +25,21 @@ use std::task::{Context, Poll};
 use std::time::Duration;
 use tracing::Span;
 
-/// So much at most, in bytes, a caller writes to the socket itself.
+/// Maximum amount that a caller writes to the socket itself, in bytes.
 const WRITTEN_AT_ONCE: usize = 32 * 1024;
 
-/// What one call can be told.
+/// Options of one call.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CallOptions {
-    /// How long to wait for the response; `None` for the connection's default.
+    /// Longest wait for the response; `None` for the connection's default.
     pub timeout: Option<Duration>,
-    /// Whether to send the call once more when the connection was lost before its answer came; if the
-    /// connection is lost again, the call ends with [`CallError::Lost`].
-    /// `None`: only what has [`Effect::Read`]. `Some(true)` on anything else may do it twice.
+    /// `true` to send the call once more if the connection is lost before its response. After a second loss, the call
+    /// ends with [`CallError::Lost`]. `None` repeats only commands with [`Effect::Read`]. `Some(true)` may execute
+    /// other commands twice.
     pub repeat: Option<bool>,
 }
 
-/// Where a call stands.
+/// The stage of a call.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
     Start,
@@ -51,7 +55,7 @@ struct Flight<'a, P: Protocol> {
     repeat: bool,
     stage: Stage,
     span: Span,
-    /// When it was first polled; `None` before that, and once its end has been noted.
+    /// Start time, from the first poll until the end has been recorded.
     since: Option<(Since, Held)>,
 }
 
@@ -70,7 +74,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         }
     }
 
-    /// Notes how it has ended and how long it has taken.
+    /// Records result and duration.
     fn note(&mut self, result: &'static str) {
         if let Some((since, _held)) = self.since.take() {
             let operations = &self.inner.operations;
@@ -79,8 +83,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         }
     }
 
-    /// Goes on with the call; `write` appends the body, and is asked again if the call has to be
-    /// sent again.
+    /// Continues the call. `write` appends the body, and is called again if the call is sent again.
     fn poll(
         &mut self,
         cx: &mut Context<'_>,
@@ -106,7 +109,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         polled
     }
 
-    /// Gives back what a call in flight holds.
+    /// Frees the resources of a call in flight.
     fn release(&mut self) {
         if let Stage::InFlight { frame, slot } = self.stage {
             let mut state = self.inner.lock();
@@ -129,7 +132,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         let now = clock::now();
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        if let ConnectionState::Closed { why, .. } = state.life.now() {
+        if let ConnectionState::Closed { why, .. } = state.connection.now() {
             return Err(CallError::Closed(why));
         }
         let slot = state.slots.take();
@@ -137,7 +140,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
             Ok(frame) => frame,
             Err(busy) => {
                 state.slots.free(slot);
-                if let Some(held) = state.lines.busy.line(now) {
+                if let Some(held) = state.limiters.busy.admit(now) {
                     let (protocol, in_flight, held) = (P::NAME, busy.limit, held.shown());
                     let code = self.code;
                     tracing::warn!(protocol, name, code, in_flight, held, "too many calls");
@@ -145,28 +148,28 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 return Err(busy.into());
             }
         };
-        // From here on, dropping the call gives everything back.
+        // From here on, dropping the call frees its resources.
         self.stage = Stage::InFlight { frame, slot };
         if let Some(slot) = state.slots.get(slot) {
             slot.repeat = self.repeat;
             slot.waker = Some(cx.waker().clone());
         }
         let mut socket = None;
-        if state.life.now().is_connected() {
+        if state.connection.now().is_connected() {
             send(state, frame, body);
             if let Some(slot) = state.slots.get(slot) {
                 slot.progress = Progress::Sent;
             }
-            // Where there are several, the driver sends them with one write; and who has got his answer
-            // will soon ask for more.
+            // With several callers, the driver sends all requests with one write. A caller whose response has just
+            // arrived counts, because it will probably call again.
             if state.slots.used() == 1 && state.out.len() <= WRITTEN_AT_ONCE {
                 socket.clone_from(&state.socket);
             }
         }
         let writing = (socket.as_ref()).and_then(|socket| socket.begin(&mut state.out));
-        // Also without a connection: the deadline may be nearer than all others.
+        // Needed also without a connection, because the deadline may be earlier than all others.
         let deadline = after(now, self.timeout);
-        let needed = writing.is_none() || state.armed.is_none_or(|at| deadline < at);
+        let needed = writing.is_none() || state.alarm.is_none_or(|at| deadline < at);
         let driver = if needed { state.driver.take() } else { None };
         drop(guard);
         let written = writing.is_none_or(|writing| writing.finish(cx));
@@ -196,7 +199,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
     ) -> Poll<Result<Body, CallError>> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        let now = state.life.now();
+        let now = state.connection.now();
         let Some(place) = state.slots.get(slot) else {
             return Poll::Ready(Err(CallError::Closed(now.why().unwrap_or(Loss::Ended))));
         };
@@ -208,10 +211,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
                 }
             }
             Progress::Unsent | Progress::Again | Progress::Sent => {
-                match &mut place.waker {
-                    Some(waker) => waker.clone_from(cx.waker()),
-                    none => *none = Some(cx.waker().clone()),
-                }
+                register(&mut place.waker, cx);
                 if place.progress.is_to_send() && now.is_connected() {
                     drop(guard);
                     self.inner
@@ -222,19 +222,19 @@ impl<'a, P: Protocol> Flight<'a, P> {
         Poll::Pending
     }
 
-    /// Sends a request that has waited for a connection, unless that has been lost again meanwhile: then
-    /// it waits for the next one.
+    /// Sends a request that has waited for a connection. If the connection is lost again, the request waits for the
+    /// next one.
     fn send_again(&self, frame: FrameId, slot: usize, body: Staged<'_>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
-        let connected = state.life.now().is_connected();
+        let connected = state.connection.now().is_connected();
         let Some(place) = state.slots.get(slot) else {
             return;
         };
         if !connected || !place.progress.is_to_send() {
             return;
         }
-        // Once more, and not as often as the connection is lost.
+        // Only one repetition, however often the connection is lost.
         place.repeat &= matches!(place.progress, Progress::Unsent);
         place.progress = Progress::Sent;
         send(state, frame, body);
@@ -242,7 +242,7 @@ impl<'a, P: Protocol> Flight<'a, P> {
         self.inner.wake();
     }
 
-    /// Gives the memory of a large body back for the next one.
+    /// Returns the memory of a large body for the next one.
     fn recycle(&self, body: Body) {
         if let Some(spare) = body.into_spare() {
             self.inner.lock().spare = spare;
@@ -265,10 +265,10 @@ impl<P: Protocol> Drop for Flight<'_, P> {
 
 /// A call of a typed command. Resolves to the response.
 ///
-/// The request is written when the future is first polled, straight into the connection's buffer.
+/// The request is encoded when the future is first polled, directly into the connection's buffer.
 ///
-/// Cancellation safe: dropping the future frees its place among the calls in flight, and an answer
-/// that comes later is ignored. The robot acts all the same once the request is on its way.
+/// Cancellation safe: dropping the future frees the call's resources, and a later response is ignored. A sent command
+/// is executed nevertheless.
 #[must_use = "a call is sent when it is awaited"]
 pub struct Call<'a, P: Protocol, C: Command> {
     flight: Flight<'a, P>,
@@ -284,24 +284,24 @@ impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
         }
     }
 
-    /// Waits for the response, and then follows what the command has set off: the reports `R`, until one of
-    /// them says that the process has ended or failed.
+    /// Waits for the response, and then follows the reports `R` that the command sets off, until a report with a final
+    /// state or a failure.
     ///
-    /// What arrives from the moment on in which the request is sent is followed, also before the response.
+    /// Reports are followed from the moment the request is sent, also before the response.
     ///
-    /// Cancellation safe, as the call itself is.
+    /// Cancellation safe, like the call.
     ///
     /// # Errors
     ///
-    /// Those of the call; nothing is followed then.
+    /// The errors of the call. In that case no reports are followed.
     pub async fn follow<R: Report>(self) -> Result<Following<P, C, R>, CallError>
     where
         C: SetsOff<R>,
     {
         let request = self.request;
-        let subscription = Subscription::new(self.flight.inner.clone(), R::CODE);
+        let receiver = Receiver::new(self.flight.inner.clone(), Some(R::CODE));
         let answer = self.await?;
-        Ok(Following::new(subscription, request.clone(), answer))
+        Ok(Following::new(receiver, request.clone(), answer))
     }
 }
 
@@ -335,7 +335,7 @@ impl<P: Protocol, C: Command> Future for Call<'_, P, C> {
     }
 }
 
-/// Makes a typed response of a body, in one pass.
+/// Reads a body as a typed response in one pass.
 fn response<P: Protocol, M: Message>(body: &[u8], allowance: Allowance) -> Result<M, CallError> {
     let read = read_enveloped::<P::Response, M>(body, allowance).map_err(CallError::Response)?;
     match Refusal::of::<P>(&read.envelope) {
@@ -353,8 +353,7 @@ impl<P: Protocol, C: Command> fmt::Debug for Call<'_, P, C> {
     }
 }
 
-/// Calls `code` with a JSON object of the request's own keys; the envelope is added where `body`
-/// has none.
+/// Calls `code` with a JSON object of the request's keys. The envelope is added if `body` has none.
 pub(super) async fn raw<P: Protocol>(
     handle: &Handle<P>,
     code: u16,
@@ -363,7 +362,7 @@ pub(super) async fn raw<P: Protocol>(
 ) -> Result<RawResponse<P>, CallError> {
     let allowance = handle.limits.json();
     let request =
-        read_enveloped::<P::Request, Keys>(body, allowance).map_err(CallError::Invalid)?;
+        read_enveloped::<P::Request, OpenMessage>(body, allowance).map_err(CallError::Invalid)?;
     let keys = request.body.map_err(CallError::Invalid)?;
     let envelope = request.envelope;
     let write = |out: &mut Vec<u8>| {
@@ -376,8 +375,8 @@ pub(super) async fn raw<P: Protocol>(
     let mut flight = Flight::new(handle, code, false, options);
     let body = std::future::poll_fn(|cx| flight.poll(cx, "raw", &write)).await;
     let response: Result<RawResponse<P>, CallError> = body.and_then(|body| {
-        let read =
-            read_enveloped::<P::Response, Keys>(&body, allowance).map_err(CallError::Response)?;
+        let read = read_enveloped::<P::Response, OpenMessage>(&body, allowance)
+            .map_err(CallError::Response)?;
         Ok(RawResponse {
             envelope: read.envelope,
             text: body.into_vec(),
@@ -390,7 +389,7 @@ pub(super) async fn raw<P: Protocol>(
     response
 }
 
-/// What a call has ended with, for metrics.
+/// Returns the result of a call, for metrics.
 fn ended<T>(result: &Result<T, CallError>) -> &'static str {
     match result {
         Ok(_) => "success",

@@ -1,4 +1,4 @@
-//! Making connections, and making them again.
+//! Connecting and reconnecting.
 
 use super::config::{Backoff, ClientConfig};
 use super::error::ConnectError;
@@ -8,75 +8,57 @@ use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// No wait between two attempts to connect is longer, whatever is configured.
+/// Longest wait between two attempts, whatever the configuration.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Makes a connection, each time it is asked to.
+/// Creates connections.
 pub(super) trait Dial: Send + 'static {
-    /// What the connection runs over.
+    /// Transport of the connection.
     type Transport: Transport;
 
-    /// Whom it connects to, for logs.
+    /// Returns the address of the robot, for logs.
     fn address(&self) -> String;
 
     fn dial(&mut self) -> impl Future<Output = Result<Self::Transport, ConnectError>> + Send;
 }
 
-/// Connects with TCP.
-pub(super) struct Tcp {
-    host: String,
-    port: u16,
-    limit: Duration,
-    keepalive: Option<Duration>,
-}
-
-impl Tcp {
-    pub(super) fn new(host: &str, port: u16, config: &ClientConfig) -> Self {
-        Self {
-            host: host.to_owned(),
-            port,
-            limit: config.connect_timeout_value(),
-            keepalive: config.keepalive_value(),
-        }
-    }
-}
-
-impl Dial for Tcp {
-    type Transport = TcpStream;
-
-    fn address(&self) -> String {
-        format!("{}:{}", self.host, self.port)
-    }
-
-    async fn dial(&mut self) -> Result<TcpStream, ConnectError> {
-        let connecting = async {
-            let stream = TcpStream::connect((self.host.as_str(), self.port)).await?;
-            prepare(&stream, self.keepalive)?;
+/// Connects over TCP.
+pub(super) fn tcp(
+    (host, port): (&str, u16),
+    config: &ClientConfig,
+) -> impl Dial<Transport = TcpStream> + use<> {
+    let target = host.to_owned();
+    let keepalive = config.connection.keepalive;
+    let dial = move || {
+        let target = target.clone();
+        async move {
+            let stream = TcpStream::connect((target, port)).await?;
+            prepare(&stream, keepalive)?;
             Ok(stream)
-        };
-        within(self.limit, connecting, || self.address()).await
-    }
+        }
+    };
+    Dialer::new(dial, (host, port), config)
 }
 
-/// Connects by a function of the user.
-pub(super) struct By<D> {
-    pub(super) dial: D,
-    /// What errors name.
-    pub(super) address: String,
-    pub(super) limit: Duration,
+/// Connects with a function, within the connect timeout.
+pub(super) struct Dialer<D> {
+    dial: D,
+    /// Address for errors and logs.
+    address: String,
+    limit: Duration,
 }
 
-impl<D> By<D> {
+impl<D> Dialer<D> {
     pub(super) fn new(dial: D, (host, port): (&str, u16), config: &ClientConfig) -> Self {
         Self {
             dial,
             address: format!("{host}:{port}"),
-            limit: config.connect_timeout_value(),
+            limit: config.connect_timeout,
         }
     }
 }
 
-impl<D, F, S> Dial for By<D>
+impl<D, F, S> Dial for Dialer<D>
 where
     D: FnMut() -> F + Send + 'static,
     F: Future<Output = io::Result<S>> + Send,
@@ -89,39 +71,31 @@ where
     }
 
     async fn dial(&mut self) -> Result<S, ConnectError> {
-        let dialling = (self.dial)();
-        within(self.limit, dialling, || self.address.clone()).await
+        match timeout(self.limit, (self.dial)()).await {
+            Err(_) => Err(ConnectError::Timeout {
+                address: self.address.clone(),
+            }),
+            Ok(connected) => connected.map_err(|source| ConnectError::Io {
+                address: self.address.clone(),
+                source,
+            }),
+        }
     }
 }
 
-/// One attempt, of which an error names the `address`.
-async fn within<S>(
-    limit: Duration,
-    attempt: impl Future<Output = io::Result<S>>,
-    address: impl Fn() -> String,
-) -> Result<S, ConnectError> {
-    match timeout(limit, attempt).await {
-        Err(_) => Err(ConnectError::Timeout { address: address() }),
-        Ok(connected) => connected.map_err(|source| ConnectError::Io {
-            address: address(),
-            source,
-        }),
-    }
-}
-
-/// How connecting has gone of late.
-pub(super) struct Tries {
-    /// `None` for the first attempt alone.
+/// The state of reconnecting: past attempts and the next wait.
+pub(super) struct Reconnect {
+    /// `None` for a single attempt.
     backoff: Option<Backoff>,
-    /// Nothing has been attempted yet: there is nothing to wait for.
+    /// `true` before the first attempt, which needs no wait.
     first: bool,
-    /// Attempts in a row that did not connect.
+    /// Consecutive attempts that did not connect.
     failed: u32,
-    /// Waits since the robot was last heard.
+    /// Waits since the last received frame.
     waits: u32,
 }
 
-impl Tries {
+impl Reconnect {
     pub(super) fn new(backoff: Option<Backoff>) -> Self {
         Self {
             backoff,
@@ -131,13 +105,13 @@ impl Tries {
         }
     }
 
-    /// An attempt has failed.
+    /// Notes a failed attempt.
     pub(super) fn failed(&mut self) {
         self.failed = self.failed.saturating_add(1);
     }
 
-    /// An attempt has connected, and the connection has ended. A robot that was `heard` on it is
-    /// tried at once; one that only accepts and closes is waited for longer and longer.
+    /// Notes the end of a connection. If a frame was `heard` on it, the next attempt follows soon. A robot that accepts
+    /// and closes connections is tried at growing intervals.
     pub(super) fn connected(&mut self, heard: bool) {
         self.first = false;
         self.failed = 0;
@@ -146,7 +120,7 @@ impl Tries {
         }
     }
 
-    /// How long to wait before the next attempt; `None` to give up.
+    /// Returns the wait before the next attempt, or `None` to give up.
     pub(super) fn next(&mut self) -> Option<Duration> {
         if std::mem::take(&mut self.first) {
             return Some(Duration::ZERO);
@@ -165,7 +139,7 @@ impl Tries {
     }
 }
 
-/// A number from 0 to 1 by chance, good enough to keep apps apart.
+/// Returns a random number from 0 to 1, good enough to spread the attempts of many apps.
 fn chance() -> f64 {
     use std::hash::{BuildHasher, RandomState};
     let bits = RandomState::new().hash_one(0_u8) >> 32;

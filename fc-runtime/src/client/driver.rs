@@ -1,39 +1,41 @@
-//! The one task of a connection: it reads the socket, and writes to it what callers do not write themselves.
+//! The task of a connection: it reads the socket, and writes everything that callers do not write themselves.
 //!
-//! Each time it is woken it reads all there is, deals with it under one lock, takes what callers
-//! have written meanwhile and sends it with one write.
+//! When it wakes, it reads everything, handles it under one lock, takes the requests of callers and sends them with one
+//! write.
 
-use super::arrivals::{Arrival, Fault, Readers, arrive};
-use super::connecting::{Dial, Tries};
-use super::diary::Diary;
+use super::arrivals::{Arrival, ArrivalError, ReportChecks, arrive};
+use super::connecting::{Dial, Reconnect};
+use super::connection_log::ConnectionLog;
 use super::error::CallError;
-use super::life::ConnectionState;
 use super::loss::Loss;
 use super::socket::Shared;
 use super::state::{Inner, Progress};
+use super::state_watch::ConnectionState;
 use crate::clock;
 use crate::digest::Sum;
 use crate::frame::{Decoder, FrameError};
 use crate::link::{CLOSING, Transport};
-use crate::progress::Progress as Arriving;
-use crate::protocol::{Header, Protocol};
+use crate::progress::FrameProgress;
+use crate::protocol::Protocol;
 use crate::session::{Due, after};
-use std::pin::{Pin, pin};
+use crate::sync::{Alarm, register};
+use crate::wire::Header;
+use std::pin::pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Waker};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tokio::task::yield_now;
-use tokio::time::{Sleep, sleep, timeout};
+use tokio::time::{sleep, timeout};
 
-/// From this much on, in bytes, requests are sent without waiting for more of them.
+/// Amount of requests that is sent without waiting for more, in bytes.
 const GATHER_UP_TO: usize = 32 * 1024;
-/// How much may arrive before it is dealt with and others have their turn, in bytes.
+/// Amount that may be received before other tasks run, in bytes.
 const TURN: usize = 256 * 1024;
-/// What the work on a frame counts beside its bytes.
+/// Work per frame in addition to its bytes.
 const FRAME: usize = 1024;
 
-/// Drives a connection until it is closed, reconnecting as configured: the one that there is, or else
-/// the first that can be made. There is a driver from now on, also if the task never has a turn.
+/// Drives a connection until it is closed, and reconnects as configured. It starts with `stream`, or connects first.
+/// The driver exists from the call on, even if the task is never polled.
 pub(super) fn drive_dialled<P: Protocol, D: Dial>(
     inner: Arc<Inner<P>>,
     stream: Option<D::Transport>,
@@ -41,15 +43,15 @@ pub(super) fn drive_dialled<P: Protocol, D: Dial>(
 ) -> impl Future<Output = ()> {
     let mut driver = Driver::new(inner, dial.address());
     async move {
-        let mut tries = Tries::new(driver.inner.config.backoff());
+        let mut reconnect = Reconnect::new(driver.inner.config.reconnect);
         let mut stream = match stream {
-            None => driver.connect(&mut tries, &mut dial).await,
+            None => driver.connect(&mut reconnect, &mut dial).await,
             there => there,
         };
         while let Some(connected) = stream.take() {
-            let heard = driver.run(connected).await.heard;
-            tries.connected(heard);
-            stream = driver.connect(&mut tries, &mut dial).await;
+            let heard = driver.run(connected).await;
+            reconnect.connected(heard);
+            stream = driver.connect(&mut reconnect, &mut dial).await;
         }
     }
 }
@@ -65,21 +67,15 @@ pub(super) fn drive<P: Protocol, S: Transport>(
     }
 }
 
-/// How a turn of the connection has ended.
+/// The end of a turn of the connection.
 enum Turn {
-    /// As much has arrived as may be dealt with at once.
+    /// The turn has used up its bytes.
     Spent,
-    /// And the connection with it.
+    /// The connection has ended.
     Over(Loss),
 }
 
-/// What a connection that has ended was like.
-struct Ended {
-    /// It gave at least one frame.
-    heard: bool,
-}
-
-/// One connection's bytes.
+/// The socket and decoder of a connection.
 struct Link<S, P: Protocol> {
     socket: Shared<S>,
     decoder: Decoder<P>,
@@ -88,73 +84,70 @@ struct Link<S, P: Protocol> {
 struct Driver<P: Protocol> {
     inner: Arc<Inner<P>>,
     arrivals: Vec<Arrival>,
-    readers: Readers,
-    /// Received and not yet counted.
+    report_checks: ReportChecks,
+    /// Received bytes that are not counted yet.
     bytes_in: u64,
     wakers: Vec<Waker>,
     spare: Vec<u8>,
-    /// Callers have had their turn before what is to be sent next.
+    /// `true` if other callers have had a chance to add requests to the next write.
     gathered: bool,
-    /// The frame that is arriving.
-    arriving: Arriving,
-    /// Since when the robot has taken nothing of what is to be sent.
+    /// Progress of the arriving frame.
+    arriving: FrameProgress,
+    /// Time since which the robot has read nothing.
     unread_since: Option<Instant>,
-    /// Why the connection has ended, as soon as it is known.
+    /// Reason for the end of the connection, once known.
     why: Loss,
-    diary: Diary,
-    timer: Pin<Box<Sleep>>,
-    /// What the timer is set to.
-    armed: Option<Instant>,
+    log: ConnectionLog,
+    alarm: Alarm,
 }
 
 impl<P: Protocol> Driver<P> {
     fn new(inner: Arc<Inner<P>>, address: String) -> Self {
         Self {
-            diary: Diary::new::<P>(address, "command"),
-            arriving: Arriving::new(inner.config.stall_timeout_value()),
+            log: ConnectionLog::new::<P>(address, "command"),
+            arriving: FrameProgress::new(inner.config.connection.stall_timeout),
             unread_since: None,
             why: Loss::NotYet,
             inner,
             arrivals: Vec::new(),
-            readers: Readers::of::<P>(),
+            report_checks: ReportChecks::of::<P>(),
             bytes_in: 0,
             wakers: Vec::new(),
             spare: Vec::new(),
             gathered: false,
-            timer: Box::pin(sleep(Duration::ZERO)),
-            armed: None,
+            alarm: Alarm::new(),
         }
     }
 
-    /// Serves one connection until it ends or is closed.
-    async fn run<S: Transport>(&mut self, stream: S) -> Ended {
+    /// Serves one connection until it ends or is closed. Returns `true` if at least one frame was received.
+    async fn run<S: Transport>(&mut self, stream: S) -> bool {
         let mut link = Link {
             socket: Shared::new(stream),
             decoder: self.inner.config.decoder::<P>(),
         };
         let mut heard = false;
-        self.arriving.whole();
+        self.arriving.complete();
         self.unread_since = None;
-        // Should the task end before the connection does.
+        // The reason if the task ends before the connection.
         self.why = Loss::Ended;
         self.up(&link.socket);
-        self.diary
-            .connected(self.inner.lock().life.now().connects());
+        self.log
+            .connected(self.inner.lock().connection.now().connects());
         self.why = loop {
             let turn = std::future::poll_fn(|cx| self.poll(cx, &mut link, &mut heard));
             match turn.await {
                 Turn::Over(why) => break why,
-                // There may be more; first it is the others' turn.
+                // More data may be available, but other tasks run first.
                 Turn::Spent => yield_now().await,
             }
         };
-        self.diary.ended(self.why);
-        if self.inner.lock().life.now().is_closed() {
+        self.log.ended(self.why);
+        if self.inner.lock().connection.now().is_closed() {
             let out = std::mem::take(&mut self.inner.lock().out);
-            // A peer that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the peer may neither read nor stop sending.
             let _ = timeout(CLOSING, link.socket.goodbye(out)).await;
         }
-        Ended { heard }
+        heard
     }
 
     /// Ready at the end of a turn.
@@ -178,7 +171,7 @@ impl<P: Protocol> Driver<P> {
                 Poll::Pending => break self.stalled(link, now),
                 Poll::Ready(Ok(n)) if n > 0 => {
                     self.bytes_in += n as u64;
-                    self.arriving.came(now);
+                    self.arriving.received(now);
                 }
                 Poll::Ready(Ok(_)) => {
                     break Some(match link.decoder.finish() {
@@ -193,7 +186,7 @@ impl<P: Protocol> Driver<P> {
         if ended.is_none() && self.gather(cx, link) {
             return Poll::Pending;
         }
-        let (closed, due) = self.tend(cx, now);
+        let (closed, due) = self.update_state(cx, now);
         if closed {
             return Poll::Ready(Turn::Over(Loss::Here));
         }
@@ -211,14 +204,16 @@ impl<P: Protocol> Driver<P> {
             return Poll::Ready(Turn::Over(Loss::Unread));
         }
         let stalls = self.arriving.deadline(link.decoder.pending(), now);
-        self.arm(cx, [due, unread, stalls].into_iter().flatten().min());
+        if let Some(due) = [due, unread, stalls].into_iter().flatten().min() {
+            self.alarm.set(cx, due);
+        }
         if turn == 0 {
             return Poll::Ready(Turn::Spent);
         }
         Poll::Pending
     }
 
-    /// Whether the frame that is arriving has stalled, now that nothing more of it is there.
+    /// Returns the loss if the arriving frame has stalled. All available bytes have been read.
     fn stalled<S>(&mut self, link: &Link<S, P>, now: Instant) -> Option<Loss> {
         let received = link.decoder.pending();
         let deadline = self.arriving.deadline(received, now)?;
@@ -228,8 +223,8 @@ impl<P: Protocol> Driver<P> {
         })
     }
 
-    /// When the robot has read nothing for too long, if something is left for it to read: `unwritten`
-    /// bytes of `before`.
+    /// Returns the time at which the robot has read nothing for too long, or `None` if it has nothing to read. `before`
+    /// bytes were unwritten before the last write, `unwritten` bytes are now.
     fn unread(&mut self, before: usize, unwritten: usize, now: Instant) -> Option<Instant> {
         if unwritten == 0 {
             self.unread_since = None;
@@ -239,11 +234,10 @@ impl<P: Protocol> Driver<P> {
             self.unread_since = None;
         }
         let since = *self.unread_since.get_or_insert(now);
-        Some(after(since, self.inner.config.stall_timeout_value()))
+        Some(after(since, self.inner.config.connection.stall_timeout))
     }
 
-    /// Whether to let other callers have their turn before what the first has written is sent: their
-    /// requests then go out with the same write. Costs a lone caller nothing.
+    /// Returns `true` to let other callers add requests before the next write. This costs nothing with a single caller.
     fn gather<S: Transport>(&mut self, cx: &mut Context<'_>, link: &Link<S, P>) -> bool {
         let waits = !self.gathered && self.arrivals.is_empty() && link.socket.unwritten() == 0 && {
             let state = self.inner.lock();
@@ -256,30 +250,30 @@ impl<P: Protocol> Driver<P> {
         waits
     }
 
-    /// Takes whole frames out of the decoder, as many as the turn allows.
+    /// Takes complete frames out of the decoder, as many as the turn allows.
     fn decode<S>(&mut self, link: &mut Link<S, P>, turn: &mut usize) -> Result<(), FrameError> {
         while *turn > 0 {
             match link.decoder.next() {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
-                    self.arriving.whole();
+                    self.arriving.complete();
                     *turn = turn.saturating_sub(FRAME + frame.body().len());
                     let allowance = self.inner.limits.json();
                     self.arrivals.push(Arrival::of(
                         frame,
                         &mut self.spare,
-                        &self.readers,
+                        &self.report_checks,
                         allowance,
                     ));
                 }
                 Err(error) => {
-                    self.arriving.whole();
+                    self.arriving.complete();
                     *turn = turn.saturating_sub(FRAME);
                     let Some(id) = error.frame() else {
                         self.inner.lock().counters.bad_frames += 1;
                         return Err(error);
                     };
-                    let body = Err(Fault::Frame(error));
+                    let body = Err(ArrivalError::Frame(error));
                     self.arrivals.push(Arrival {
                         id,
                         digest: Sum::default(),
@@ -291,9 +285,9 @@ impl<P: Protocol> Driver<P> {
         Ok(())
     }
 
-    /// What happens under the lock: arrivals and deadlines. Says whether the connection has been closed,
-    /// and when the next call is due.
-    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
+    /// Handles arrivals and deadlines under the lock. Returns `true` if the connection is closed, and the deadline of
+    /// the next call.
+    fn update_state(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         state.counters.bytes_in += std::mem::take(&mut self.bytes_in);
@@ -303,11 +297,8 @@ impl<P: Protocol> Driver<P> {
         while let Some(due) = state.session.due(now) {
             if let Due::Expired(_, slot) = due {
                 state.counters.timeouts += 1;
-                let unsent = state
-                    .slots
-                    .get(slot)
-                    .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
-                let error = match (state.life.now(), unsent) {
+                let unsent = state.slots.is_unsent(slot);
+                let error = match (state.connection.now(), unsent) {
                     (ConnectionState::Connected { .. }, _) => CallError::Timeout,
                     (ConnectionState::Connecting { why, .. }, true) => CallError::NotConnected(why),
                     (ConnectionState::Closed { why, .. }, true) => CallError::Closed(why),
@@ -323,19 +314,14 @@ impl<P: Protocol> Driver<P> {
         if self.spare.capacity() == 0 {
             self.spare = std::mem::take(&mut state.spare);
         }
-        // Whatever is due earlier needs the driver to set its timer.
-        self.armed = self.armed.filter(|at| *at > now);
-        state.armed = self.armed;
+        // A caller with an earlier deadline wakes the driver to set its alarm.
+        self.alarm.forget_past(now);
+        state.alarm = self.alarm.at();
         state.tell();
-        let closed = state.life.now().is_closed();
+        let closed = state.connection.now().is_closed();
         let due = state.session.next_due();
-        if !closed
-            && !state
-                .driver
-                .as_ref()
-                .is_some_and(|waker| waker.will_wake(cx.waker()))
-        {
-            state.driver = Some(cx.waker().clone());
+        if !closed {
+            register(&mut state.driver, cx);
         }
         drop(guard);
         for waker in self.wakers.drain(..) {
@@ -344,29 +330,15 @@ impl<P: Protocol> Driver<P> {
         (closed, due)
     }
 
-    /// Sets the timer to `due`, unless it is set to something earlier: then there is time when that comes.
-    fn arm(&mut self, cx: &mut Context<'_>, due: Option<Instant>) {
-        let Some(due) = due else { return };
-        if self.armed.is_none_or(|at| due < at) {
-            self.timer.as_mut().reset(due.into());
-            self.armed = Some(due);
-        }
-        if self.timer.as_mut().poll(cx).is_ready() {
-            // Due while we were at it: come back at once.
-            self.armed = None;
-            cx.waker().wake_by_ref();
-        }
-    }
-
     fn up<S: Transport>(&self, socket: &Shared<S>) {
         let mut state = self.inner.lock();
         state.socket = Some(socket.for_callers());
-        // The first connection may have been there, and counted, before its driver.
-        if !state.life.now().is_connected() {
-            state.life.connected();
+        // The first connection may have been counted before the driver was created.
+        if !state.connection.now().is_connected() {
+            state.connection.connected();
         }
         state.session.reconnected();
-        state.beats.begin();
+        state.report_watchdog.restart();
         let mut wakers: Vec<_> = state
             .slots
             .iter_mut()
@@ -383,16 +355,16 @@ impl<P: Protocol> Driver<P> {
         let mut guard = self.inner.lock();
         let state = &mut *guard;
         if for_good {
-            state.life.close(self.why);
+            state.connection.close(self.why);
         } else {
-            if state.life.now().is_connected() {
+            if state.connection.now().is_connected() {
                 state.reports.lost(self.why, &mut self.wakers);
             }
-            state.life.lost(self.why);
+            state.connection.lost(self.why);
         }
         state.tell();
-        let over = state.life.now().is_closed();
-        let why = state.life.now().why().unwrap_or(self.why);
+        let over = state.connection.now().is_closed();
+        let why = state.connection.now().why().unwrap_or(self.why);
         state.out.clear();
         state.socket = None;
         let slots = &mut state.slots;
@@ -406,11 +378,7 @@ impl<P: Protocol> Driver<P> {
             over || !slot.progress.is_to_send()
         });
         for (_, slot) in ended {
-            let unsent = state
-                .slots
-                .get(slot)
-                .is_some_and(|slot| matches!(slot.progress, Progress::Unsent));
-            let error = if unsent {
+            let error = if state.slots.is_unsent(slot) {
                 CallError::Closed(why)
             } else {
                 CallError::Lost(why)
@@ -426,11 +394,15 @@ impl<P: Protocol> Driver<P> {
         }
     }
 
-    /// A new connection, or `None` once there will be none.
-    async fn connect<D: Dial>(&mut self, tries: &mut Tries, dial: &mut D) -> Option<D::Transport> {
+    /// Returns a new connection, or `None` if there will be none.
+    async fn connect<D: Dial>(
+        &mut self,
+        reconnect: &mut Reconnect,
+        dial: &mut D,
+    ) -> Option<D::Transport> {
         loop {
-            let Some(wait) = tries.next() else {
-                self.diary.given_up(self.why);
+            let Some(wait) = reconnect.next() else {
+                self.log.given_up(self.why);
                 return None;
             };
             self.down(false);
@@ -441,26 +413,28 @@ impl<P: Protocol> Driver<P> {
             };
             let mut attempt = pin!(attempt);
             let connected = std::future::poll_fn(|cx| {
-                let (closed, due) = self.tend(cx, clock::now());
+                let (closed, due) = self.update_state(cx, clock::now());
                 if closed {
                     return Poll::Ready(None);
                 }
-                self.arm(cx, due);
+                if let Some(due) = due {
+                    self.alarm.set(cx, due);
+                }
                 attempt.as_mut().poll(cx).map(Some)
             });
             match connected.await? {
                 Ok(stream) => return Some(stream),
                 Err(error) => {
                     self.why = Loss::from(&error);
-                    tries.failed();
-                    self.diary.not_connected(self.why);
+                    reconnect.failed();
+                    self.log.not_connected(self.why);
                 }
             }
         }
     }
 }
 
-/// However it ends, even with the runtime, no call waits for ever.
+/// Ends all calls, even if the runtime ends.
 impl<P: Protocol> Drop for Driver<P> {
     fn drop(&mut self) {
         if self.why == Loss::NotYet {

@@ -1,25 +1,25 @@
-//! What can go wrong with connecting and with calls.
+//! Errors of connecting and of calls.
 
 use super::loss::Loss;
 use crate::frame::FrameError;
 use crate::json::BodyError;
-use crate::protocol::Command;
-use crate::raw::Refusal;
+use crate::operation::Command;
+use crate::refusal::Refusal;
 use crate::session::Busy;
 use std::io;
 
-/// Why a connection could not be made.
+/// A connection could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ConnectError {
-    /// The network says no.
+    /// The network refused the connection.
     #[error("cannot connect to {address}: {source}")]
     Io {
         /// Host and port.
         address: String,
-        /// The network's reason.
+        /// Error of the network.
         source: io::Error,
     },
-    /// No connection in time.
+    /// Connecting took too long.
     #[error(
         "no connection to {address} in time; is the robot switched on and in the same network?"
     )]
@@ -30,7 +30,7 @@ pub enum ConnectError {
 }
 
 impl ConnectError {
-    /// The error's fixed name.
+    /// Returns the fixed name of the error.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -40,7 +40,7 @@ impl ConnectError {
     }
 }
 
-/// Why there is no connection, when it could not be made.
+/// Converts the error into the reason why there is no connection.
 impl From<&ConnectError> for Loss {
     fn from(error: &ConnectError) -> Self {
         match error {
@@ -50,43 +50,41 @@ impl From<&ConnectError> for Loss {
     }
 }
 
-/// Why a call has no typed response.
+/// A call has no typed response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CallError {
-    /// The peer has answered, with another result than success.
+    /// The peer responded with a result other than success.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// No answer in time over a connection that is still there. Whether the peer has acted is not
-    /// known.
+    /// No response in time, but the connection is still there. The peer may have acted.
     #[error("no response in time")]
     Timeout,
-    /// No connection in time; the call has not been sent.
+    /// No connection in time. The call has not been sent.
     #[error("not sent, for there was no connection in time: {0}")]
     NotConnected(#[source] Loss),
-    /// The connection is closed for good; the call has not been sent.
+    /// The connection is closed. The call has not been sent.
     #[error("not sent, for the connection is closed: {0}; connect again")]
     Closed(#[source] Loss),
-    /// The connection was lost while the call was on its way. Whether the peer has acted is not
-    /// known.
+    /// The connection was lost while the call was in flight. The peer may have acted.
     #[error("the connection was lost before the response arrived: {0}; query the peer's state")]
     Lost(#[source] Loss),
-    /// Too many calls are in flight; the call has not been sent.
+    /// Too many calls are in flight. The call has not been sent.
     #[error(transparent)]
     Busy(#[from] Busy),
-    /// The request breaks one of its own constraints; it has not been sent.
+    /// The request violates a constraint. It has not been sent.
     #[error("the request is invalid: {0}")]
     Invalid(#[source] BodyError),
-    /// The peer has answered something else than such a response.
+    /// The peer's response is not a valid response of the command.
     #[error("the response is invalid: {0}")]
     Response(#[source] BodyError),
-    /// The request does not fit into a frame, or the answer came in a broken one.
+    /// The request does not fit into a frame, or the frame of the response could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
 }
 
 impl CallError {
-    /// The error's fixed name; for [`Invalid`](Self::Invalid), [`Response`](Self::Response) and
-    /// [`Frame`](Self::Frame) the cause has one of its own, and so has a [`Loss`].
+    /// Returns the fixed name of the error. The causes of [`Invalid`](Self::Invalid), [`Response`](Self::Response) and
+    /// [`Frame`](Self::Frame), and a [`Loss`], have their own names.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -102,8 +100,7 @@ impl CallError {
         }
     }
 
-    /// Which of the errors that the command declares the peer has answered with; `None` for any other result,
-    /// and if there was no answer.
+    /// Returns the declared error with which the peer responded, or `None` for any other result and without a response.
     #[must_use]
     pub fn declared<C: Command>(&self) -> Option<C::Error> {
         match self {
@@ -112,7 +109,7 @@ impl CallError {
         }
     }
 
-    /// Why there was no connection (any more), if that is what ended the call.
+    /// Returns the reason why there was no connection, if that ended the call.
     #[must_use]
     pub fn loss(&self) -> Option<Loss> {
         match *self {

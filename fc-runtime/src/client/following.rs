@@ -1,11 +1,12 @@
-//! What a command has set off, followed to its end: the answer, and then a typed stream of reports.
+//! Following the reports that a command sets off to their end.
 
 use super::loss::Loss;
-use super::queues::Event;
-use super::state::Handle;
+use super::queues::{Event, Queue};
+use super::reports::Receiver;
 use crate::clock;
 use crate::json::BodyError;
-use crate::protocol::{Protocol, Report, SetsOff, State};
+use crate::operation::{Report, SetsOff, State};
+use crate::protocol::Protocol;
 use futures_core::{FusedStream, Stream};
 use std::fmt;
 use std::marker::PhantomData;
@@ -30,7 +31,7 @@ pub enum Followed<R> {
 }
 
 impl<R> Followed<R> {
-    /// The report, if it is one.
+    /// Returns the report, or `None` for other events.
     #[must_use]
     pub fn report(&self) -> Option<&R> {
         match self {
@@ -39,7 +40,7 @@ impl<R> Followed<R> {
         }
     }
 
-    /// The report, if it is one.
+    /// Returns the report, or `None` for other events.
     #[must_use]
     pub fn into_report(self) -> Option<R> {
         match self {
@@ -48,28 +49,29 @@ impl<R> Followed<R> {
         }
     }
 
-    /// Whether it says that the process is over, well or not: nothing comes after it.
+    /// Returns `true` for the last event of the stream: the process has ended or failed.
     #[must_use]
     pub fn is_over(&self) -> bool {
         matches!(self, Self::Ended(_) | Self::Failed(_))
     }
 }
 
-/// Why a process can be followed no further, although it may go on.
+/// The reason why a process cannot be followed any further. The process may go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FollowError {
-    /// The connection is closed for good.
+    /// The connection is closed.
     #[error("the connection is closed: {0}; the process may go on")]
     Closed(#[source] Loss),
-    /// A report does not read as its type says. Only a connection to a protocol of other types has such
-    /// reports, for they are read before they are acknowledged.
+    /// The report cannot be read as its type. Only connections of another protocol's types have such reports, because
+    /// reports are checked before they are acknowledged.
     #[error("the report is invalid: {0}")]
     Invalid(#[source] BodyError),
 }
 
 impl FollowError {
-    /// The error's fixed name; for [`Invalid`](Self::Invalid) the cause has one of its own, and so has a [`Loss`].
+    /// Returns the fixed name of the error. The cause of [`Invalid`](Self::Invalid) and a [`Loss`] have their own
+    /// names.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -79,86 +81,32 @@ impl FollowError {
     }
 }
 
-/// A queue for the reports of one code. It ends when this is dropped.
-pub(super) struct Subscription<P: Protocol> {
-    handle: Handle<P>,
-    id: u64,
-}
-
-impl<P: Protocol> Subscription<P> {
-    pub(super) fn new(handle: Handle<P>, code: u16) -> Self {
-        let id = handle.lock().reports.enter(Some(code));
-        Self { handle, id }
-    }
-
-    /// What comes next, or why nothing will.
-    fn poll_next(&self, cx: &mut Context<'_>) -> Poll<Result<Event, Loss>> {
-        let mut state = self.handle.lock();
-        let now = state.life.now();
-        let Some(queue) = state.reports.of(self.id) else {
-            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
-        };
-        if let Some(event) = queue.next() {
-            return Poll::Ready(Ok(event));
-        }
-        if now.is_closed() {
-            return Poll::Ready(Err(now.why().unwrap_or(Loss::Ended)));
-        }
-        match &mut queue.waker {
-            Some(waker) => waker.clone_from(cx.waker()),
-            none => *none = Some(cx.waker().clone()),
-        }
-        Poll::Pending
-    }
-
-    /// Counts a report that came out of order, and logs it.
-    fn out_of_order<R: Report>(&self) {
-        let line = {
-            let mut state = self.handle.lock();
-            state.counters.reports_out_of_order += 1;
-            state.lines.out_of_order.line(clock::now())
-        };
-        if let Some(held) = line {
-            let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
-            tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
-        }
-    }
-}
-
-impl<P: Protocol> Drop for Subscription<P> {
-    fn drop(&mut self) {
-        self.handle.lock().reports.leave(self.id);
-    }
-}
-
-/// A command that has been answered, and the reports `R` that it sets off, as a stream.
+/// An answered command and the reports `R` that it sets off, as a stream.
 ///
-/// The stream ends after [`Followed::Ended`], [`Followed::Failed`] or a [`FollowError`]. Where the protocol
-/// says neither which state is the last nor which are failures, it goes on until it is dropped or the
-/// connection is closed; how long to wait for a report is for the caller to say, such as with
-/// `tokio::time::timeout`.
+/// The stream ends after [`Followed::Ended`], [`Followed::Failed`] or a [`FollowError`]. If the protocol specifies
+/// neither final states nor failures, it continues until it is dropped or the connection is closed. Limit the wait for
+/// a report yourself, for example with `tokio::time::timeout`.
 ///
-/// It has a queue of its own, as [`RawReports`](super::RawReports) have, for reports of this one code: they are
-/// acknowledged when they are in it, other receivers get them too, and after its end it takes no more. Where
-/// nothing in the messages ties a report to a call, it has every report of that code, also those that others have
-/// set off.
+/// It has its own queue for reports with this code, like [`RawReports`](super::RawReports). Reports are acknowledged
+/// when they are in it, and other receivers get them as well. After its end it takes no more reports. If no fields link
+/// a report to a call, it gets every report with this code, also those of other calls.
 ///
-/// A report whose state does not come after the one before, as the protocol says, is handed on like any
-/// other, counted as `reports_out_of_order` and logged.
+/// A report whose state does not follow the previous one, as the protocol specifies, is delivered like any other. It is
+/// also logged and counted as `reports_out_of_order`.
 pub struct Following<P: Protocol, C: SetsOff<R>, R: Report> {
-    /// Until the end: what comes then, nobody would read here.
-    subscription: Option<Subscription<P>>,
+    /// Set until the end. Reports after it would not be read.
+    receiver: Option<Receiver<P>>,
     request: C,
     answer: C::Response,
-    /// The last state that was reported.
+    /// The last reported state.
     last: Option<R::State>,
     reports: PhantomData<fn() -> R>,
 }
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
-    pub(super) fn new(subscription: Subscription<P>, request: C, answer: C::Response) -> Self {
+    pub(super) fn new(receiver: Receiver<P>, request: C, answer: C::Response) -> Self {
         Self {
-            subscription: Some(subscription),
+            receiver: Some(receiver),
             request,
             answer,
             last: None,
@@ -166,29 +114,29 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
         }
     }
 
-    /// What the robot has answered to the command.
+    /// Returns the robot's response to the command.
     #[must_use]
     pub fn answer(&self) -> &C::Response {
         &self.answer
     }
 
-    /// What comes next; `None` after the end.
+    /// Returns the next event, or `None` after the end.
     ///
     /// Cancellation safe: a report is taken from the queue only when it is returned.
     pub async fn recv(&mut self) -> Option<Result<Followed<R>, FollowError>> {
         std::future::poll_fn(|cx| self.poll_recv(cx)).await
     }
 
-    /// Polls for what comes next.
+    /// Polls for the next event.
     pub fn poll_recv(
         &mut self,
         cx: &mut Context<'_>,
     ) -> Poll<Option<Result<Followed<R>, FollowError>>> {
-        let Some(subscription) = &self.subscription else {
+        let Some(receiver) = &self.receiver else {
             return Poll::Ready(None);
         };
         let next = loop {
-            match ready!(subscription.poll_next(cx)) {
+            match ready!(receiver.poll_next(cx, Queue::next)) {
                 Err(why) => break Err(FollowError::Closed(why)),
                 Ok(Event::Missed(missed)) => break Ok(Followed::Missed(missed)),
                 Ok(Event::Lost(why)) => break Ok(Followed::Interrupted(why)),
@@ -201,9 +149,9 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
                         if let (Some(last), Some(state)) = (&self.last, &state)
                             && !state.is_in_order(last)
                         {
-                            subscription.out_of_order::<R>();
+                            note_out_of_order::<P, R>(receiver);
                         }
-                        let next = place(report, state.as_ref());
+                        let next = classify(report, state.as_ref());
                         self.last = state.or(self.last.take());
                         break Ok(next);
                     }
@@ -211,14 +159,27 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Following<P, C, R> {
             }
         };
         if next.as_ref().map_or(true, Followed::is_over) {
-            self.subscription = None;
+            self.receiver = None;
         }
         Poll::Ready(Some(next))
     }
 }
 
-/// What a report means for the process.
-fn place<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
+/// Counts and logs a report that came out of order.
+fn note_out_of_order<P: Protocol, R: Report>(receiver: &Receiver<P>) {
+    let line = {
+        let mut state = receiver.handle.lock();
+        state.counters.reports_out_of_order += 1;
+        state.limiters.out_of_order.admit(clock::now())
+    };
+    if let Some(held) = line {
+        let (protocol, name, held) = (P::NAME, R::NAME, held.shown());
+        tracing::info!(protocol, name, code = R::CODE, held, "report out of order");
+    }
+}
+
+/// Returns the event for a report.
+fn classify<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
     if report.is_failure() {
         Followed::Failed(report)
     } else if state.is_some_and(State::is_end) {
@@ -228,7 +189,7 @@ fn place<R: Report>(report: R, state: Option<&R::State>) -> Followed<R> {
     }
 }
 
-// Nothing in it is pinned.
+// No field is pinned.
 impl<P: Protocol, C: SetsOff<R>, R: Report> Unpin for Following<P, C, R> {}
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> Stream for Following<P, C, R> {
@@ -241,7 +202,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> Stream for Following<P, C, R> {
 
 impl<P: Protocol, C: SetsOff<R>, R: Report> FusedStream for Following<P, C, R> {
     fn is_terminated(&self) -> bool {
-        self.subscription.is_none()
+        self.receiver.is_none()
     }
 }
 
@@ -250,7 +211,7 @@ impl<P: Protocol, C: SetsOff<R>, R: Report> fmt::Debug for Following<P, C, R> {
         f.debug_struct("Following")
             .field("command", &C::NAME)
             .field("report", &R::NAME)
-            .field("is_over", &self.subscription.is_none())
+            .field("is_over", &self.receiver.is_none())
             .finish_non_exhaustive()
     }
 }

@@ -1,21 +1,20 @@
-//! Why there is no connection.
+//! The reason why there is no connection.
 
 use crate::frame::FrameError;
 use std::io;
 
-/// Why a connection was lost, or why there is none.
+/// The reason why a connection was lost, or why there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Loss {
-    /// There has been no connection yet, and the first attempt to make one is not over.
+    /// The first attempt to connect has not finished yet.
     #[error("the first connection is still being made")]
     NotYet,
-    /// The robot has closed the connection after it had sent something.
+    /// The robot closed the connection after it had sent something.
     #[error("the robot has closed the connection")]
     Closed,
-    /// The robot has closed the connection, and not one frame had come over it. A robot with too
-    /// many connections does so, and one that fails at the first request; the protocol has nothing
-    /// by which to tell them apart.
+    /// The robot closed the connection before any frame was received. A robot does so if it has too many connections,
+    /// or if it fails at the first request. The protocol cannot distinguish these cases.
     #[error(
         "the robot has closed the connection before it sent anything; it may have too many \
          connections, or fail at the request"
@@ -24,32 +23,30 @@ pub enum Loss {
     /// The connection broke.
     #[error("the connection broke: {0}")]
     Broken(io::ErrorKind),
-    /// What the robot sent cannot be told into frames: a wrong head, an impossible length, or an end
-    /// inside a frame.
+    /// The robot's bytes are not frames: a wrong head, an impossible length, or an end inside a frame.
     #[error("the robot's bytes are no frames: {0}")]
     Frame(FrameError),
-    /// A frame began and did not go on, or came slower than it may; see
-    /// [`ClientConfig::stall_timeout`](super::ClientConfig::stall_timeout).
+    /// A frame stalled, or arrived too slowly; see [`ClientConfig::stall_timeout`](super::ClientConfig::stall_timeout).
     #[error("a frame stalled: {received} bytes have come of {total}; is its length right?")]
     Stalled {
-        /// How much of the frame has come, header included, in bytes.
+        /// Received bytes of the frame, header included.
         received: usize,
-        /// How long it claims to be, in bytes; the length of a header while that has not come.
+        /// Announced length of the frame in bytes, or the length of a header if it is unknown.
         total: usize,
     },
-    /// The robot did not read what was sent to it within the stall timeout.
+    /// The robot did not read within the stall timeout.
     #[error("the robot does not read")]
     Unread,
-    /// The network says no to a new connection.
+    /// The network refused a new connection.
     #[error("cannot connect: {0}")]
     Unreachable(io::ErrorKind),
-    /// A new connection was not made within the connect timeout.
+    /// Connecting took longer than the connect timeout.
     #[error("cannot connect in time")]
     ConnectTimeout,
-    /// The command connection was made again, and the data connection, which belongs to it, is as well.
+    /// The command connection was made again, and its data connection with it.
     #[error("the command connection was made again, and the data connection with it")]
     Renewed,
-    /// This side has closed the connection.
+    /// This side closed the connection.
     #[error("the connection was closed by this side")]
     Here,
     /// The tokio runtime, or the task of the connection, has ended.
@@ -58,7 +55,7 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// The reason's fixed name; for [`Frame`](Self::Frame) that of the error.
+    /// Returns the fixed name of the reason; for [`Frame`](Self::Frame), the name of the error.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -77,11 +74,11 @@ impl Loss {
         }
     }
 
-    /// What an error of the socket means on a connection over which the robot was `heard`, or not.
+    /// Returns the loss for an error of the socket. `heard` is `true` if a frame was received.
     pub(super) fn broken(error: &io::Error, heard: bool) -> Self {
         use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset};
         match error.kind() {
-            // A socket that is closed while a request lies unread in it is reset.
+            // A socket is reset if it is closed while a request is unread.
             BrokenPipe | ConnectionAborted | ConnectionReset if !heard => Self::Unheard,
             kind => Self::Broken(kind),
         }

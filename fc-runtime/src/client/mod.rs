@@ -1,9 +1,8 @@
-//! The tokio client: an app's connection to a robot.
+//! The tokio client: a connection of an app to a robot.
 //!
-//! A connection is one task that owns the socket and a state behind a short lock. Callers write
-//! their requests into the shared buffer themselves; the task sends all that has gathered with one
-//! write, and wakes the callers whose answers have come. No call has a task, a channel or a timer of
-//! its own.
+//! A connection is one task with the socket, and a state behind a lock that is held briefly. Callers write their
+//! requests into the shared buffer. The task sends all gathered requests with one write, and wakes the callers whose
+//! responses have arrived. A call has no task, channel or timer.
 //!
 //! ```no_run
 //! use fc_runtime::{ClientConfig, Command, Connection, Protocol};
@@ -16,36 +15,37 @@
 //! ```
 
 mod arrivals;
-mod beats;
 mod call;
 mod config;
 mod connecting;
+mod connection_log;
 mod data;
-mod diary;
 mod driver;
 mod error;
 mod following;
-mod life;
 mod loss;
 mod queues;
+mod report_watchdog;
 mod reports;
 mod socket;
 mod state;
+mod state_watch;
 
 pub use call::{Call, CallOptions};
 pub use config::{Backoff, ClientConfig};
 pub use data::{DataConnection, DataError, StreamItem, Subscription};
 pub use error::{CallError, ConnectError};
 pub use following::{FollowError, Followed, Following};
-pub use life::{ConnectionState, ConnectionStates};
 pub use loss::Loss;
 pub use reports::RawReports;
 pub use state::ClientCounters;
+pub use state_watch::{ConnectionState, ConnectionStates};
 
 use crate::link::Transport;
-use crate::protocol::{Command, Protocol};
+use crate::operation::Command;
+use crate::protocol::Protocol;
 use crate::raw::RawResponse;
-use connecting::{By, Dial, Tcp};
+use connecting::{Dial, Dialer, tcp};
 use state::{Handle, Inner};
 use std::fmt;
 use std::io;
@@ -53,13 +53,12 @@ use std::sync::Arc;
 
 /// A connection to a robot's command port.
 ///
-/// Clones are handles of the same connection. It is closed when the last of them, and the last
-/// [`RawReports`] and [`Following`], is dropped.
+/// Clones are handles of the same connection. It is closed when the last handle, [`RawReports`] and [`Following`] is
+/// dropped.
 ///
-/// After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within their
-/// timeout. Of the calls that were on their way, those with [`Effect::Read`](crate::Effect::Read)
-/// are sent again with the same id; the others end with [`CallError::Lost`], because nobody knows
-/// whether the robot has acted.
+/// After a loss the connection is made again, unless configured otherwise. Calls in the meantime wait within their
+/// timeout. Calls in flight with [`Effect::Read`](crate::Effect::Read) are sent again with the same id. Other calls in
+/// flight end with [`CallError::Lost`], because the robot may have acted.
 pub struct Connection<P: Protocol> {
     handle: Handle<P>,
 }
@@ -69,20 +68,17 @@ impl<P: Protocol> Connection<P> {
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
+    /// [`ConnectError`] if the first attempt fails. Later losses are handled in the background.
     pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-        let (host, port) = config.command_address::<P>();
-        let tcp = Tcp::new(host, port, &config);
-        Self::dialled(tcp, config).await
+        Self::dialled(tcp(config.command_address::<P>(), &config), config).await
     }
 
-    /// Connects over streams that `dial` makes, such as TLS or a tunnel, and reconnects with it
-    /// after a loss, as configured. One attempt may take the connect timeout. Needs a tokio runtime
-    /// with time.
+    /// Connects over streams that `dial` creates, such as TLS or a tunnel. `dial` is called again after a loss, as
+    /// configured. One attempt may take the connect timeout. Needs a tokio runtime with time.
     ///
     /// # Errors
     ///
-    /// [`ConnectError`] if the first attempt fails; later losses are handled in the background.
+    /// [`ConnectError`] if the first attempt fails. Later losses are handled in the background.
     pub async fn connect_by<D, F, S>(dial: D, config: ClientConfig) -> Result<Self, ConnectError>
     where
         D: FnMut() -> F + Send + 'static,
@@ -90,27 +86,25 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         Self::dialled(
-            By::new(dial, config.command_address::<P>(), &config),
+            Dialer::new(dial, config.command_address::<P>(), &config),
             config,
         )
         .await
     }
 
-    /// Connects over TCP in the background, and returns at once: the first connection is waited for
-    /// like another one after a loss, with the same [`Backoff`]. Calls made meanwhile wait within their
-    /// timeout, and their error says why there was no connection. Needs a tokio runtime with I/O and
-    /// time.
+    /// Connects over TCP in the background and returns at once. The first connection is attempted like one after a
+    /// loss, with the same [`Backoff`]. Calls in the meantime wait within their timeout, and their error contains the
+    /// reason. Needs a tokio runtime with I/O and time.
     ///
-    /// The first attempt begins at once. It counts among `Backoff::attempts`, and is the only one where
+    /// The first attempt starts at once and counts for `Backoff::attempts`. It is the only one if
     /// [`ClientConfig::reconnect`] is `None`.
     #[must_use]
     pub fn connect_lazy(config: ClientConfig) -> Self {
-        let (host, port) = config.command_address::<P>();
-        let tcp = Tcp::new(host, port, &config);
-        Self::driven(None, tcp, config)
+        let dial = tcp(config.command_address::<P>(), &config);
+        Self::driven(None, dial, config)
     }
 
-    /// [`connect_lazy`](Self::connect_lazy) over streams that `dial` makes. Needs a tokio runtime with
+    /// Connects like [`connect_lazy`](Self::connect_lazy), over streams that `dial` creates. Needs a tokio runtime with
     /// time.
     #[must_use]
     pub fn connect_lazy_by<D, F, S>(dial: D, config: ClientConfig) -> Self
@@ -121,7 +115,7 @@ impl<P: Protocol> Connection<P> {
     {
         Self::driven(
             None,
-            By::new(dial, config.command_address::<P>(), &config),
+            Dialer::new(dial, config.command_address::<P>(), &config),
             config,
         )
     }
@@ -134,19 +128,19 @@ impl<P: Protocol> Connection<P> {
     fn driven<D: Dial>(stream: Option<D::Transport>, dial: D, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
         if stream.is_some() {
-            inner.lock().life.connected();
+            inner.lock().connection.connected();
         }
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive_dialled(inner, stream, dial));
         connection
     }
 
-    /// A connection over a stream that exists already, such as TLS or a pipe in a test. It is not
-    /// made again after a loss. Needs a tokio runtime with time.
+    /// Creates a connection over an existing stream, such as TLS or a pipe in a test. It is not made again after a
+    /// loss. Needs a tokio runtime with time.
     #[must_use]
     pub fn over<S: Transport>(stream: S, config: ClientConfig) -> Self {
         let inner = Inner::new(config);
-        inner.lock().life.connected();
+        inner.lock().connection.connected();
         let connection = Self::of(&inner);
         tokio::spawn(driver::drive(inner, stream));
         connection
@@ -165,7 +159,7 @@ impl<P: Protocol> Connection<P> {
         self.call_with(request, CallOptions::default())
     }
 
-    /// Calls a command with options of its own.
+    /// Calls a command with these options.
     ///
     /// The future resolves to a [`CallError`] if there is no such response in time.
     pub fn call_with<'a, C: Command>(
@@ -176,23 +170,23 @@ impl<P: Protocol> Connection<P> {
         Call::new(&self.handle, request, options)
     }
 
-    /// Calls `code` with a JSON object of the request's own keys. The envelope is added, unless
-    /// `body` has one. It is not sent again after a loss.
+    /// Calls `code` with a JSON object of the request's keys. The envelope is added, unless `body` contains one. The
+    /// call is not sent again after a loss.
     ///
-    /// The result is not judged: a refusal is a response, too.
+    /// The result is not checked: a refusal is a response as well.
     ///
     /// # Errors
     ///
-    /// Any [`CallError`] but [`CallError::Refused`].
+    /// Any [`CallError`] except [`CallError::Refused`].
     pub async fn call_raw(&self, code: u16, body: &[u8]) -> Result<RawResponse<P>, CallError> {
         call::raw(&self.handle, code, body, CallOptions::default()).await
     }
 
-    /// [`call_raw`](Self::call_raw) with options of its own.
+    /// Calls like [`call_raw`](Self::call_raw), with these options.
     ///
     /// # Errors
     ///
-    /// Any [`CallError`] but [`CallError::Refused`].
+    /// Any [`CallError`] except [`CallError::Refused`].
     pub async fn call_raw_with(
         &self,
         code: u16,
@@ -202,26 +196,25 @@ impl<P: Protocol> Connection<P> {
         call::raw(&self.handle, code, body, options).await
     }
 
-    /// The robot's reports from here on. Each receiver gets all of them, and has a queue of its own.
+    /// Returns a receiver of all reports from now on. Each receiver has its own queue.
     ///
-    /// Reports are acknowledged only when a receiver has them: without one, the robot sends each
-    /// again until it gives up.
+    /// A report is acknowledged only when a receiver has it. Without a receiver, the robot sends each report again
+    /// until it gives up.
     #[must_use]
     pub fn reports(&self) -> RawReports<P> {
         RawReports::new(self.handle.clone())
     }
 
-    /// A connection to the robot's data port, of this command connection and as long as it. Returns at
-    /// once; the connection is made in the background, over TCP. Each call makes another one. Needs a
-    /// tokio runtime with I/O and time.
+    /// Returns a connection to the robot's data port, which ends with this command connection. It is made in the
+    /// background over TCP. Each call creates another one. Needs a tokio runtime with I/O and time.
     #[must_use]
     pub fn data(&self) -> DataConnection<P> {
         let config = &self.handle.config;
-        let (host, port) = config.data_address::<P>();
-        DataConnection::new(self.handle.clone(), Tcp::new(host, port, config))
+        let dial = tcp(config.data_address::<P>(), config);
+        DataConnection::new(self.handle.clone(), dial)
     }
 
-    /// [`data`](Self::data) over streams that `dial` makes, such as TLS or a tunnel. One attempt may
+    /// Connects like [`data`](Self::data), over streams that `dial` creates, such as TLS or a tunnel. One attempt may
     /// take the connect timeout. Needs a tokio runtime with time.
     #[must_use]
     pub fn data_by<D, F, S>(&self, dial: D) -> DataConnection<P>
@@ -231,48 +224,48 @@ impl<P: Protocol> Connection<P> {
         S: Transport,
     {
         let config = &self.handle.config;
-        let by = By::new(dial, config.data_address::<P>(), config);
+        let by = Dialer::new(dial, config.data_address::<P>(), config);
         DataConnection::new(self.handle.clone(), by)
     }
 
-    /// Whether there is a connection at this moment, and why not.
+    /// Returns the state of the connection, with the reason if there is none.
     #[must_use]
     pub fn state(&self) -> ConnectionState {
-        self.handle.lock().life.now()
+        self.handle.lock().connection.now()
     }
 
-    /// The states of the connection: the present one first, and then each that it comes to.
+    /// Returns the states of the connection: the present one, then each new one.
     ///
-    /// An app that asks the robot for its state each time that this says
-    /// [`ConnectionState::Connected`] knows it also after the robot has been restarted.
+    /// An app that queries the robot's state after each [`ConnectionState::Connected`] has the right state even after a
+    /// restart of the robot.
     #[must_use]
     pub fn states(&self) -> ConnectionStates {
-        ConnectionStates::new(self.handle.lock().life.watch())
+        ConnectionStates::new(self.handle.lock().connection.subscribe())
     }
 
-    /// Waits until the connection has ended for good, and says why: it was [closed](Self::close), was
-    /// given up as [`ClientConfig::reconnect`] says, or its runtime has ended.
+    /// Waits until the connection has ended for good, and returns the reason: it was [closed](Self::close), given up as
+    /// configured by [`ClientConfig::reconnect`], or its runtime has ended.
     ///
     /// Cancellation safe.
     pub async fn closed(&self) -> Loss {
-        let states = self.handle.lock().life.watch();
-        life::closed(states).await
+        let states = self.handle.lock().connection.subscribe();
+        state_watch::closed(states).await
     }
 
-    /// How many calls are in flight.
+    /// Returns the number of calls in flight.
     #[must_use]
     pub fn in_flight(&self) -> usize {
         self.handle.lock().session.in_flight()
     }
 
-    /// What the connection has seen so far.
+    /// Returns the counters of the connection.
     #[must_use]
     pub fn counters(&self) -> ClientCounters {
         self.handle.lock().counters
     }
 
-    /// Closes the connection for all its handles. Calls in flight end with [`CallError::Lost`], and
-    /// reports end once the queue is empty.
+    /// Closes the connection for all handles. Calls in flight end with [`CallError::Lost`], and report receivers end
+    /// when their queue is empty.
     pub fn close(&self) {
         self.handle.close();
     }

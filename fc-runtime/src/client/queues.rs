@@ -1,4 +1,4 @@
-//! Reports on their way to the app: what waits for each of its receivers.
+//! Queues of reports for the receivers of an app.
 
 use super::loss::Loss;
 use crate::raw::RawReport;
@@ -14,36 +14,36 @@ pub(super) struct Queues {
     next: u64,
 }
 
-/// What waits for one receiver.
+/// The queue of one receiver.
 #[derive(Debug)]
 pub(super) struct Queue {
     receiver: u64,
-    /// The only code that it takes; `None` for any.
+    /// The only accepted code; `None` for any code.
     code: Option<u16>,
-    /// Each with what was before it.
+    /// Reports, each with the events before it.
     reports: VecDeque<(Before, RawReport)>,
-    /// What has been since the last of them.
+    /// Events after the last report.
     since: Before,
-    /// Whether there has been no connection since it was lost.
+    /// `true` from a loss to the next connection.
     is_cut: bool,
     bytes: usize,
-    /// Since it was last asked.
+    /// Missed reports since the last query.
     pub(super) missed: u64,
     pub(super) waker: Option<Waker>,
 }
 
-/// What a receiver has not got, between one report and the next.
+/// Events between two reports in a queue.
 #[derive(Debug, Default)]
 struct Before {
-    /// Reports for which it had no room.
+    /// Reports without room in the queue.
     missed: u64,
-    /// The connection was lost.
+    /// Loss of the connection.
     lost: Option<Loss>,
-    /// There was a connection again.
+    /// `true` if there was a connection again.
     connected: bool,
 }
 
-/// An event of a process that is being followed.
+/// An event for a follower of a process.
 #[derive(Debug)]
 pub(super) enum Event {
     Missed(u64),
@@ -62,8 +62,8 @@ impl Queues {
         }
     }
 
-    /// Gives a report to all receivers that have room for it: acknowledge it. Says how many had none.
-    /// `None` if nobody has got it: leave it to the robot to send it again.
+    /// Queues a report for all receivers with room for it, so that it can be acknowledged. Returns the number of
+    /// receivers without room, or `None` if no receiver got it and the robot must send it again.
     pub(super) fn push(&mut self, report: RawReport, wakers: &mut Vec<Waker>) -> Option<u64> {
         let bytes = report.text.len();
         let (limit, bytes_limit) = (self.limit, self.bytes_limit);
@@ -90,7 +90,7 @@ impl Queues {
                 continue;
             }
             takers -= 1;
-            // The last one takes what the others have copies of.
+            // The last receiver gets the original, the others get copies.
             let given = if takers == 0 {
                 report.take()
             } else {
@@ -104,7 +104,7 @@ impl Queues {
         Some(missed)
     }
 
-    /// Wakes all that wait, as when the connection is closed.
+    /// Wakes all receivers, such as after the end of the connection.
     pub(super) fn wake(&mut self, wakers: &mut Vec<Waker>) {
         wakers.extend(
             self.receivers
@@ -113,7 +113,7 @@ impl Queues {
         );
     }
 
-    /// The connection has been lost: notes it where the next report will come.
+    /// Adds a loss of the connection to all queues.
     pub(super) fn lost(&mut self, why: Loss, wakers: &mut Vec<Waker>) {
         for queue in &mut self.receivers {
             queue.is_cut = true;
@@ -123,7 +123,7 @@ impl Queues {
         self.wake(wakers);
     }
 
-    /// There is a connection again.
+    /// Adds a new connection to all queues.
     pub(super) fn connected(&mut self, wakers: &mut Vec<Waker>) {
         for queue in &mut self.receivers {
             queue.since.connected |= std::mem::take(&mut queue.is_cut);
@@ -131,8 +131,8 @@ impl Queues {
         self.wake(wakers);
     }
 
-    /// One more receiver, of reports of this code or of any, by the number that it has from now on.
-    pub(super) fn enter(&mut self, code: Option<u16>) -> u64 {
+    /// Adds a receiver for reports with this code, or for all reports. Returns its number.
+    pub(super) fn add(&mut self, code: Option<u16>) -> u64 {
         self.next += 1;
         self.receivers.push(Queue {
             receiver: self.next,
@@ -147,12 +147,12 @@ impl Queues {
         self.next
     }
 
-    pub(super) fn leave(&mut self, receiver: u64) {
+    pub(super) fn remove(&mut self, receiver: u64) {
         self.receivers.retain(|queue| queue.receiver != receiver);
     }
 
-    /// What waits for this receiver.
-    pub(super) fn of(&mut self, receiver: u64) -> Option<&mut Queue> {
+    /// Returns the queue of a receiver.
+    pub(super) fn get(&mut self, receiver: u64) -> Option<&mut Queue> {
         self.receivers
             .iter_mut()
             .find(|queue| queue.receiver == receiver)
@@ -160,14 +160,14 @@ impl Queues {
 }
 
 impl Queue {
-    /// The oldest report.
+    /// Takes the oldest report.
     pub(super) fn pop(&mut self) -> Option<RawReport> {
         let (_, report) = self.reports.pop_front()?;
         self.bytes -= report.text.len();
         Some(report)
     }
 
-    /// What comes next, the reports and what was between them.
+    /// Takes the next report or event.
     pub(super) fn next(&mut self) -> Option<Event> {
         let before = match self.reports.front_mut() {
             Some((before, _)) => before,

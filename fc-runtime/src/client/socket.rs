@@ -1,31 +1,32 @@
-//! A connection's socket, which its driver shares with callers: one that finds nothing else to be sent
-//! writes by itself, and its request does not wait until the driver has its turn.
+//! The socket of a connection, which its driver shares with callers. A caller that finds nothing else to send writes
+//! its request itself, without waiting for the driver.
 
 use crate::frame::Decoder;
 use crate::link::{Outlet, Transport, poll_read};
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use std::fmt;
 use std::io;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
 struct Socket<S> {
     stream: S,
     outlet: Outlet,
-    /// What a caller has met with. Nothing may be written after that: who knows what has left already?
+    /// Error of a caller's write. After it, nothing may be written, because part of a frame may have been sent.
     broken: Option<io::Error>,
 }
 
-/// A socket that driver and callers share. Who has its lock may take the lock of the connection's state;
-/// who has that may only try for the socket's.
+/// A socket that driver and callers share. Lock order: a holder of this lock may take the lock of the connection's
+/// state. A holder of the state's lock may only try this one.
 pub(super) struct Shared<S>(Arc<Mutex<Socket<S>>>);
 
 impl<S> Shared<S> {
-    /// Held for one read or write. What a panic in there has left behind is the stream's own affair.
+    /// The lock is held for one read or write. After a panic, the state of the stream is the stream's responsibility.
     fn lock(&self) -> MutexGuard<'_, Socket<S>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 }
 
@@ -38,7 +39,7 @@ impl<S: Transport> Shared<S> {
         })))
     }
 
-    /// For callers.
+    /// Returns a handle for callers.
     pub(super) fn for_callers(&self) -> CallersSocket {
         CallersSocket(Arc::clone(&self.0) as _)
     }
@@ -52,13 +53,13 @@ impl<S: Transport> Shared<S> {
         poll_read(&mut self.lock().stream, decoder, cx)
     }
 
-    /// How much is still to be written, in bytes.
+    /// Returns the number of unwritten bytes.
     pub(super) fn unwritten(&self) -> usize {
         self.lock().outlet.unwritten()
     }
 
-    /// Writes all there is, and what `load` has for the outlet whenever that is empty; ready once nothing
-    /// is left. Says how much there was to be written before, and how much there is now, in bytes.
+    /// Writes everything, and asks `load` for more when all is written. Returns the number of unwritten bytes before
+    /// and after.
     pub(super) fn write(
         &self,
         cx: &mut Context<'_>,
@@ -85,7 +86,7 @@ impl<S: Transport> Shared<S> {
         Ok((before, outlet.unwritten()))
     }
 
-    /// Says goodbye to the peer once all has been written, `out` as the last, and waits for its own.
+    /// Writes everything, then `out`, closes the sending side and waits for the peer to close its side.
     pub(super) async fn goodbye(mut self, mut out: Vec<u8>) -> io::Result<()> {
         let (mut outlet, broken) = {
             let mut socket = self.lock();
@@ -127,12 +128,12 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Shared<S> {
     }
 }
 
-/// What callers know of a socket.
+/// The part of a socket that callers use.
 trait Write: Send {
-    /// Takes over what is in `out`, if nothing is left to be written.
+    /// Takes the bytes of `out` if everything is written.
     fn load(&mut self, out: &mut Vec<u8>) -> bool;
 
-    /// Writes what the stream takes at once. Whether that was all of it.
+    /// Writes without waiting. Returns `true` if everything is written.
     fn write(&mut self, cx: &mut Context<'_>) -> bool;
 }
 
@@ -157,7 +158,7 @@ impl<S: Transport> Write for Socket<S> {
     }
 }
 
-/// A socket whose stream may be of any type.
+/// A socket with any stream.
 #[derive(Clone)]
 pub(super) struct CallersSocket(Arc<Mutex<dyn Write>>);
 
@@ -168,21 +169,21 @@ impl fmt::Debug for CallersSocket {
 }
 
 impl CallersSocket {
-    /// Takes over what is to be sent, unless somebody else is reading or writing at this moment or something
-    /// is left to be written: then it is the driver's.
+    /// Takes the bytes to be sent. Returns `None` if another task uses the socket or bytes are unwritten; the driver
+    /// sends them in that case.
     pub(super) fn begin(&self, out: &mut Vec<u8>) -> Option<Writing<'_>> {
         let mut socket = self.0.try_lock().ok()?;
         socket.load(out).then_some(Writing(socket))
     }
 }
 
-/// The bytes of a caller, in the outlet.
+/// Bytes of a caller in the send buffer.
 #[must_use = "somebody has to write them"]
 pub(super) struct Writing<'a>(MutexGuard<'a, dyn Write + 'static>);
 
 impl Writing<'_> {
-    /// Writes what the stream takes at once. Whether that was all of it: the driver sends the rest, or ends
-    /// the connection if it broke.
+    /// Writes without waiting. Returns `true` if everything is written. Otherwise the driver sends the rest, or ends a
+    /// broken connection.
     pub(super) fn finish(mut self, cx: &mut Context<'_>) -> bool {
         self.0.write(cx)
     }

@@ -1,53 +1,55 @@
-//! What the handles of a connection and its driver share.
+//! The state that the handles of a connection share with its driver.
 
-use super::beats::Beats;
 use super::config::ClientConfig;
 use super::error::CallError;
-use super::life::Life;
 use super::loss::Loss;
 use super::queues::Queues;
+use super::report_watchdog::ReportWatchdog;
 use super::socket::CallersSocket;
+use super::state_watch::StateWatch;
 use crate::frame::{Body, Encoder, FrameError, Staged};
+use crate::log_limiter::LogLimiter;
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
-use crate::protocol::{Limits, Protocol};
+use crate::protocol::Protocol;
 use crate::session::Session;
-use crate::thin::Thin;
+use crate::sync::lock;
+use crate::wire::Limits;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::task::Waker;
 use std::time::{Duration, Instant};
 
-/// What has become of a call.
+/// The progress of a call.
 #[derive(Debug, Default)]
 pub(super) enum Progress {
-    /// Not on its way: the caller has to encode it as soon as the connection is up.
+    /// Not sent. The caller encodes it when the connection is up.
     #[default]
     Unsent,
-    /// On its way.
+    /// Sent.
     Sent,
-    /// Was on its way when the connection was lost, and may be sent once more.
+    /// Sent over a lost connection, and may be sent once more.
     Again,
-    /// Ended, and not yet fetched by the caller.
+    /// Ended. The caller has not fetched the result yet.
     Done(Result<Body, CallError>),
 }
 
 impl Progress {
-    /// Whether it is the caller's turn to encode the request.
+    /// Returns `true` if the caller must encode the request.
     pub(super) fn is_to_send(&self) -> bool {
         matches!(self, Self::Unsent | Self::Again)
     }
 }
 
-/// The meeting place of one caller and the driver.
+/// The data shared by one caller and the driver.
 #[derive(Debug, Default)]
 pub(super) struct Slot {
     pub(super) progress: Progress,
     pub(super) waker: Option<Waker>,
-    /// Whether the call may be sent once more after the connection was lost.
+    /// `true` if the call may be sent once more after a loss.
     pub(super) repeat: bool,
 }
 
-/// Slots with reuse. A slot belongs to its caller until the caller frees it.
+/// Reusable slots. A slot belongs to its caller until the caller frees it.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
     slots: Vec<Slot>,
@@ -66,6 +68,11 @@ impl Slots {
         self.slots.get_mut(slot)
     }
 
+    pub(super) fn is_unsent(&self, slot: usize) -> bool {
+        let slot = self.slots.get(slot);
+        slot.is_some_and(|slot| matches!(slot.progress, Progress::Unsent))
+    }
+
     pub(super) fn free(&mut self, slot: usize) -> Progress {
         self.free.push(slot);
         self.get(slot)
@@ -74,7 +81,7 @@ impl Slots {
             .progress
     }
 
-    /// How many callers have one: also those that have not fetched yet what their calls have come to.
+    /// Returns the number of used slots, including those of ended calls whose result has not been fetched.
     pub(super) fn used(&self) -> usize {
         self.slots.len() - self.free.len()
     }
@@ -83,7 +90,7 @@ impl Slots {
         self.slots.iter_mut()
     }
 
-    /// Ends the call in `slot` and gives its waker.
+    /// Ends the call in `slot` and returns its waker.
     pub(super) fn finish(&mut self, slot: usize, result: Result<Body, CallError>) -> Option<Waker> {
         let slot = self.slots.get_mut(slot)?;
         slot.progress = Progress::Done(result);
@@ -91,59 +98,59 @@ impl Slots {
     }
 }
 
-/// Behind the lock.
+/// The state behind the lock.
 #[derive(Debug)]
 pub(super) struct State<P> {
-    pub(super) life: Life,
+    pub(super) connection: StateWatch,
     /// Frames to be written.
     pub(super) out: Vec<u8>,
-    /// What they are written to, while there is a connection.
+    /// The socket, while there is a connection.
     pub(super) socket: Option<CallersSocket>,
-    /// When the driver comes back by itself, at the latest.
-    pub(super) armed: Option<Instant>,
-    /// For acknowledgements.
+    /// Time at which the timer of the driver wakes it.
+    pub(super) alarm: Option<Instant>,
+    /// Encoder of acknowledgements.
     pub(super) encoder: Encoder<P>,
     pub(super) session: Session<P, usize>,
     pub(super) slots: Slots,
     pub(super) reports: Queues,
-    pub(super) beats: Beats,
-    /// The driver's, while it waits for something to do.
+    pub(super) report_watchdog: ReportWatchdog,
+    /// Waker of the driver while it waits.
     pub(super) driver: Option<Waker>,
-    /// Memory for the decoder to go on in when a large body leaves it.
+    /// Memory with which the decoder continues after giving away a large body.
     pub(super) spare: Vec<u8>,
     pub(super) counters: ClientCounters,
-    pub(super) told: Told,
-    pub(super) lines: Lines,
+    pub(super) metrics: FedMetrics,
+    pub(super) limiters: LogLimiters,
 }
 
-/// What is logged of what arrives and of what is asked for.
+/// Limits of log lines about arrivals and calls.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
-    pub(super) bad_frame: Thin,
-    pub(super) invalid: Thin,
-    pub(super) untaken: Thin,
-    pub(super) late: Thin,
-    pub(super) busy: Thin,
-    pub(super) out_of_order: Thin,
+pub(super) struct LogLimiters {
+    pub(super) bad_frame: LogLimiter,
+    pub(super) invalid: LogLimiter,
+    pub(super) untaken: LogLimiter,
+    pub(super) late: LogLimiter,
+    pub(super) busy: LogLimiter,
+    pub(super) out_of_order: LogLimiter,
 }
 
 macro_rules! counters {
     ($($(#[doc = $doc:literal])* $name:ident,)*) => {
-        /// What a connection has seen since it was made, reconnecting included.
+        /// Counters of a connection since its creation, reconnections included.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub struct ClientCounters {
             $($(#[doc = $doc])* pub $name: u64,)*
         }
 
-        /// The metrics that they feed, with what they have been fed.
+        /// Metrics of the counters, with the values recorded so far.
         #[derive(Debug)]
-        struct Metrics {
+        struct CounterMetrics {
             $($name: Counter,)*
             fed: ClientCounters,
         }
 
-        impl Metrics {
+        impl CounterMetrics {
             fn new() -> Self {
                 Self {
                     $($name: Counter::new(
@@ -154,7 +161,7 @@ macro_rules! counters {
                 }
             }
 
-            /// Hands on what has been counted since it was last called.
+            /// Records the changes since the last call.
             fn feed(&mut self, counters: ClientCounters) {
                 $(self.$name.add(counters.$name.saturating_sub(self.fed.$name));)*
                 self.fed = counters;
@@ -192,20 +199,20 @@ counters! {
     bad_frames,
 }
 
-/// What the recorder of metrics is told of one connection.
+/// Metrics of one connection.
 #[derive(Debug)]
-pub(super) struct Told {
-    metrics: Metrics,
+pub(super) struct FedMetrics {
+    counters: CounterMetrics,
     connects: Counter,
     counted: u64,
     connected: Gauge,
     is_connected: Option<Held>,
 }
 
-impl Told {
+impl FedMetrics {
     fn new() -> Self {
         Self {
-            metrics: Metrics::new(),
+            counters: CounterMetrics::new(),
             connects: Counter::new(
                 "fc_client_connects_total",
                 "Connections made, those after a loss included.",
@@ -222,18 +229,18 @@ impl Told {
 }
 
 impl<P> State<P> {
-    /// Tells the recorder of metrics what is new.
+    /// Records the changes since the last call.
     pub(super) fn tell(&mut self) {
-        self.told.metrics.feed(self.counters);
-        let now = self.life.now();
-        let before = std::mem::replace(&mut self.told.counted, now.connects());
-        self.told
+        self.metrics.counters.feed(self.counters);
+        let now = self.connection.now();
+        let before = std::mem::replace(&mut self.metrics.counted, now.connects());
+        self.metrics
             .connects
             .add(now.connects().saturating_sub(before));
         if !now.is_connected() {
-            self.told.is_connected = None;
-        } else if self.told.is_connected.is_none() {
-            self.told.is_connected = Some(self.told.connected.hold());
+            self.metrics.is_connected = None;
+        } else if self.metrics.is_connected.is_none() {
+            self.metrics.is_connected = Some(self.metrics.connected.hold());
         }
     }
 }
@@ -241,36 +248,36 @@ impl<P> State<P> {
 #[derive(Debug)]
 pub(super) struct Inner<P> {
     state: Mutex<State<P>>,
-    /// What requests are encoded with, outside the lock of the state.
+    /// Encoder of requests, used outside the lock of the state.
     encoder: Mutex<Encoder<P>>,
     pub(super) call_timeout: Duration,
     pub(super) limits: Limits,
     pub(super) config: ClientConfig,
     pub(super) operations: Operations,
-    /// Of calls in flight.
+    /// Number of calls in flight.
     pub(super) flying: Gauge,
     handles: AtomicUsize,
 }
 
 impl<P: Protocol> Inner<P> {
     pub(super) fn new(config: ClientConfig) -> Arc<Self> {
-        let limits = config.limits_or::<P>();
+        let limits = config.connection.limits::<P>();
         Arc::new(Self {
             state: Mutex::new(State {
-                life: Life::new(),
+                connection: StateWatch::new(),
                 out: Vec::new(),
                 socket: None,
-                armed: None,
+                alarm: None,
                 encoder: config.encoder(),
-                session: Session::new(&limits, P::DEFAULTS.ack, config.first_id_or_now()),
+                session: Session::new(&limits, P::DEFAULTS.ack, config.connection.first_id()),
                 slots: Slots::default(),
-                reports: Queues::new(limits.queued_reports, config.queued_bytes_or::<P>()),
-                beats: Beats::of::<P>(),
+                reports: Queues::new(limits.queued_reports, config.connection.queued_bytes::<P>()),
+                report_watchdog: ReportWatchdog::of::<P>(),
                 driver: None,
                 spare: Vec::new(),
                 counters: ClientCounters::default(),
-                told: Told::new(),
-                lines: Lines::default(),
+                metrics: FedMetrics::new(),
+                limiters: LogLimiters::default(),
             }),
             operations: Operations::of::<P>(&CLIENT),
             flying: Gauge::new(
@@ -279,21 +286,20 @@ impl<P: Protocol> Inner<P> {
                 None,
             ),
             encoder: Mutex::new(config.encoder()),
-            call_timeout: config.call_timeout_or::<P>(),
+            call_timeout: config.call_timeout_or_default::<P>(),
             limits,
             config,
             handles: AtomicUsize::new(0),
         })
     }
 
-    /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
-    /// back what it has begun. So poison means nothing.
+    /// Every holder leaves a consistent state, even after a panic: the encoder removes an unfinished frame.
     pub(super) fn lock(&self) -> MutexGuard<'_, State<P>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
-    /// Encodes a body and hands it on. Nobody waits for another's: who finds the encoder in use makes
-    /// one for himself.
+    /// Encodes a body and passes it to `then`. A caller that finds the encoder in use creates another one instead of
+    /// waiting.
     pub(super) fn staged<T>(
         &self,
         write: &dyn Fn(&mut Vec<u8>),
@@ -314,14 +320,14 @@ impl<P: Protocol> Inner<P> {
         }
     }
 
-    /// Ends the connection for good, if it has not ended.
+    /// Closes the connection, if it has not ended.
     pub(super) fn close(&self) {
-        self.lock().life.close(Loss::Here);
+        self.lock().connection.close(Loss::Here);
         self.wake();
     }
 }
 
-/// Keeps the connection open as long as one of its kind exists.
+/// Keeps the connection open while at least one handle exists.
 #[derive(Debug)]
 pub(super) struct Handle<P: Protocol>(Arc<Inner<P>>);
 

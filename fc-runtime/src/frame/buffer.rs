@@ -1,21 +1,21 @@
-//! The decoder's long-lived buffer, and bodies that leave it.
+//! The buffer of the decoder, and bodies that have left it.
 
 use std::fmt;
 use std::ops::{Deref, Range};
 
-/// Room that a read finds at least, in bytes.
+/// Minimum room for a read, in bytes.
 const READ: usize = 64 * 1024;
-/// Memory an empty buffer may keep for the next frame, in bytes.
+/// Memory that an empty buffer may keep for the next frame, in bytes.
 const KEEP: usize = 2 * 1024 * 1024;
-/// From this length on, taking the buffer along is cheaper than copying the body out of it.
+/// Length from which moving the buffer is cheaper than copying the body, in bytes.
 const TAKE: usize = 32 * 1024;
 
-/// Room for a rest of a frame of which so many bytes are there.
+/// Returns the room for the rest of a frame. `missing` bytes are announced and `held` bytes have arrived.
 fn room(missing: usize, held: usize) -> usize {
     missing.min(held).max(READ)
 }
 
-/// Bytes of which a first part has been consumed.
+/// Bytes with a consumed part at the front.
 #[derive(Debug, Default)]
 pub(super) struct Buffer {
     bytes: Vec<u8>,
@@ -23,12 +23,12 @@ pub(super) struct Buffer {
 }
 
 impl Buffer {
-    /// Where the bytes not yet consumed begin.
+    /// Returns the offset of the first unconsumed byte.
     pub(super) fn start(&self) -> usize {
         self.start
     }
 
-    /// The bytes not yet consumed.
+    /// Returns the unconsumed bytes.
     pub(super) fn unread(&self) -> &[u8] {
         self.bytes.get(self.start..).unwrap_or_default()
     }
@@ -41,15 +41,14 @@ impl Buffer {
         self.bytes.capacity()
     }
 
-    /// Consumes up to the place `end`; the bytes stay readable until the next change.
+    /// Consumes the bytes up to `end`. They stay readable until the next change.
     pub(super) fn consume(&mut self, end: usize) {
         self.start = end.min(self.bytes.len());
     }
 
-    /// The bytes to append to, with room for a good part of the `missing` rest of a frame.
+    /// Returns the buffer for appending received bytes, with room for a part of the `missing` bytes of a frame.
     ///
-    /// A rest that has only been announced gets as much room as there are bytes already: a peer
-    /// pays for memory with what it sends.
+    /// A frame gets room for at most as many bytes as have arrived. So a peer must send bytes before it gets memory.
     pub(super) fn room(&mut self, missing: usize) -> &mut Vec<u8> {
         if self.start == self.bytes.len() {
             self.bytes.clear();
@@ -66,7 +65,7 @@ impl Buffer {
         &mut self.bytes
     }
 
-    /// How much memory [`room`](Self::room) would take beyond what there is, in bytes.
+    /// Returns the memory that [`room`](Self::room) would add, in bytes.
     #[cfg(feature = "server")]
     pub(super) fn growth(&self, missing: usize) -> usize {
         let unread = self.unread().len();
@@ -81,7 +80,7 @@ impl Buffer {
         (unread + room(missing, unread)).saturating_sub(kept)
     }
 
-    /// Begins with these bytes and takes no more memory than they do. Nothing unread must be there.
+    /// Starts with these bytes and takes only as much memory. The buffer must have no unread bytes.
     #[cfg(feature = "server")]
     pub(super) fn begin(&mut self, bytes: &[u8]) {
         *self = Self {
@@ -90,7 +89,7 @@ impl Buffer {
         };
     }
 
-    /// Gives back the memory of bytes that have all been consumed.
+    /// Releases the memory if all bytes have been consumed.
     #[cfg(feature = "server")]
     pub(super) fn tidy(&mut self) {
         if self.unread().is_empty() {
@@ -98,7 +97,7 @@ impl Buffer {
         }
     }
 
-    /// The emptied bytes, to be filled with something new.
+    /// Empties the buffer and returns it for new bytes.
     pub(super) fn replace(&mut self) -> &mut Vec<u8> {
         self.start = 0;
         if self.bytes.capacity() > KEEP {
@@ -108,15 +107,15 @@ impl Buffer {
         &mut self.bytes
     }
 
-    /// Empties the bytes if they take more memory than may be kept.
+    /// Releases the memory if it is more than may be kept.
     pub(super) fn release(&mut self) {
         if self.bytes.capacity() > KEEP {
             *self = Self::default();
         }
     }
 
-    /// Lets the bytes of `range` leave: small ones as a copy, large ones by giving the whole buffer
-    /// away and going on in `spare`.
+    /// Takes the bytes of `range` out of the buffer. Small bodies are copied. For a large body the whole buffer is
+    /// given away, and the decoder continues in `spare`.
     pub(super) fn take(&mut self, range: Range<usize>, spare: &mut Vec<u8>) -> Body {
         if range.len() < TAKE {
             let bytes = self.get(&range).to_vec();
@@ -136,7 +135,7 @@ impl Buffer {
     }
 }
 
-/// A body that has left the decoder. Reads as `[u8]`.
+/// A body outside the decoder. Dereferences to `[u8]`.
 #[derive(Clone, Default)]
 pub struct Body {
     bytes: Vec<u8>,
@@ -144,7 +143,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// The bytes alone. Moves them to the front if they are not there.
+    /// Returns the bytes as a vector. Moves them to its front if necessary.
     #[must_use]
     pub fn into_vec(mut self) -> Vec<u8> {
         self.bytes.truncate(self.range.end);
@@ -152,13 +151,13 @@ impl Body {
         self.bytes
     }
 
-    /// The memory that it takes, in bytes.
+    /// Returns the memory of the body, in bytes.
     #[cfg(feature = "server")]
     pub(crate) fn memory(&self) -> usize {
         self.bytes.capacity()
     }
 
-    /// The memory behind a large body, of use as the next buffer; `None` for a small one.
+    /// Returns the memory of a large body for use as the next buffer, or `None` for a small one.
     #[cfg(feature = "client")]
     pub(crate) fn into_spare(self) -> Option<Vec<u8>> {
         (TAKE..=KEEP)
@@ -192,7 +191,7 @@ impl PartialEq for Body {
 
 impl Eq for Body {}
 
-/// Shows the length alone: bodies may hold what must not be logged.
+/// Shows only the length, because bodies may contain data that must not be logged.
 impl fmt::Debug for Body {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Body({} bytes)", self.range.len())

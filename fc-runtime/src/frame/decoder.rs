@@ -2,42 +2,42 @@
 
 use super::Frame;
 use super::buffer::Buffer;
-use super::digest::{Digesting, LONG};
+use super::digesting::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::{InflateError, Inflater};
-use crate::protocol::{DigestOf, Header, Limits, Protocol};
+use crate::protocol::{DigestOf, Protocol};
+use crate::wire::{Header, Limits};
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// How many times the longest frame a search may look through without success: heads that lie inside each
-/// other must not cost more work than they cost bytes.
+/// Maximum work of a search without success, in multiples of the longest frame. Nested heads must not cost more work
+/// than they cost bytes.
 const SEARCH: u64 = 4;
 
-/// Bytes that are digested at most before more is read.
+/// Maximum bytes digested before the next read.
 const PIECE: usize = 256 * 1024;
 
-/// What a frame makes a decoder look at, in bytes.
+/// The work of a decoder on a frame, in bytes.
 #[cfg(feature = "server")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work {
-    /// Its data.
+    /// Length of the data.
     pub(crate) data: usize,
-    /// What that is inflated to; 0 if it is not.
+    /// Length of the inflated data, or 0 if it is not compressed.
     pub(crate) inflated: usize,
 }
 
 /// A header and where its data lies.
 type Located<P> = (<P as Protocol>::Header, Range<usize>);
 
-/// Cuts a stream of bytes into frames.
+/// Splits a stream of bytes into frames.
 ///
-/// Bytes come in with [`push`](Self::push) in any split; [`next`](Self::next) gives one frame after
-/// the other and borrows its body from the decoder's own buffer. What can be refused is refused as
-/// soon as it is known: a wrong head with its first wrong byte, an impossible length before the data
-/// has come.
+/// [`push`](Self::push) accepts bytes in pieces of any size. [`next`](Self::next) returns one frame after the other,
+/// whose body is borrowed from the decoder's buffer. Errors are returned as early as possible: a wrong head at its
+/// first wrong byte, an impossible length before the data arrives.
 ///
-/// Memory: the receive buffer grows with what has really arrived, up to about twice the longest
-/// frame; a compressed body takes its plain length besides, never more than the limit.
+/// The receive buffer grows with the received bytes, up to about twice the longest frame. A compressed body also takes
+/// its plain length, which is limited.
 #[derive(Debug)]
 pub struct Decoder<P: Protocol> {
     received: Buffer,
@@ -47,15 +47,15 @@ pub struct Decoder<P: Protocol> {
     inflated_bytes: u32,
     inflate_ratio: u32,
     verify_digest: bool,
-    /// Of the frame at the front.
+    /// Digest of the frame at the front, as far as it has arrived.
     ahead: Digesting<DigestOf<P>>,
     resync: bool,
-    /// Bytes have been skipped and no frame has been found since.
+    /// `true` after bytes have been skipped, until the next frame.
     searching: bool,
-    /// Bytes of frames that were tried in this search without success.
+    /// Bytes of unsuccessful candidates in this search.
     tried: u64,
     skipped: u64,
-    /// Bytes that came out of compressed data beyond those that went in.
+    /// Bytes of inflated data beyond those of its compressed form.
     surplus: u64,
     failed: Option<FrameError>,
     protocol: PhantomData<P>,
@@ -68,8 +68,7 @@ impl<P: Protocol> Default for Decoder<P> {
 }
 
 impl<P: Protocol> Decoder<P> {
-    /// A decoder with the protocol's default limits, which verifies digests and does not search for
-    /// lost frames.
+    /// Creates a decoder with the protocol's default limits. It verifies digests and does not search for lost frames.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -91,7 +90,7 @@ impl<P: Protocol> Decoder<P> {
         }
     }
 
-    /// Sets the longest frame, the longest data after decompression, and by how much it may grow.
+    /// Sets the longest frame, the longest inflated data, and the largest inflation ratio.
     #[must_use]
     pub fn limits(mut self, limits: &Limits) -> Self {
         self.frame_bytes = limits.frame_bytes;
@@ -100,17 +99,17 @@ impl<P: Protocol> Decoder<P> {
         self
     }
 
-    /// Whether to verify digests (the default). Leaving it out saves about half of the time spent on
-    /// a frame, and leaves damage to be found by TCP's own checksum and by the parser.
+    /// Sets whether to verify digests; `true` by default. Without verification, a frame takes about half the time, and
+    /// only the checksum of TCP and the parser detect damage.
     #[must_use]
     pub fn verify_digest(mut self, verify: bool) -> Self {
         self.verify_digest = verify;
         self
     }
 
-    /// Whether to search for the next frame after a wrong head or an impossible length, instead of
-    /// failing for good (the default). While searching, only a frame that is right in every respect
-    /// is taken for one; a search that has looked at several times the longest frame without success fails.
+    /// Sets whether to search for the next frame after a wrong head or an impossible length; `false` by default.
+    /// Without the search, the decoder fails for good. During a search, only a frame without any error is accepted. A
+    /// search fails after several times the longest frame.
     #[must_use]
     pub fn resync(mut self, resync: bool) -> Self {
         self.resync = resync;
@@ -122,31 +121,30 @@ impl<P: Protocol> Decoder<P> {
         self.room().extend_from_slice(bytes);
     }
 
-    /// The buffer to append received bytes to, with room for a good read behind its end. What it
-    /// holds already is the decoder's: only append.
+    /// Returns the buffer for appending received bytes, with room for a read. Only append to it.
     pub(crate) fn room(&mut self) -> &mut Vec<u8> {
         self.received.room(self.missing())
     }
 
-    /// How much memory the next [`room`](Self::room) takes beyond what there is, in bytes.
+    /// Returns the memory that the next [`room`](Self::room) would add, in bytes.
     #[cfg(feature = "server")]
     pub(crate) fn growth(&self) -> usize {
         self.received.growth(self.missing())
     }
 
-    /// Whether nothing of a frame has come, and there is no memory yet to receive one.
+    /// Returns `true` if the decoder holds no bytes of a frame and no memory to receive one.
     #[cfg(feature = "server")]
     pub(crate) fn is_bare(&self) -> bool {
         self.pending() == 0 && self.growth() > 0
     }
 
-    /// Takes the first bytes of a frame when it [is bare](Self::is_bare), and only as much memory.
+    /// Takes the first bytes of a frame into a [bare](Self::is_bare) decoder, with only as much memory.
     #[cfg(feature = "server")]
     pub(crate) fn begin(&mut self, bytes: &[u8]) {
         self.received.begin(bytes);
     }
 
-    /// The part of the frame at the front that has been announced and has not come, in bytes.
+    /// Returns the number of announced but missing bytes of the frame at the front.
     fn missing(&self) -> usize {
         let held = self.received.unread();
         P::Header::peek_total_length(held)
@@ -155,26 +153,26 @@ impl<P: Protocol> Decoder<P> {
             .map_or(0, |total| total.saturating_sub(held.len()))
     }
 
-    /// Bytes received and not yet given out as frames.
+    /// Returns the number of received bytes that are not part of a returned frame.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.received.unread().len()
     }
 
-    /// How long the frame claims to be that has begun to arrive, in bytes, if that has come already.
+    /// Returns the announced length of the arriving frame in bytes, if it is known.
     #[cfg(feature = "client")]
     pub(crate) fn expected(&self) -> Option<usize> {
         let total = P::Header::peek_total_length(self.received.unread())?;
         usize::try_from(total).ok()
     }
 
-    /// Whether the frame that has begun to arrive lacks a part of its header.
+    /// Returns `true` if the arriving frame lacks a part of its header.
     #[cfg(feature = "server")]
     pub(crate) fn inside_header(&self) -> bool {
         (1..P::Header::LEN).contains(&self.pending())
     }
 
-    /// Memory kept for what comes next, in bytes; all there is, if nothing is pending.
+    /// Returns the memory kept for the next frames, in bytes. This is all memory if no bytes are pending.
     #[cfg(feature = "server")]
     pub(crate) fn idle(&self) -> usize {
         let received = match self.pending() {
@@ -184,33 +182,32 @@ impl<P: Protocol> Decoder<P> {
         received + self.inflated.capacity()
     }
 
-    /// Gives back that memory. The frame given out last must not be of interest any more.
+    /// Releases the memory kept for the next frames. The last returned frame must not be used any more.
     #[cfg(feature = "server")]
     pub(crate) fn tidy(&mut self) {
         self.received.tidy();
         self.inflated = Buffer::default();
     }
 
-    /// Gives back the memory of a large body that nobody looks at any more.
+    /// Releases the memory of a large body that is not used any more.
     pub(crate) fn release(&mut self) {
         self.inflated.release();
     }
 
-    /// How many bytes have come out of compressed data since this was last asked, beyond those that
-    /// went in: work that the peer has caused and not paid for by sending.
+    /// Returns the inflated bytes since the last call beyond those received. This is work that the peer has not paid
+    /// for by sending.
     #[cfg(feature = "server")]
     pub(crate) fn take_surplus(&mut self) -> u64 {
         std::mem::take(&mut self.surplus)
     }
 
-    /// The work on the frame at the front, if it is there as a whole and so much at least, in bytes to be
-    /// looked at.
+    /// Returns the work on the frame at the front, if the frame is complete and the work is at least `least` bytes.
     #[cfg(feature = "server")]
     pub(crate) fn work(&self, least: usize) -> Option<Work> {
-        /// Bytes that deflate makes of one at most.
+        /// Largest ratio of deflate.
         const EXPANDS: u64 = 1032;
 
-        // Seen at a glance of most frames.
+        // A quick check that excludes most frames.
         let total = P::Header::peek_total_length(self.received.unread())?;
         if u64::from(total) * (1 + EXPANDS) < least as u64 {
             return None;
@@ -232,24 +229,24 @@ impl<P: Protocol> Decoder<P> {
         (work.data.saturating_add(work.inflated) >= least).then_some(work)
     }
 
-    /// Bytes passed over in search of a frame since the beginning.
+    /// Returns the number of bytes skipped in searches.
     #[must_use]
     pub fn skipped(&self) -> u64 {
         self.skipped
     }
 
-    /// Memory held for buffers, in bytes.
+    /// Returns the memory of the buffers, in bytes.
     #[must_use]
     pub fn capacity(&self) -> usize {
         self.received.capacity() + self.inflated.capacity()
     }
 
-    /// The next whole frame; `None` if it has not arrived yet.
+    /// Returns the next complete frame, or `None` if it has not arrived yet.
     ///
     /// # Errors
     ///
-    /// [`FrameError`]. If it is fatal, every further call gives it again; otherwise the frame has
-    /// been skipped and the next call goes on behind it.
+    /// [`FrameError`]. A fatal error is returned by every further call. After any other error, the frame has been
+    /// skipped and the next call continues after it.
     #[allow(
         clippy::should_implement_trait,
         reason = "a frame borrows from the decoder, which an iterator's item cannot"
@@ -302,7 +299,7 @@ impl<P: Protocol> Decoder<P> {
         }
     }
 
-    /// Digests what has arrived of a long frame at the front.
+    /// Digests the received part of a long frame at the front.
     fn digest_ahead(&mut self) {
         let held = self.received.unread();
         let total =
@@ -313,11 +310,11 @@ impl<P: Protocol> Decoder<P> {
         }
     }
 
-    /// Says whether the stream may end here.
+    /// Checks that the stream may end here.
     ///
     /// # Errors
     ///
-    /// [`FrameError::Truncated`] inside a frame; the fatal error if there was one.
+    /// [`FrameError::Truncated`] inside a frame, or an earlier fatal error.
     pub fn finish(&self) -> Result<(), FrameError> {
         match (self.failed, self.pending()) {
             (Some(error), _) => Err(error),
@@ -327,8 +324,7 @@ impl<P: Protocol> Decoder<P> {
         }
     }
 
-    /// Header and place of the data of the frame at the front, if all of it is there. Errors are
-    /// fatal ones.
+    /// Returns header and data range of the frame at the front, or `None` if it is incomplete. All errors are fatal.
     fn locate(&self) -> Result<Option<Located<P>>, FrameError> {
         let held = self.received.unread();
         if !opens(held, P::REQUEST_HEAD) && !opens(held, P::RESPONSE_HEAD) {
@@ -357,8 +353,8 @@ impl<P: Protocol> Decoder<P> {
         Ok(P::Header::read(held).map(|header| (header, start + P::Header::LEN..start + length)))
     }
 
-    /// Checks a whole frame in the order that decides which of several errors it has, and inflates
-    /// it. Errors are never fatal.
+    /// Checks and inflates a complete frame. The order of the checks decides which of several errors is returned. No
+    /// error is fatal.
     fn check(&mut self, header: &P::Header, data: &Range<usize>) -> Result<(), FrameError> {
         let ahead = std::mem::take(&mut self.ahead);
         let frame = FrameId::of::<P>(header);
@@ -415,7 +411,7 @@ impl<P: Protocol> Decoder<P> {
         })
     }
 
-    /// Gives up the place at the front and goes to the next that may be a head.
+    /// Skips to the next position that may be a head.
     fn search(&mut self) {
         let held = self.received.unread();
         let next = (1..held.len())
@@ -430,7 +426,7 @@ impl<P: Protocol> Decoder<P> {
     }
 }
 
-/// Whether `bytes` begin like `head`, as far as they go.
+/// Returns `true` if `bytes` and `head` agree up to the end of the shorter one.
 fn opens(bytes: &[u8], head: &[u8]) -> bool {
     bytes.iter().zip(head).all(|(a, b)| a == b)
 }

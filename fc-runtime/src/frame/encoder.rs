@@ -1,27 +1,28 @@
 //! Messages to bytes.
 
 #[cfg(feature = "server")]
-use super::digest::{Digesting, LONG};
+use super::digesting::{Digesting, LONG};
 use super::error::{FrameError, FrameId};
 use super::gzip::Deflater;
 #[cfg(feature = "server")]
 use super::prepared_response::PreparedBody;
 use crate::digest::{Compute as _, Sum};
 use crate::message::{Message, write_enveloped};
-use crate::protocol::{DigestOf, Header, Protocol};
+use crate::protocol::{DigestOf, Protocol};
+use crate::wire::Header;
 use std::fmt;
 use std::marker::PhantomData;
 #[cfg(feature = "server")]
 use std::ops::Range;
 use std::sync::Arc;
 
-/// When and how hard to compress what is sent.
+/// Compression of sent data.
 ///
-/// Level 1 suits lists; data that is dense already, such as base64 text of pictures, costs much
-/// time and saves little, and is sent plain whenever compressing does not make it shorter.
+/// Level 1 suits lists. Dense data, such as base64 text of pictures, costs much time and saves little. Data that does
+/// not become shorter is sent uncompressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gzip {
-    /// Least length of the data area that is compressed, in bytes.
+    /// Minimum length of the data for compression, in bytes.
     pub from_bytes: usize,
     /// 1 (fast) to 9 (small).
     pub level: u8,
@@ -36,10 +37,9 @@ impl Default for Gzip {
     }
 }
 
-/// Writes frames behind the end of a buffer: header placeholder, body in place, then the header
-/// with length and digest.
+/// Appends frames to a buffer: a placeholder for the header, the body, and then the header with length and digest.
 ///
-/// Keeps the compressor's state between frames.
+/// It reuses the state of the compressor.
 #[derive(Debug)]
 pub struct Encoder<P> {
     gzip: Option<(Gzip, Deflater)>,
@@ -57,7 +57,7 @@ impl<P: Protocol> Default for Encoder<P> {
 }
 
 impl<P: Protocol> Encoder<P> {
-    /// Compresses nothing; frames may be as long as the protocol's default limit.
+    /// Creates an encoder without compression and with the protocol's default limit.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -70,14 +70,14 @@ impl<P: Protocol> Encoder<P> {
         }
     }
 
-    /// Compresses as `gzip` says, or not at all.
+    /// Sets the compression.
     #[must_use]
     pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
         self.gzip = gzip.into().map(|gzip| (gzip, Deflater::new(gzip.level)));
         self
     }
 
-    /// Longest frame to be written, header included, in bytes.
+    /// Sets the longest frame in bytes, header included.
     #[must_use]
     pub fn frame_bytes(mut self, limit: u32) -> Self {
         self.frame_bytes = limit;
@@ -88,7 +88,7 @@ impl<P: Protocol> Encoder<P> {
     ///
     /// # Errors
     ///
-    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    /// [`FrameError::FrameTooLong`]; `out` is unchanged.
     pub fn message<E: Message, B: Message>(
         &mut self,
         out: &mut Vec<u8>,
@@ -99,11 +99,11 @@ impl<P: Protocol> Encoder<P> {
         self.frame(out, id, |out| write_enveloped(envelope, body, out))
     }
 
-    /// Appends a frame with `data` as it is.
+    /// Appends a frame with `data` as its body.
     ///
     /// # Errors
     ///
-    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    /// [`FrameError::FrameTooLong`]; `out` is unchanged.
     pub fn bytes(&mut self, out: &mut Vec<u8>, id: FrameId, data: &[u8]) -> Result<(), FrameError> {
         self.frame(out, id, |out| out.extend_from_slice(data))
     }
@@ -112,7 +112,7 @@ impl<P: Protocol> Encoder<P> {
     ///
     /// # Errors
     ///
-    /// [`FrameError::FrameTooLong`]; `out` is as before, also if `write` panics.
+    /// [`FrameError::FrameTooLong`]; `out` is unchanged, also if `write` panics.
     pub fn frame(
         &mut self,
         out: &mut Vec<u8>,
@@ -121,13 +121,14 @@ impl<P: Protocol> Encoder<P> {
     ) -> Result<(), FrameError> {
         let mut frame = Unfinished::new(out, P::Header::LEN);
         write(frame.out);
-        self.finish(&mut frame, id)?;
+        let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
+        sealed.write::<P>(frame.out, frame.start, id);
         frame.finished = true;
         Ok(())
     }
 
-    /// The same for a frame that may be long: then its header is missing until it has been digested, in
-    /// whatever pieces.
+    /// Appends a frame whose body `write` appends. A long frame lacks its header until it has been digested, in any
+    /// pieces.
     #[cfg(feature = "server")]
     pub(crate) fn unsealed(
         &mut self,
@@ -156,7 +157,7 @@ impl<P: Protocol> Encoder<P> {
         }))
     }
 
-    /// Packs and digests a body once, to be sent any number of times.
+    /// Compresses and digests a body that can be sent any number of times.
     ///
     /// # Errors
     ///
@@ -168,7 +169,7 @@ impl<P: Protocol> Encoder<P> {
         Ok(Prepared::new(sealed, data))
     }
 
-    /// Packs and digests a body in memory of its own, to be copied behind whatever is sent next.
+    /// Compresses and digests a body in its own memory. It is copied into the send buffer later.
     #[cfg(feature = "client")]
     pub(crate) fn stage(
         &mut self,
@@ -188,7 +189,7 @@ impl<P: Protocol> Encoder<P> {
         })
     }
 
-    /// Begins to prepare a body that is long: it is packed, and not digested yet.
+    /// Starts to prepare a long body: it is compressed but not yet digested.
     #[cfg(feature = "server")]
     pub(crate) fn begin(&mut self, mut data: Vec<u8>) -> Result<Preparing<P>, FrameError> {
         let sealed = self.pack(&mut data, 0)?;
@@ -199,17 +200,17 @@ impl<P: Protocol> Encoder<P> {
         })
     }
 
-    /// Appends a frame with a body prepared before.
+    /// Appends a frame with a prepared body.
     pub fn prepared(&mut self, out: &mut Vec<u8>, id: FrameId, body: &Prepared) {
         body.header::<P>(out, id);
         out.extend_from_slice(&body.data);
     }
 
-    /// Appends a frame with a kept body, and the keys of `envelope` behind its own.
+    /// Appends a frame with a prepared response, and the keys of `envelope` after its own.
     ///
     /// # Errors
     ///
-    /// [`FrameError::FrameTooLong`]; `out` is as before.
+    /// [`FrameError::FrameTooLong`]; `out` is unchanged.
     #[cfg(feature = "server")]
     pub(crate) fn prepared_response<E: Message>(
         &mut self,
@@ -233,19 +234,13 @@ impl<P: Protocol> Encoder<P> {
         Ok(())
     }
 
-    fn finish(&mut self, frame: &mut Unfinished<'_>, id: FrameId) -> Result<(), FrameError> {
-        let sealed = self.seal(frame.out, frame.start + P::Header::LEN)?;
-        sealed.write::<P>(frame.out, frame.start, id);
-        Ok(())
-    }
-
-    /// Packs what `out` holds from `start` on, in place, and finds what the header says of it.
+    /// Compresses and digests the bytes of `out` from `start` on, in place. Returns the values for the header.
     fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let sealed = self.pack(out, start)?;
         Ok(sealed.digested::<P>(out.get(start..).unwrap_or_default()))
     }
 
-    /// The same but for the digest.
+    /// Compresses the bytes of `out` from `start` on, in place. Returns the values for the header without the digest.
     fn pack(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let plain = out.len() - start;
         let mut encoding = P::PLAIN;
@@ -262,7 +257,7 @@ impl<P: Protocol> Encoder<P> {
         self.sealed(encoding, out.len() - start, plain)
     }
 
-    /// What the header of a frame says of so much data, but for the digest.
+    /// Returns the values for the header of a frame with this much data, without the digest.
     fn sealed(&self, encoding: u8, data: usize, plain: usize) -> Result<Sealed, FrameError> {
         let total = P::Header::LEN + data;
         let too_long = FrameError::FrameTooLong {
@@ -284,7 +279,7 @@ impl<P: Protocol> Encoder<P> {
     }
 }
 
-/// What a header says of the data behind it.
+/// The values of a header that depend on the data.
 #[derive(Clone, Copy, Debug)]
 struct Sealed {
     encoding: u8,
@@ -294,7 +289,7 @@ struct Sealed {
 }
 
 impl Sealed {
-    /// The same with the digest of the data.
+    /// Adds the digest of the data.
     fn digested<P: Protocol>(self, data: &[u8]) -> Self {
         Self {
             digest: DigestOf::<P>::of(data),
@@ -302,7 +297,7 @@ impl Sealed {
         }
     }
 
-    /// Writes the header to the place kept for it at `start`.
+    /// Writes the header into its placeholder at `start`.
     fn write<P: Protocol>(&self, out: &mut [u8], start: usize, id: FrameId) {
         let head = if id.response {
             P::RESPONSE_HEAD
@@ -319,7 +314,7 @@ impl Sealed {
 #[cfg(feature = "client")]
 const KEEP: usize = 2 * 1024 * 1024;
 
-/// A body that is packed and digested already, and lies in its encoder.
+/// A compressed and digested body in the memory of its encoder.
 #[cfg(feature = "client")]
 #[derive(Clone, Copy)]
 pub(crate) struct Staged<'a> {
@@ -329,7 +324,7 @@ pub(crate) struct Staged<'a> {
 
 #[cfg(feature = "client")]
 impl Staged<'_> {
-    /// Appends a frame with it.
+    /// Appends a frame with this body.
     pub(crate) fn append<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
         out.reserve(P::Header::LEN + self.data.len());
         let start = out.len();
@@ -339,11 +334,11 @@ impl Staged<'_> {
     }
 }
 
-/// A body that is packed and digested already. Cheap to clone.
+/// A compressed and digested body. Cheap to clone.
 #[derive(Clone)]
 pub struct Prepared {
     sealed: Sealed,
-    /// Not `Arc<[u8]>`: that would copy a map once more.
+    /// Not `Arc<[u8]>`, because that would copy a map once more.
     data: Arc<Vec<u8>>,
 }
 
@@ -362,28 +357,27 @@ impl Prepared {
         self.sealed.write::<P>(out, start, id);
     }
 
-    /// The packed body.
+    /// Returns the compressed body.
     #[cfg(any(feature = "client", feature = "server"))]
     pub(crate) fn data(&self) -> &[u8] {
         &self.data
     }
 
-    /// Its length in bytes.
+    /// Returns its length in bytes.
     #[cfg(feature = "server")]
     pub(crate) fn len(&self) -> usize {
         self.data.len()
     }
 }
 
-/// Shows the length alone: bodies may hold what must not be logged.
+/// Shows only the length, because bodies may contain data that must not be logged.
 impl fmt::Debug for Prepared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Prepared({} bytes)", self.data.len())
     }
 }
 
-/// A body that is packed already and being digested piece by piece, so that others have their turn
-/// in between.
+/// A compressed body that is digested piece by piece, with pauses for other tasks.
 #[cfg(feature = "server")]
 pub(crate) struct Preparing<P: Protocol> {
     sealed: Sealed,
@@ -393,13 +387,13 @@ pub(crate) struct Preparing<P: Protocol> {
 
 #[cfg(feature = "server")]
 impl<P: Protocol> Preparing<P> {
-    /// Digests at most so many bytes more. Whether some are left.
+    /// Digests up to this many further bytes. Returns `true` if some are left.
     pub(crate) fn go_on(&mut self, bytes: usize) -> bool {
         self.digesting.go_on(&self.data, bytes);
         !self.digesting.is_done(self.data.len())
     }
 
-    /// The body, once nothing is left to be digested.
+    /// Returns the body after all bytes have been digested.
     pub(crate) fn finish(self) -> Prepared {
         let digest = self.digesting.finish(&self.data);
         Prepared::new(
@@ -412,28 +406,28 @@ impl<P: Protocol> Preparing<P> {
     }
 }
 
-/// A frame that lies in a buffer and lacks its header.
+/// A frame in a buffer that lacks its header.
 #[cfg(feature = "server")]
 #[derive(Debug)]
 pub(crate) struct Unsealed<P: Protocol> {
     id: FrameId,
     sealed: Sealed,
-    /// Where the header is to be.
+    /// Offset of the header.
     start: usize,
-    /// And what follows it.
+    /// Offsets of the data.
     data: Range<usize>,
     digesting: Digesting<DigestOf<P>>,
 }
 
 #[cfg(feature = "server")]
 impl<P: Protocol> Unsealed<P> {
-    /// Digests at most so many bytes more of the buffer it lies in, and gives how many it were.
+    /// Digests up to `most` further bytes of its buffer, and returns their number.
     pub(crate) fn go_on(&mut self, out: &[u8], most: usize) -> usize {
         let data = out.get(self.data.clone()).unwrap_or_default();
         self.digesting.go_on(data, most)
     }
 
-    /// Whether nothing is left to be digested.
+    /// Returns `true` if all bytes have been digested.
     pub(crate) fn is_digested(&self) -> bool {
         self.digesting.is_done(self.data.len())
     }
@@ -449,7 +443,7 @@ impl<P: Protocol> Unsealed<P> {
     }
 }
 
-/// A frame being written; takes itself back unless it is finished.
+/// A frame that is being written. It is removed if it is dropped unfinished.
 struct Unfinished<'a> {
     out: &'a mut Vec<u8>,
     start: usize,

@@ -1,12 +1,13 @@
-//! What can be wrong with a frame.
+//! Errors of frames.
 
-use crate::protocol::{Header, Protocol};
+use crate::protocol::Protocol;
+use crate::wire::Header;
 use std::fmt;
 
-/// Which message a frame belongs to: what an answer to it has to echo.
+/// Identifies the message of a frame. A response repeats it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FrameId {
-    /// Whether the frame opens with the head of responses.
+    /// `true` if the frame starts with the head of responses.
     pub response: bool,
     /// Kind of the data.
     pub kind: u8,
@@ -17,7 +18,7 @@ pub struct FrameId {
 }
 
 impl FrameId {
-    /// The id of an answer to this frame: it echoes everything but the head.
+    /// Returns the id of the response to this frame, which repeats all but the head.
     #[must_use]
     pub fn answer(self) -> Self {
         Self {
@@ -26,7 +27,7 @@ impl FrameId {
         }
     }
 
-    /// Takes it from a header.
+    /// Returns the id in a header.
     #[must_use]
     pub fn of<P: Protocol>(header: &P::Header) -> Self {
         Self {
@@ -49,17 +50,17 @@ impl fmt::Display for FrameId {
     }
 }
 
-/// A frame that cannot be handed on.
+/// A frame cannot be delivered.
 ///
-/// The errors come in two sorts. After a *fatal* one nobody knows where the next frame begins, so
-/// that the connection must be closed. After any other the frame has been skipped, the stream is
-/// still in sync, and [`frame`](Self::frame) says what to answer to.
+/// After a *fatal* error the position of the next frame is unknown, so the connection must be closed. After any other
+/// error the frame has been skipped and the stream is still in sync. [`frame`](Self::frame) returns the skipped frame,
+/// which may be answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// The bytes where a frame has to begin are no head.
+    /// The bytes at the start of a frame are not a head.
     #[error("no frame begins here: the head is wrong; close the connection and connect again")]
     BadHead,
-    /// The total length is less than that of a header.
+    /// The total length is shorter than a header.
     #[error(
         "the frame claims {total} bytes in all, less than its header of {header}; the peer counts \
          the length without the header"
@@ -81,10 +82,10 @@ pub enum FrameError {
     /// The input ended inside a frame.
     #[error("the stream ended inside a frame, with {bytes} bytes of it received")]
     Truncated {
-        /// How much of the frame had come, in bytes.
+        /// Number of received bytes of the frame.
         bytes: usize,
     },
-    /// The kind is none of the protocol's.
+    /// The protocol does not have this kind.
     #[error("unknown kind in the {frame}")]
     UnknownKind {
         /// The frame.
@@ -96,7 +97,7 @@ pub enum FrameError {
         /// The frame.
         frame: FrameId,
     },
-    /// The data is packed in a way the protocol does not know.
+    /// The protocol does not have this encoding.
     #[error("unknown encoding {encoding} in the {frame}")]
     UnknownEncoding {
         /// The frame.
@@ -104,19 +105,19 @@ pub enum FrameError {
         /// The encoding.
         encoding: u8,
     },
-    /// The digest is not that of the data.
+    /// The digest does not match the data.
     #[error("the digest does not fit the data of the {frame}; it was damaged on its way")]
     BadDigest {
         /// The frame.
         frame: FrameId,
     },
-    /// The data is not one whole gzip member.
+    /// The data is not one complete gzip member.
     #[error("the data of the {frame} is not one intact gzip member")]
     BadGzip {
         /// The frame.
         frame: FrameId,
     },
-    /// The data has another length than the header says it has before compression.
+    /// The length of the data before compression differs from the header.
     #[error("the data of the {frame} has not the plain length of {plain} bytes in its header")]
     PlainLengthMismatch {
         /// The frame.
@@ -124,7 +125,7 @@ pub enum FrameError {
         /// Claimed plain length in bytes.
         plain: u32,
     },
-    /// The data would be longer than the limit after decompression.
+    /// The decompressed data would exceed the limit.
     #[error(
         "the {frame} inflates to {plain} bytes, more than the limit of {limit}; raise \
          `inflated_bytes`"
@@ -137,7 +138,7 @@ pub enum FrameError {
         /// The limit in bytes.
         limit: u32,
     },
-    /// The data would grow by more than text does when it is inflated.
+    /// The decompressed data would grow by a larger factor than text does.
     #[error(
         "the {frame} inflates from {packed} bytes to {plain}, more than {limit} times as many; \
          raise `inflate_ratio`"
@@ -149,13 +150,13 @@ pub enum FrameError {
         plain: u32,
         /// Length of the compressed data in bytes.
         packed: usize,
-        /// The limit, in bytes of one byte.
+        /// The limit, as a factor.
         limit: u32,
     },
 }
 
 impl FrameError {
-    /// The error's fixed name, the same in every product of the spec.
+    /// Returns the fixed name of the error, which is the same in all implementations.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -174,13 +175,13 @@ impl FrameError {
         }
     }
 
-    /// Whether the place of the next frame is lost.
+    /// Returns `true` if the position of the next frame is unknown.
     #[must_use]
     pub fn is_fatal(&self) -> bool {
         self.frame().is_none()
     }
 
-    /// The frame that was skipped; `None` after a fatal error.
+    /// Returns the skipped frame, or `None` after a fatal error.
     #[must_use]
     pub fn frame(&self) -> Option<FrameId> {
         match *self {

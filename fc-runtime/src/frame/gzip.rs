@@ -1,16 +1,16 @@
-//! Gzip members around raw deflate, with compressor and decompressor kept for the next frame.
+//! Gzip members, with compressor and decompressor reused for the next frame.
 //!
-//! A fresh zlib state costs more than a small body, so that both directions keep theirs and reset
-//! it. The wrapper of a member is eighteen bytes and is written and read here.
+//! A new zlib state costs more than a small body, so both directions keep and reset their state. The eighteen bytes
+//! around the deflated data are written and read here.
 
 use flate2::{Compress, Compression, Crc, Decompress, FlushCompress, FlushDecompress, Status};
 
 const MAGIC: [u8; 3] = [0x1F, 0x8B, 8];
 const HEADER: [u8; 10] = [0x1F, 0x8B, 8, 0, 0, 0, 0, 0, 0, 0xFF];
 const TRAILER: usize = 8;
-/// More than the heads and ends of blocks of incompressible data add beside a ninth bit, in bytes.
+/// Upper limit of the bytes that block headers add to incompressible data, besides a ninth bit per byte.
 const BLOCKS: usize = 64;
-/// Least room for a first step of inflating, in bytes.
+/// Minimum room for the first step of inflating, in bytes.
 const FIRST_ROOM: usize = 4096;
 
 /// Compresses into gzip members.
@@ -21,7 +21,7 @@ pub struct Deflater {
 }
 
 impl Deflater {
-    /// `level` from 0 (store) to 9 (smallest); higher ones count as 9.
+    /// Creates a compressor with a level from 0 (store) to 9 (smallest). Higher levels count as 9.
     #[must_use]
     pub fn new(level: u8) -> Self {
         let level = level.min(9);
@@ -31,16 +31,16 @@ impl Deflater {
         }
     }
 
-    /// Replaces `out` by the member of `data`, unless that is not shorter than `data`: then
-    /// `false`, and `out` holds nothing of use.
+    /// Replaces `out` by the gzip member of `data`. If it is not shorter than `data`, returns `false`, and the content
+    /// of `out` is undefined.
     pub fn member(&mut self, data: &[u8], out: &mut Vec<u8>) -> bool {
         out.clear();
         out.extend_from_slice(&HEADER);
         if data.len() <= HEADER.len() + TRAILER {
             return false;
         }
-        // Room for the worst, nine bits a byte, though it is given up then: reset forgets only what has come to its end.
-        // What was cut off stays in zlib-rs 0.6.8 and adds up until it panics.
+        // Room for the worst case, nine bits per byte, although such a result is dropped: reset clears only a state
+        // that has reached its end. In zlib-rs 0.6.8, interrupted data remains and adds up to a panic.
         out.reserve_exact(data.len() + data.len() / 8 + BLOCKS);
         self.state.reset();
         let done = self.state.compress_vec(data, out, FlushCompress::Finish);
@@ -59,12 +59,12 @@ impl Deflater {
     }
 }
 
-/// Why a member was not inflated.
+/// The reason why a member could not be inflated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InflateError {
-    /// Not one intact member.
+    /// The data is not one intact member.
     Damaged,
-    /// Another length than announced.
+    /// The length differs from the announced one.
     Length,
 }
 
@@ -83,12 +83,12 @@ impl Default for Inflater {
 }
 
 impl Inflater {
-    /// Replaces `out` by the content of `member`, which has to be exactly `plain` bytes long.
+    /// Replaces `out` by the content of `member`, which must be exactly `plain` bytes long.
     ///
-    /// Memory grows with what really comes out, and never beyond `plain` bytes.
+    /// Memory grows with the inflated bytes, never beyond `plain` bytes.
     ///
     /// # Errors
-    /// Why not; `out` holds nothing of use then.
+    /// The reason. The content of `out` is undefined then.
     pub fn inflate(
         &mut self,
         member: &[u8],
@@ -106,7 +106,7 @@ impl Inflater {
             out.resize(length, 0);
             let target = out.get_mut(filled..).unwrap_or_default();
             let (rest, produced, ended) = if target.is_empty() {
-                // Full. The stream has to end here; a byte more is one too many.
+                // The buffer is full, so the stream must end here. One more byte is too many.
                 let step = self.step(deflated, &mut [0])?;
                 if step.1 > 0 {
                     return Err(InflateError::Length);
@@ -120,7 +120,7 @@ impl Inflater {
                 break rest;
             }
             if filled < out.len() || produced == 0 {
-                // The input is used up and the stream wants more of it.
+                // The input is used up, but the stream is not complete.
                 return Err(InflateError::Damaged);
             }
             room = room.saturating_mul(2);
@@ -138,8 +138,8 @@ impl Inflater {
         Ok(())
     }
 
-    /// Inflates on into `target`: what of `deflated` is left, how many bytes were produced, and
-    /// whether the stream has ended.
+    /// Inflates into `target`. Returns the rest of `deflated`, the number of produced bytes, and `true` at the end of
+    /// the stream.
     fn step<'a>(
         &mut self,
         deflated: &'a [u8],
@@ -158,13 +158,13 @@ impl Inflater {
     }
 }
 
-/// The last field of a member: its plain length modulo 2^32.
+/// Returns the last field of a member: its plain length modulo 2^32.
 fn length_field(length: usize) -> [u8; 4] {
     let [a, b, c, d, ..] = (length as u64).to_le_bytes();
     [a, b, c, d]
 }
 
-/// What follows the header of a member, with the optional fields some compressors write.
+/// Returns the bytes after the header of a member, which may contain optional fields.
 fn skip_header(member: &[u8]) -> Option<&[u8]> {
     let mut rest = member.strip_prefix(&MAGIC)?;
     let flags = *rest.first()?;

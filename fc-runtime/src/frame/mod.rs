@@ -1,17 +1,16 @@
-//! The frame codec: bytes to frames and back, without I/O.
+//! The frame codec, which converts bytes to frames and back, without I/O.
 //!
 //! ```text
 //! bytes ──► Decoder ──► Frame (borrowed body) │ FrameError
 //! body  ──► Encoder ──► bytes behind whatever the buffer already holds
 //! ```
 //!
-//! **Architecture invariant:** layout and numbers of the header come from
-//! [`Protocol`]. All this module takes for granted is that a frame is a header of fixed length with
-//! the data area behind it, and that the head is the header's first field.
+//! **Architecture invariant:** layout and numbers of the header come from [`Protocol`]. This module only assumes that a
+//! frame is a header of fixed length followed by the data, and that the head is the first field of the header.
 
 mod buffer;
 mod decoder;
-mod digest;
+mod digesting;
 mod encoder;
 mod error;
 mod gzip;
@@ -22,9 +21,10 @@ pub use buffer::Body;
 pub use decoder::Decoder;
 #[cfg(feature = "server")]
 pub(crate) use decoder::Work;
-pub(crate) use digest::Compute;
+#[cfg(test)]
+pub(crate) use digesting::Digesting;
 #[cfg(any(feature = "client", feature = "server"))]
-pub(crate) use digest::LONG;
+pub(crate) use digesting::LONG;
 #[cfg(feature = "client")]
 pub(crate) use encoder::Staged;
 #[cfg(feature = "server")]
@@ -43,7 +43,7 @@ use buffer::Buffer;
 use std::fmt;
 use std::ops::Range;
 
-/// A frame whose body still lies in the decoder.
+/// A frame. Its body is in the buffer of the decoder.
 pub struct Frame<'a, P: Protocol> {
     /// The header as received.
     pub header: P::Header,
@@ -60,13 +60,13 @@ impl<'a, P: Protocol> Frame<'a, P> {
         }
     }
 
-    /// Which message the frame belongs to.
+    /// Returns the id of the frame.
     #[must_use]
     pub fn id(&self) -> FrameId {
         FrameId::of::<P>(&self.header)
     }
 
-    /// The data, decompressed.
+    /// Returns the decompressed data.
     #[must_use]
     pub fn body(&self) -> &[u8] {
         self.buffer.get(&self.range)
@@ -78,14 +78,14 @@ impl<'a, P: Protocol> Frame<'a, P> {
         self.buffer.take(self.range, &mut Vec::new())
     }
 
-    /// Takes the data out of the decoder, which may go on in the memory of `spare`.
+    /// Takes the data out of the decoder. The decoder may continue with the memory of `spare`.
     #[cfg(feature = "client")]
     pub(crate) fn into_body_for(self, spare: &mut Vec<u8>) -> Body {
         self.buffer.take(self.range, spare)
     }
 }
 
-/// Shows no data: bodies may hold what must not be logged.
+/// Does not show the data, because bodies may contain data that must not be logged.
 impl<P: Protocol> fmt::Debug for Frame<'_, P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Frame({}, {} bytes)", self.id(), self.range.len())

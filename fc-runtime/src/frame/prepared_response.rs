@@ -7,14 +7,13 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// A response that is encoded and digested once and sent to any number of apps: a map or a picture that
-/// many ask for. Cheap to clone. `A` is how the protocol digests, which the compiler sees where it is sent.
+/// A response that is encoded and digested once and sent to any number of apps, such as a map or a picture. Cheap to
+/// clone. `A` is the digest algorithm of the protocol, which the compiler checks where the response is sent.
 ///
-/// Only the header and the keys of the envelope are made for each answer, and follow those of the
-/// response. It is never compressed, whatever the connection does otherwise: the envelope would have to be
-/// packed with it.
+/// For each request, only the header and the keys of the envelope are written; the envelope follows the response. A
+/// prepared response is never compressed, because the envelope would have to be compressed with it.
 ///
-/// [`Request::handle_prepared`](crate::Request::handle_prepared) sends it.
+/// Send it with [`Request::handle_prepared`](crate::Request::handle_prepared).
 pub struct PreparedResponse<M, A: DigestAlgorithm = Md5> {
     body: Arc<PreparedBody<A>>,
     message: PhantomData<fn() -> M>,
@@ -37,7 +36,7 @@ impl<M: Message, A: DigestAlgorithm> PreparedResponse<M, A> {
     ///
     /// # Errors
     ///
-    /// The response breaks a constraint of the spec: `out_of_range`, `bad_length` or `bad_pattern`.
+    /// The response violates a constraint of the spec: `out_of_range`, `bad_length` or `bad_pattern`.
     pub fn new(response: &M) -> Result<Self, BodyError> {
         response.check()?;
         let mut text = to_vec(response);
@@ -63,7 +62,7 @@ impl<M, A: DigestAlgorithm> Clone for PreparedResponse<M, A> {
     }
 }
 
-/// Shows the length alone: bodies may hold what must not be logged.
+/// Shows only the length, because bodies may contain data that must not be logged.
 impl<M, A: DigestAlgorithm> fmt::Debug for PreparedResponse<M, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "PreparedResponse({} bytes)", self.body.text.len())
@@ -75,11 +74,11 @@ impl<A: DigestAlgorithm> PreparedBody<A> {
         &self.text
     }
 
-    /// What makes it a whole body: the keys of an envelope.
+    /// Returns the keys of an envelope, which complete the body.
     pub(super) fn tail<E: Message>(&self, envelope: &E) -> Tail {
         let mut text = to_vec(envelope);
         if self.text.len() > 1 {
-            // In place of the opening brace.
+            // The comma replaces the opening brace.
             if let Some(first) = text.first_mut() {
                 *first = b',';
             }

@@ -1,36 +1,36 @@
-//! What reading one text may cost.
+//! The limits of one text that is read.
 
 use super::MAX_DEPTH;
 
-/// What reading one text may cost. [`Limits::json`](crate::Limits::json) makes it of a protocol's limits.
+/// The limits of one text that is read. [`Limits::json`](crate::Limits::json) creates it from the limits of a protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allowance {
-    /// Levels of nesting; more than [`MAX_DEPTH`] count as that.
+    /// Levels of nesting. Values above [`MAX_DEPTH`] count as [`MAX_DEPTH`].
     pub depth: usize,
-    /// Keys of objects and items of lists, those of all levels together.
+    /// Number of object keys and list items on all levels together.
     pub values: usize,
-    /// Memory for the items of lists, those of all levels together, in bytes: `{}` is short, and a
-    /// message without required keys that is read from it may be large.
+    /// Memory for the items of all lists, in bytes. The text `{}` is short, but a message without required keys that is
+    /// read from it may be large.
     pub list_bytes: usize,
 }
 
 impl Allowance {
-    /// What no message that people have thought of needs: the deepest nesting, a million keys and
-    /// items (1,048,576), and 32 MiB for the items of lists.
+    /// The default: the deepest nesting, 1,048,576 keys and items, and 32 MiB for the items of lists. No known message
+    /// needs more.
     pub const DEFAULT: Self = Self {
         depth: MAX_DEPTH,
         values: 1 << 20,
         list_bytes: 32 << 20,
     };
 
-    /// Whatever the text holds: for one that is trusted, or of which nothing is kept but the text.
+    /// No limits but the nesting, for trusted texts and for values that are kept as text.
     pub const ANY: Self = Self {
         depth: MAX_DEPTH,
         values: usize::MAX,
         list_bytes: usize::MAX,
     };
 
-    /// The default, but no deeper than this.
+    /// Returns the default with this depth.
     #[must_use]
     pub const fn depth(depth: usize) -> Self {
         Self {

@@ -1,22 +1,22 @@
-//! Enums: values told apart by what travels, and messages told apart by their keys.
+//! Enums, distinguished by their values, and one-ofs, distinguished by their keys.
 
 use super::error::shortened;
 use super::fields::{Lacking, read_name};
 use super::{BodyError, BodyErrorKind, Form, Reader};
 use std::fmt::Display;
 
-/// Reads a value of an open enum sent as a `W` in the form `F`.
+/// Reads a value of an open enum that is sent as a `W` in the form `F`.
 ///
 /// # Errors
-/// What is wrong with the value.
+/// The error of the value.
 pub fn open<F: Form<W>, W, T: From<W>>(reader: &mut Reader<'_>) -> Result<T, BodyError> {
     F::read(reader).map(T::from)
 }
 
-/// Reads a value of a closed enum sent as a `W` in the form `F`.
+/// Reads a value of a closed enum that is sent as a `W` in the form `F`.
 ///
 /// # Errors
-/// What is wrong with the value; `unknown_value`.
+/// The error of the value; `unknown_value`.
 pub fn closed<F: Form<W>, W, T: TryFrom<W, Error = BodyError>>(
     reader: &mut Reader<'_>,
 ) -> Result<T, BodyError> {
@@ -25,18 +25,18 @@ pub fn closed<F: Form<W>, W, T: TryFrom<W, Error = BodyError>>(
     T::try_from(F::read(reader)?).map_err(|error| error.at(start))
 }
 
-/// Reads a value of an open enum sent as a string.
+/// Reads a value of an open enum that is sent as a string.
 ///
 /// # Errors
-/// What is wrong with the value.
+/// The error of the value.
 pub fn open_str<T: for<'s> From<&'s str>>(reader: &mut Reader<'_>) -> Result<T, BodyError> {
     reader.string().map(|text| T::from(&*text))
 }
 
-/// Reads a value of a closed enum sent as a string.
+/// Reads a value of a closed enum that is sent as a string.
 ///
 /// # Errors
-/// What is wrong with the value; `unknown_value`.
+/// The error of the value; `unknown_value`.
 pub fn closed_str<T: for<'s> TryFrom<&'s str, Error = BodyError>>(
     reader: &mut Reader<'_>,
 ) -> Result<T, BodyError> {
@@ -45,7 +45,7 @@ pub fn closed_str<T: for<'s> TryFrom<&'s str, Error = BodyError>>(
     T::try_from(&*reader.string()?).map_err(|error| error.at(start))
 }
 
-/// The error of a value that a closed enum does not have.
+/// Returns the error of a value that a closed enum does not have.
 #[cold]
 pub fn unknown_value(value: impl Display) -> BodyError {
     BodyError::new(
@@ -55,11 +55,11 @@ pub fn unknown_value(value: impl Display) -> BodyError {
 }
 
 impl Reader<'_> {
-    /// Finds, without reading it, the first of some messages whose required keys the next value has
-    /// all. Gives its index. Each message is told by its [`lacking`](super::lacking).
+    /// Returns the index of the first message whose required keys are all in the next value. Does not read the value.
+    /// Each message is given by its [`lacking`](super::lacking).
     ///
     /// # Errors
-    /// `no_variant`; what is wrong with the JSON.
+    /// `no_variant`, or the error of the JSON text.
     pub fn choose(&mut self, messages: &[Lacking]) -> Result<usize, BodyError> {
         self.peek();
         let present = self.clone().required_keys(messages)?;

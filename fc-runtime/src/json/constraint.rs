@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// The smallest or largest value of a number, as the spec writes it.
+/// The smallest or largest value of a number, as written in the spec.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// An integer.
@@ -24,14 +24,14 @@ impl fmt::Display for Limit {
     }
 }
 
-/// Numbers that can be compared with a limit. An absent value keeps every constraint; a list keeps
-/// it if each item does.
+/// Numbers that can be compared with a limit. An absent value satisfies every constraint; a list satisfies it if all
+/// items do.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a number",
     note = "`min` and `max` are for numbers, and options and lists of them"
 )]
 pub trait Bounded {
-    /// Whether every number in here compares to `limit` as `wanted` or equal to it. NaN never does.
+    /// Returns `true` if every number inside is equal to `limit`, or compares to it as `wanted`. NaN never does.
     fn all_within(&self, limit: Limit, wanted: Ordering) -> bool;
 }
 
@@ -46,7 +46,7 @@ macro_rules! bounded {
                     reason = "a limit with a fraction is compared as a float"
                 )]
                 let order = match limit {
-                    Limit::Int(limit) => compare_int(*self, limit),
+                    Limit::Int(limit) => CompareInt::compare(*self, limit),
                     Limit::Float(limit) => (*self as f64).partial_cmp(&limit),
                 };
                 order.is_some_and(|order| order == wanted || order == Ordering::Equal)
@@ -57,14 +57,9 @@ macro_rules! bounded {
 
 bounded!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
 
-/// Numbers as they compare with an integer.
+/// Comparison of a number with an integer.
 trait CompareInt {
     fn compare(self, limit: i128) -> Option<Ordering>;
-}
-
-#[inline]
-fn compare_int<T: CompareInt>(value: T, limit: i128) -> Option<Ordering> {
-    value.compare(limit)
 }
 
 macro_rules! compare_int {
@@ -150,7 +145,7 @@ fn out_of_range(key: &'static str, relation: &str, limit: Limit) -> BodyError {
     note = "`length` is for `String`, `Vec` and `Bytes64`, and options of them"
 )]
 pub trait Measured {
-    /// Characters of a string, items of a list, bytes of base64; `None` of an absent value.
+    /// Returns the number of characters of a string, items of a list, or bytes of base64; `None` for an absent value.
     fn measure(&self) -> Option<usize>;
 }
 
@@ -207,7 +202,7 @@ pub fn length<T: Measured>(
     }
 }
 
-/// A regular expression that a string must match as a whole, compiled when it is first needed.
+/// A regular expression that must match a whole string. It is compiled at first use.
 #[derive(Debug)]
 pub struct Pattern {
     source: &'static str,
@@ -215,8 +210,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern with this source. One that is not a regular expression matches nothing; the derive
-    /// refuses it.
+    /// Creates a pattern. An invalid regular expression matches nothing; the derive reports it.
     #[must_use]
     pub const fn new(source: &'static str) -> Self {
         Self {
@@ -239,7 +233,7 @@ impl Pattern {
     note = "`pattern` is for `String`, and options and lists of it"
 )]
 pub trait Patterned {
-    /// Whether every string in here satisfies `matches`.
+    /// Returns `true` if every string inside satisfies `matches`.
     fn all_match(&self, matches: &dyn Fn(&str) -> bool) -> bool;
 }
 
@@ -280,16 +274,16 @@ pub fn matches<T: Patterned>(
     .in_key(key))
 }
 
-/// Values of enums that can be compared with those that a field takes.
+/// Enum values that can be compared with the values allowed for a field.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an enum of values",
     note = "`only` is for enums with `#[derive(OpenEnum)]`, and options and lists of them; `when` and `unless` ask for integers, bools and strings as well"
 )]
 pub trait Chosen {
-    /// What travels: an integer or a text.
+    /// The type that is sent: an integer or a string.
     type Wire: Copy + fmt::Display + 'static;
 
-    /// Whether every value in here travels as one of these.
+    /// Returns `true` if the sent form of every value inside is one of `taken`.
     fn all_among(&self, taken: &[Self::Wire]) -> bool;
 }
 
@@ -310,7 +304,7 @@ impl<T: Chosen> Chosen for Vec<T> {
     }
 }
 
-/// Checks `only`. An open enum's unknown value is none of those that are taken.
+/// Checks `only`. An unknown value of an open enum is never allowed.
 ///
 /// # Errors
 /// `out_of_range`.

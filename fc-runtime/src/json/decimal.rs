@@ -1,29 +1,27 @@
-//! Writes floats that people measured: a few digits before the point and a few behind it.
+//! Writes floats of measurements: few digits before and after the decimal point.
 
-/// Digits behind the point.
+/// Digits after the point.
 const DECIMALS: usize = 6;
-/// Ten to that.
+/// Ten to the power of [`DECIMALS`].
 const SCALE: u64 = 1_000_000;
-/// A number that fits here is found again among all numbers of 15 digits: none of them is as near to
-/// the same float.
+/// Largest scaled value. It has 15 digits, and no two numbers of 15 digits have the same nearest float.
 const LARGEST: f64 = 999_999_999_999_999.0;
-/// Smaller numbers are written with an exponent.
+/// Smaller values are written with an exponent.
 const SMALLEST: f64 = 1_000.0;
 
-/// Room for sign, digits and point; they are at its end.
+/// Buffer for sign, digits and point. They are at its end.
 #[derive(Debug, Default)]
 pub(super) struct Decimal([u8; 24]);
 
-/// Where the point stands.
+/// Index of the point.
 const POINT: usize = 24 - DECIMALS - 1;
 
 impl Decimal {
-    /// The shortest text that reads back as `value`, if that is a decimal of at most six digits behind
-    /// the point.
+    /// Returns the shortest text that reads back as `value`, or `None` if `value` has more than six digits after the
+    /// point.
     ///
-    /// Of at most 15 digits there is at most one that reads back as `value`, so whichever is found is
-    /// the shortest. Whether it does read back is decided by a division of two exact floats, whose
-    /// quotient is the nearest float, which is what a parser finds.
+    /// At most one decimal of up to 15 digits reads back as `value`, so the found one is the shortest. The check
+    /// divides two exact floats. Their quotient is the nearest float, which is the result of a parser.
     #[inline]
     pub(super) fn format(&mut self, value: f64) -> Option<&[u8]> {
         #[allow(clippy::cast_precision_loss, reason = "exact")]
@@ -32,7 +30,7 @@ impl Decimal {
         if scaled != 0.0 && !(SMALLEST..=LARGEST).contains(&scaled) {
             return None;
         }
-        // Signed, because machines convert signed integers faster.
+        // Signed, because processors convert signed integers faster.
         #[allow(
             clippy::cast_possible_truncation,
             reason = "within the bounds checked above"
@@ -47,7 +45,7 @@ impl Decimal {
         Some(self.write(value.is_sign_negative(), units.unsigned_abs()))
     }
 
-    /// `units` millionths.
+    /// Writes `units` millionths.
     fn write(&mut self, negative: bool, units: u64) -> &[u8] {
         let Self(room) = self;
         let (mut whole, part) = (units / SCALE, units % SCALE);
@@ -56,7 +54,7 @@ impl Decimal {
         if let Some(place) = room.last_chunk_mut::<DECIMALS>() {
             place.copy_from_slice(decimals);
         }
-        // At least one digit stays behind the point.
+        // At least one digit remains after the point.
         let zeros = decimals
             .iter()
             .skip(1)
@@ -92,7 +90,7 @@ fn put<const N: usize>(room: &mut [u8], start: usize, digits: [u8; N]) {
     }
 }
 
-/// The two digits of a number below 100.
+/// Returns the two digits of a number below 100.
 #[inline]
 fn pair(value: u64) -> [u8; 2] {
     const PAIRS: [[u8; 2]; 100] = pairs();

@@ -1,4 +1,4 @@
-//! Whole texts: bytes in, a value or a placed error out.
+//! Whole texts: bytes in, a value or an error with its position out.
 
 use super::fields::{Failed, Fields, FieldsOf, finish};
 use super::{
@@ -6,10 +6,10 @@ use super::{
 };
 use crate::message::{Empty, Enveloped, Message};
 
-/// Reads a text as one value with nothing but whitespace around it.
+/// Reads a text as one value. Whitespace may surround it.
 ///
 /// # Errors
-/// What is wrong with the text, placed.
+/// The error of the text, with its position.
 pub fn from_str<T: FromJson>(text: &str, allowance: Allowance) -> Result<T, BodyError> {
     let mut reader = Reader::new(text, allowance);
     let value = T::read(&mut reader).and_then(|value| reader.end().map(|()| value));
@@ -19,16 +19,17 @@ pub fn from_str<T: FromJson>(text: &str, allowance: Allowance) -> Result<T, Body
 /// Reads bytes as [`from_str`] reads text.
 ///
 /// # Errors
-/// `not_utf8`, or what is wrong with the text, placed.
+/// `not_utf8`, or the error of the text, with its position.
 pub fn from_slice<T: FromJson>(bytes: &[u8], allowance: Allowance) -> Result<T, BodyError> {
     from_str(utf8(bytes)?, allowance)
 }
 
-/// Reads the body of a frame by hand: `read` has a reader in front of an object. No bytes are read as `{}`. For bodies of
-/// no type that was known when the program was compiled.
+/// Reads the body of a frame with `read`, which gets a reader in front of an object. An empty body is read as `{}`.
+/// This is for bodies whose type is unknown at compile time.
 ///
 /// # Errors
-/// `not_utf8`, `not_an_object`, or what `read` found, placed; that the text is not JSON goes before it.
+/// `not_utf8`, `not_an_object`, or the error of `read`, with its position. If the text is not JSON, that error takes
+/// precedence.
 pub fn read_object<'a, T>(
     bytes: &'a [u8],
     allowance: Allowance,
@@ -40,10 +41,10 @@ pub fn read_object<'a, T>(
     value.map_err(|error| placed(text, allowance, error))
 }
 
-/// Reads the body of a frame as a message. No bytes are read as `{}`.
+/// Reads the body of a frame as a message. An empty body is read as `{}`.
 ///
 /// # Errors
-/// What is wrong with the body, placed; `not_an_object` if it is another JSON value.
+/// The error of the body, with its position; `not_an_object` for any other JSON value.
 pub fn decode<M: Message>(bytes: &[u8], allowance: Allowance) -> Result<M, BodyError> {
     let mut slots = M::slots();
     match fill(bytes, allowance, &mut FieldsOf::<M>(&mut slots)) {
@@ -66,12 +67,7 @@ fn fill<'a>(
         Ok(start)
     });
     match filled {
-        Ok(start) => Ok(Filled {
-            text,
-            allowance,
-            start,
-            lists: allowance.list_bytes - reader.list_bytes,
-        }),
+        Ok(start) => Ok(Filled::new(&reader, allowance, start)),
         Err(error) => Err(placed(text, allowance, error)),
     }
 }
@@ -80,14 +76,23 @@ fn fill<'a>(
 struct Filled<'a> {
     text: &'a str,
     allowance: Allowance,
-    /// Where the object starts.
+    /// Offset of the object's opening brace.
     start: usize,
-    /// What its lists took, in bytes.
+    /// Memory of its lists, in bytes.
     lists: usize,
 }
 
-impl Filled<'_> {
-    /// Makes a message of what has been read.
+impl<'a> Filled<'a> {
+    fn new(reader: &Reader<'a>, allowance: Allowance, start: usize) -> Self {
+        Self {
+            text: reader.text,
+            allowance,
+            start,
+            lists: allowance.list_bytes - reader.list_bytes,
+        }
+    }
+
+    /// Creates the message from the slots.
     fn finish<M: Message>(&self, slots: M::Slots) -> Result<M, BodyError> {
         match finish(slots, self.text, self.start) {
             Ok(message) => Ok(message),
@@ -104,7 +109,7 @@ pub fn to_vec<T: ToJson>(value: &T) -> Vec<u8> {
     out
 }
 
-/// See [`read_enveloped`](crate::message::read_enveloped). Beside it, what the lists of the body took, in
+/// Implements [`read_enveloped`](crate::message::read_enveloped). Returns also the memory of the body's lists, in
 /// bytes.
 pub(crate) fn enveloped<E: Message, B: Message>(
     bytes: &[u8],
@@ -127,7 +132,7 @@ pub(crate) fn enveloped<E: Message, B: Message>(
             Ok((enveloped, filled.lists))
         }
         Err(Failed::Envelope(error)) => Err(error),
-        // The own keys must not cost the envelope: read it again, alone.
+        // An error in the body must not lose the envelope: read the envelope again, alone.
         Err(Failed::Body(error)) => {
             let (alone, _) = enveloped::<E, Empty>(bytes, allowance)?;
             let enveloped = Enveloped {
@@ -149,12 +154,7 @@ fn fill_both<'a>(
     let text = body_text(bytes).map_err(Failed::Envelope)?;
     let mut reader = Reader::new(text, allowance);
     match reader.fill_both(envelope, body) {
-        Ok(start) => Ok(Filled {
-            text,
-            allowance,
-            start,
-            lists: allowance.list_bytes - reader.list_bytes,
-        }),
+        Ok(start) => Ok(Filled::new(&reader, allowance, start)),
         Err(Failed::Envelope(error)) => Err(Failed::Envelope(placed(text, allowance, error))),
         Err(Failed::Body(error)) => Err(Failed::Body(placed(text, allowance, error))),
     }
@@ -176,7 +176,7 @@ fn body_text(bytes: &[u8]) -> Result<&str, BodyError> {
 }
 
 impl Reader<'_> {
-    /// A body that is another JSON value than an object has an error of its own.
+    /// Returns the error of a body that is not an object.
     pub(super) fn expect_object(&mut self) -> Result<(), BodyError> {
         if self.peek() == Some(b'{') {
             return Ok(());
@@ -186,10 +186,10 @@ impl Reader<'_> {
     }
 }
 
-/// Completes an error on its way out.
+/// Adds the position to an error.
 ///
-/// A text that is not JSON is `bad_json` (or `too_deep`, or `too_many_values`) whatever else was wrong before that place,
-/// so that the error's name does not depend on the order in which a product looks at things.
+/// A text that is not JSON is `bad_json`, `too_deep` or `too_many_values`, even if another error comes first. So the
+/// name of the error does not depend on the order in which an implementation checks a text.
 #[cold]
 fn placed(text: &str, allowance: Allowance, error: BodyError) -> BodyError {
     let mut reader = Reader::new(text, allowance);

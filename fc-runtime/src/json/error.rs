@@ -1,9 +1,9 @@
-//! What can be wrong with a body, and where.
+//! Errors of a body, with their position.
 
 use std::borrow::Cow;
 use std::fmt::{self, Write as _};
 
-/// What is wrong with a body.
+/// The kind of an error of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BodyErrorKind {
     /// The bytes are not UTF-8.
@@ -12,36 +12,36 @@ pub enum BodyErrorKind {
     BadJson,
     /// The body is JSON, but not an object.
     NotAnObject,
-    /// A value of another kind than the field's.
+    /// The value has another kind than the field.
     WrongType,
     /// A required key is missing.
     MissingField,
-    /// A known key that comes twice in its object.
+    /// A known key occurs twice in its object.
     DuplicateKey,
-    /// Half of a surrogate pair that stands alone in a string or key that is read: no text has it.
+    /// Half of a surrogate pair without the other half, in a string or key that is read.
     LoneSurrogate,
-    /// A number outside the range of its type or of its constraint, or a value of an enum that its field does not take.
+    /// A number is outside the range of its type or constraint, or an enum value is not allowed for its field.
     OutOfRange,
-    /// A string, list or run of bytes of a length outside its constraint.
+    /// A string, list or byte string has a length outside its constraint.
     BadLength,
-    /// A string that does not match its pattern.
+    /// A string does not match its pattern.
     BadPattern,
-    /// A value that a closed enum does not have.
+    /// A closed enum does not have this value.
     UnknownValue,
-    /// An object that has the required keys of no variant of a one-of.
+    /// An object lacks required keys of every variant of a one-of.
     NoVariant,
-    /// Nested deeper than the limit.
+    /// The text is nested deeper than the limit.
     TooDeep,
-    /// More keys and items than the limit.
+    /// The text has more keys and items than the limit.
     TooManyValues,
     /// The items of lists take more memory than the limit.
     ListsTooLarge,
-    /// A string that is not base64 (RFC 4648, standard alphabet).
+    /// A string is not base64 (RFC 4648, standard alphabet).
     BadBase64,
 }
 
 impl BodyErrorKind {
-    /// Its name, the same in every product of the project.
+    /// Returns the name, which is the same in all implementations.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -65,10 +65,17 @@ impl BodyErrorKind {
     }
 }
 
-/// Longest quotation in a detail, in bytes: what is quoted comes from the peer, and goes back to it.
+/// Longest quotation in a detail, in bytes. It comes from the peer and may be sent back.
 const LONGEST_QUOTATION: usize = 200;
 
-/// The beginning of a text that may be long, which is never whole in memory.
+/// Returns at most the first `length` bytes of a text, cut between characters.
+pub(super) fn prefix(text: &str, length: usize) -> &str {
+    let mut ends = (0..=length.min(text.len())).rev();
+    let end = ends.find(|end| text.is_char_boundary(*end));
+    text.get(..end.unwrap_or(0)).unwrap_or_default()
+}
+
+/// Returns the beginning of a text, without keeping the whole text in memory.
 pub(super) fn shortened(text: impl fmt::Display) -> String {
     struct Short(String);
 
@@ -79,9 +86,7 @@ pub(super) fn shortened(text: impl fmt::Display) -> String {
                 self.0.push_str(piece);
                 return Ok(());
             }
-            let whole = |end: &usize| piece.is_char_boundary(*end);
-            let end = (0..=room).rev().find(whole).unwrap_or(0);
-            self.0.push_str(piece.get(..end).unwrap_or_default());
+            self.0.push_str(prefix(piece, room));
             Err(fmt::Error)
         }
     }
@@ -94,9 +99,9 @@ pub(super) fn shortened(text: impl fmt::Display) -> String {
     short.0
 }
 
-/// A body that could not be read, or that breaks its constraints.
+/// A body that cannot be read or violates a constraint.
 ///
-/// One pointer wide, so that results stay small on the path where nothing is wrong.
+/// One pointer wide, so that results without an error stay small.
 #[derive(Clone, PartialEq, Eq)]
 pub struct BodyError(Box<Fault>);
 
@@ -104,13 +109,13 @@ pub struct BodyError(Box<Fault>);
 struct Fault {
     kind: BodyErrorKind,
     detail: Cow<'static, str>,
-    /// `None` until a reader has met the error, and for a message that was never text.
+    /// `None` until a reader adds it, and for a message that was never text.
     offset: Option<usize>,
     path: String,
 }
 
 impl BodyError {
-    /// An error of this kind; `detail` says what was found and what is wanted.
+    /// Creates an error. `detail` describes the found and the expected value.
     #[cold]
     #[must_use]
     pub fn new(kind: BodyErrorKind, detail: impl Into<Cow<'static, str>>) -> Self {
@@ -122,44 +127,44 @@ impl BodyError {
         }))
     }
 
-    /// The error of a required key that is not there.
+    /// Creates the error of a missing required key.
     #[cold]
     #[must_use]
     pub fn missing(key: &str) -> Self {
         Self::new(BodyErrorKind::MissingField, "the key is required; send it").in_key(key)
     }
 
-    /// What is wrong.
+    /// Returns the kind.
     #[must_use]
     pub fn kind(&self) -> BodyErrorKind {
         self.0.kind
     }
 
-    /// The kind's name, the same in every product of the project.
+    /// Returns the name of the kind, which is the same in all implementations.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.0.kind.name()
     }
 
-    /// Where in the body, such as `data.stations[3].x`; empty for the body itself.
+    /// Returns the path in the body, such as `data.stations[3].x`, or an empty string for the body itself.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.0.path
     }
 
-    /// Bytes of the body before the fault; 0 for a message that was never text.
+    /// Returns the byte offset of the error in the body, or 0 for a message that was never text.
     #[must_use]
     pub fn offset(&self) -> usize {
         self.0.offset.unwrap_or(0)
     }
 
-    /// What was found and what is wanted.
+    /// Returns the description of the found and the expected value.
     #[must_use]
     pub fn detail(&self) -> &str {
         &self.0.detail
     }
 
-    /// The error as seen from the object that holds it under `key`.
+    /// Adds the key of the enclosing object to the path.
     #[cold]
     #[must_use]
     pub fn in_key(mut self, key: &str) -> Self {
@@ -171,7 +176,7 @@ impl BodyError {
         self
     }
 
-    /// The error as seen from the list that holds it at `index`.
+    /// Adds the index of the enclosing list to the path.
     #[cold]
     #[must_use]
     pub fn in_item(mut self, index: usize) -> Self {
@@ -183,7 +188,7 @@ impl BodyError {
         self
     }
 
-    /// Notes where the text was being read, unless a deeper place has been noted.
+    /// Adds the offset of the reader, unless an inner one is known.
     #[cold]
     #[must_use]
     pub(crate) fn at(mut self, offset: usize) -> Self {
@@ -191,12 +196,12 @@ impl BodyError {
         self
     }
 
-    /// The offset, if a reader has noted one.
+    /// Returns the offset, or `None` if no reader has added one.
     pub(crate) fn noted_offset(&self) -> Option<usize> {
         self.0.offset
     }
 
-    /// Puts the place known from the text before the path known from the message.
+    /// Sets the offset and the whole path.
     #[cold]
     #[must_use]
     pub(crate) fn placed(mut self, offset: usize, path: String) -> Self {
@@ -205,7 +210,7 @@ impl BodyError {
         self
     }
 
-    /// Changes what is wrong, keeping the place.
+    /// Changes the kind and keeps the position.
     #[cold]
     #[must_use]
     pub(crate) fn with_kind(mut self, kind: BodyErrorKind) -> Self {

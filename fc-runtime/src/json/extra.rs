@@ -1,26 +1,24 @@
-//! Keys that are carried along without being known.
+//! Unknown keys that are kept.
 
 use super::scan::plain_run;
 use super::{Allowance, BodyError, Json, JsonRef, Reader, Writer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// The keys of an object that its type does not know, in the order in which they came, with
-/// duplicates.
+/// The unknown keys of an object in the order received, with duplicates.
 ///
-/// They are kept as one text, so that they cost about as many bytes as they were sent with, however
-/// many they are. Values keep their exact text; keys are written as the runtime writes them, with no
-/// more escapes than JSON requires. To look one up takes a pass over the text.
+/// They are kept as one text of about the received length. Values keep their exact text; keys are written with only the
+/// escapes that JSON requires. A lookup scans the text.
 ///
-/// Equality is equality of keys, of the texts of their values, and of their order.
+/// Two values are equal if keys, texts of values and their order are equal.
 #[derive(Clone, Default, PartialEq, Eq, Hash)]
 pub struct Extra {
-    /// The members as they are written, each with a comma in front: `,"a":1,"b":[2]`.
+    /// The members in written form, each with a leading comma: `,"a":1,"b":[2]`.
     text: String,
 }
 
 impl Extra {
-    /// No keys.
+    /// Creates an empty set of keys.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -28,20 +26,20 @@ impl Extra {
         }
     }
 
-    /// Keys and values in order.
+    /// Returns keys and values in order.
     pub fn iter(&self) -> impl Iterator<Item = (Cow<'_, str>, JsonRef<'_>)> {
         self.members().map(|member| (member.key, member.value))
     }
 
-    /// The value of a key; of its last occurrence if it came more than once.
+    /// Returns the value of a key. If the key occurs more than once, returns the last value.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<JsonRef<'_>> {
         let found = self.members().filter(|member| member.key == key).last();
         found.map(|member| member.value)
     }
 
-    /// Sets a key, in place of all its former values, which are dropped. A key of the message's own
-    /// belongs into its field: here it would be sent twice.
+    /// Sets a key and drops all its former values. Set known keys in their fields instead; here they would be sent
+    /// twice.
     #[allow(
         clippy::needless_pass_by_value,
         reason = "a value belongs to the message that it is set in"
@@ -65,22 +63,22 @@ impl Extra {
         *self = changed;
     }
 
-    /// Whether there are no keys.
+    /// Returns `true` if there are no keys.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()
     }
 
-    /// Number of keys. Takes a pass over the text.
+    /// Returns the number of keys. Scans the text.
     #[must_use]
     pub fn len(&self) -> usize {
         self.members().count()
     }
 
-    /// Reads the value of an unknown key and keeps it. Derived messages call it.
+    /// Reads and keeps the value of an unknown key. Derived messages call it.
     ///
     /// # Errors
-    /// What is wrong with the JSON.
+    /// The error of the value.
     pub fn keep(&mut self, key: &str, reader: &mut Reader<'_>) -> Result<(), BodyError> {
         let value = reader.value_text()?;
         let needed = key.len() + value.len() + PUNCTUATION;
@@ -89,7 +87,7 @@ impl Extra {
         Ok(())
     }
 
-    /// The members as they are written into an object.
+    /// Returns the members in written form.
     pub(super) fn text(&self) -> &str {
         &self.text
     }
@@ -114,18 +112,18 @@ impl Extra {
     }
 }
 
-/// Bytes of a member beside its key and value.
+/// Bytes of a member besides its key and value.
 const PUNCTUATION: usize = ",\"\":".len();
 
 /// One key and its value.
 struct Member<'a> {
     key: Cow<'a, str>,
     value: JsonRef<'a>,
-    /// Both, with the comma in front.
+    /// Key and value with the leading comma.
     text: &'a str,
 }
 
-/// What is still to be read of the text.
+/// The unread part of the text.
 struct Members<'a>(Reader<'a>);
 
 impl<'a> Iterator for Members<'a> {
@@ -134,7 +132,7 @@ impl<'a> Iterator for Members<'a> {
     fn next(&mut self) -> Option<Member<'a>> {
         let reader = &mut self.0;
         let start = reader.offset();
-        // Nothing but the end can be met: only what has been read is kept.
+        // The only possible end is the end of the text, because all kept members have been read before.
         if !reader.take(",") {
             return None;
         }

@@ -1,18 +1,17 @@
-//! The fields of objects, found in their order and looked up where they come in another.
+//! Fields of objects, found in their order or looked up in any other order.
 //!
-//! A message names its fields to the reader ([`Message::read_fields`]) again and again until the
-//! object is read. Each name is compared with the text where the reader stands, which is all it
-//! takes while keys are written as everybody writes them. Otherwise the reader comes to a halt: it
-//! goes to the end of the text, where no name fits, and [`Halt`] says what the names are for.
+//! A message names its fields to the reader ([`Message::read_fields`]) again and again until the object is read. The
+//! reader compares each name with the text at its position. If all keys come in their usual order and spelling, it
+//! needs nothing else. Otherwise the reader stops: it moves to the end of the text, where no name matches, and
+//! [`ReaderState`] specifies the purpose of the names.
 
-use super::halt::Halt;
+use super::reader_state::ReaderState;
 use super::{Allowance, BodyError, BodyErrorKind, Extra, Form, FromJson, Plain, Reader};
 use crate::message::Message;
 use std::borrow::Cow;
 use std::mem;
 
-/// The fields of a message, without the message's type: the loops over keys are then compiled once
-/// and not for every message.
+/// The fields of a message without its type, so that the loops over keys are compiled once and not for every message.
 pub(super) trait Fields {
     fn read(&mut self, reader: &mut Reader<'_>);
 }
@@ -26,10 +25,10 @@ impl<M: Message> Fields for FieldsOf<'_, M> {
     }
 }
 
-/// Tells which required fields of a message, by their names, have no key among these.
+/// Returns the names of required fields of a message that are not among these keys.
 pub type Lacking = fn(&[Cow<'_, str>]) -> Vec<&'static str>;
 
-/// The names of a message's required fields, `"stationId":`, that have no key among these.
+/// Returns the names of a message's required fields, such as `"stationId":`, that are not among these keys.
 #[must_use]
 pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<&'static str> {
     lacking_of(present, &mut FieldsOf::<M>(&mut M::slots()))
@@ -37,25 +36,25 @@ pub fn lacking<M: Message>(present: &[Cow<'_, str>]) -> Vec<&'static str> {
 
 fn lacking_of(present: &[Cow<'_, str>], fields: &mut dyn Fields) -> Vec<&'static str> {
     let mut reader = Reader::new("", Allowance::depth(0));
-    reader.halt = Halt::Lacking {
+    reader.state = ReaderState::LackingKeys {
         present,
         lacking: Vec::new(),
     };
     fields.read(&mut reader);
-    match reader.halt {
-        Halt::Lacking { lacking, .. } => lacking,
+    match reader.state {
+        ReaderState::LackingKeys { lacking, .. } => lacking,
         _ => Vec::new(),
     }
 }
 
-/// Whether a field's name, `"stationId":`, is that of `key`.
+/// Returns `true` if a field's name, such as `"stationId":`, is the name of `key`.
 #[allow(
     clippy::ptr_arg,
     reason = "a key with escapes is owned, and compared otherwise"
 )]
 fn names(name: &str, key: &Cow<'_, str>) -> bool {
     match key {
-        // As sent, so that a key with something to escape is not among them.
+        // A borrowed key has no escapes, so it is compared as sent.
         Cow::Borrowed(key) => plain(name) == *key,
         Cow::Owned(key) => read_name(name) == *key,
     }
@@ -66,13 +65,13 @@ fn plain(name: &str) -> &str {
         .unwrap_or_default()
 }
 
-/// The key of a field's name.
+/// Returns the key of a field's name.
 pub(super) fn read_name(name: &str) -> String {
     let key = Reader::new(name, Allowance::depth(0)).string();
     key.map(Cow::into_owned).unwrap_or_default()
 }
 
-/// Makes a message of the object at `start` of `text`, whose fields have been read.
+/// Creates a message from its slots after the object at `start` of `text` has been read.
 pub(super) fn finish<M: Message>(
     slots: M::Slots,
     text: &str,
@@ -87,10 +86,10 @@ pub(super) fn finish<M: Message>(
     }
 }
 
-/// The fault of an object that lacks a required key.
+/// Returns the error of an object without a required key.
 #[cold]
 fn incomplete(text: &str, start: usize, lacking: Lacking) -> BodyError {
-    // It has been read once, within its allowance.
+    // The text has already been read within its allowance.
     let mut reader = Reader::new(text, Allowance::ANY);
     reader.at = start;
     match reader.required_keys(&[lacking]) {
@@ -102,23 +101,23 @@ fn incomplete(text: &str, start: usize, lacking: Lacking) -> BodyError {
     }
 }
 
-/// How a message names its fields.
+/// Field names of a message.
 ///
-/// A name is the text in front of the value: `"stationId":`.
+/// A name is the text before the value: `"stationId":`.
 impl<'a> Reader<'a> {
     /// Reads a field if it comes next.
-    // In an optimized build the comparison is as fast as its name is constant; in any other the
-    // body would only be compiled at every field.
+    // Inlined in optimized builds, where a comparison with a constant name is fast. In other builds it would only be
+    // compiled at every field.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn field<T: FromJson>(&mut self, name: &'static str, slot: &mut Option<T>) {
         if self.take(name) {
             self.rest_of_field::<Plain, T>(slot);
         } else if self.rest().is_empty() {
-            self.halted_field::<Plain, T>(&[name], slot);
+            self.stopped_field::<Plain, T>(&[name], slot);
         }
     }
 
-    /// Reads a field that has one or several names, in the form `F`, as [`field`](Self::field) does.
+    /// Reads a field with one or several names in the form `F`, as [`field`](Self::field) does.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn field_as<F: Form<T>, T: FromJson>(
         &mut self,
@@ -128,11 +127,11 @@ impl<'a> Reader<'a> {
         if names.iter().any(|name| self.take(name)) {
             self.rest_of_field::<F, T>(slot);
         } else if self.rest().is_empty() {
-            self.halted_field::<F, T>(names, slot);
+            self.stopped_field::<F, T>(names, slot);
         }
     }
 
-    /// Reads a value and what follows it up to the next key.
+    /// Reads a value and the text after it, up to the next key.
     fn rest_of_field<F: Form<T>, T>(&mut self, slot: &mut Option<T>) {
         if slot.is_some() {
             return self.came_before();
@@ -150,7 +149,7 @@ impl<'a> Reader<'a> {
     }
 
     #[cold]
-    fn halted_field<F: Form<T>, T: FromJson>(
+    fn stopped_field<F: Form<T>, T: FromJson>(
         &mut self,
         names: &[&'static str],
         slot: &mut Option<T>,
@@ -160,15 +159,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Says what the halt asks of a field; whether its value is to be read now.
+    /// Answers for a field the question of the reader's state. Returns `true` if the value must be read now.
     fn claim(&mut self, known: &[&'static str], optional: bool) -> bool {
-        match &mut self.halt {
-            Halt::Key { key, value, .. } if known.iter().any(|name| names(name, key)) => {
+        match &mut self.state {
+            ReaderState::KeySearch { key, value, .. }
+                if known.iter().any(|name| names(name, key)) =>
+            {
                 self.at = *value;
-                self.halt = Halt::No;
+                self.state = ReaderState::Reading;
                 true
             }
-            Halt::Lacking { present, lacking } => {
+            ReaderState::LackingKeys { present, lacking } => {
                 let mut known = known.iter();
                 let is_present = |name: &&str| present.iter().any(|key| names(name, key));
                 if !optional && !known.clone().any(is_present) {
@@ -180,12 +181,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Names the place where unknown keys are kept.
+    /// Names the field that keeps unknown keys.
     pub fn extra(&mut self, extra: &mut Extra) {
-        if let Halt::Key {
+        if let ReaderState::KeySearch {
             keep: true, value, ..
-        } = self.halt
-            && let Halt::Key { key, .. } = mem::replace(&mut self.halt, Halt::No)
+        } = self.state
+            && let ReaderState::KeySearch { key, .. } =
+                mem::replace(&mut self.state, ReaderState::Reading)
         {
             self.at = value;
             let kept = self.count(1).and_then(|()| extra.keep(&key, self));
@@ -196,7 +198,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Ends the reading at the value of a key that the object has had.
+    /// Ends the reading at a repeated key.
     #[cold]
     fn came_before(&mut self) {
         self.peek();
@@ -209,26 +211,26 @@ impl<'a> Reader<'a> {
 
     #[cold]
     fn fail(&mut self, error: BodyError) {
-        self.halt = Halt::Fault(error);
+        self.state = ReaderState::Failed(error);
         self.at = self.text.len();
     }
 
-    /// What has come of naming fields: the fault of a value, if one could not be read.
+    /// Returns the error of a value after the fields have been named.
     #[inline]
     fn fields_read(&mut self) -> Result<(), BodyError> {
-        if !matches!(self.halt, Halt::Fault(_)) {
+        if !matches!(self.state, ReaderState::Failed(_)) {
             return Ok(());
         }
-        match mem::replace(&mut self.halt, Halt::No) {
-            Halt::Fault(error) => Err(error),
+        match mem::replace(&mut self.state, ReaderState::Reading) {
+            ReaderState::Failed(error) => Err(error),
             _ => Ok(()),
         }
     }
 
-    /// Reads a key and asks whose it is.
+    /// Reads a key and stops, to find the field with this name.
     fn ask(&mut self, keep: bool) -> Result<(), BodyError> {
         let key = self.key()?;
-        self.halt = Halt::Key {
+        self.state = ReaderState::KeySearch {
             key,
             value: self.at,
             keep,
@@ -237,12 +239,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Skips the value of a key that nobody has claimed.
+    /// Skips the value of a key that no field has claimed.
     fn skip_unclaimed(&mut self) -> Result<(), BodyError> {
-        let Halt::Key { value, .. } = self.halt else {
+        let ReaderState::KeySearch { value, .. } = self.state else {
             return Ok(());
         };
-        self.halt = Halt::No;
+        self.state = ReaderState::Reading;
         self.at = value;
         self.count(1)?;
         self.skip_value()?;
@@ -258,8 +260,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads an object and tells which of its keys some of these messages require, each once: they
-    /// are few, however many keys there are.
+    /// Reads an object and returns its keys that some of these messages require, each once. So the number of returned
+    /// keys is small, however many the object has.
     pub(super) fn required_keys(
         &mut self,
         messages: &[Lacking],
@@ -281,7 +283,7 @@ impl<'a> Reader<'a> {
         Ok(keys)
     }
 
-    /// Reads an object into fields. Gives the place of its opening brace.
+    /// Reads an object into fields. Returns the offset of its opening brace.
     pub(super) fn object(&mut self, fields: &mut dyn Fields) -> Result<usize, BodyError> {
         let start = self.begin_object()?;
         loop {
@@ -300,7 +302,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a whole text that is an object into the fields of an envelope and of a body.
+    /// Reads a whole text, which must be an object, into the fields of an envelope and of a body.
     pub(super) fn fill_both(
         &mut self,
         envelope: &mut dyn Fields,
@@ -323,7 +325,7 @@ impl<'a> Reader<'a> {
                 self.ask(false).map_err(Envelope)?;
                 envelope.read(self);
                 self.fields_read().map_err(Envelope)?;
-                if let Halt::Key { keep, .. } = &mut self.halt {
+                if let ReaderState::KeySearch { keep, .. } = &mut self.state {
                     *keep = true;
                 }
                 body.read(self);
@@ -336,7 +338,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Which half of a message with an envelope could not be read.
+/// The half of a message that could not be read.
 pub(super) enum Failed {
     Envelope(BodyError),
     Body(BodyError),

@@ -1,12 +1,11 @@
-//! Values sent in another form than their type's own, and forms that a lenient decoder
-//! takes for it.
+//! Values that are sent in another form than that of their type, and forms that a lenient decoder accepts.
 
 use super::number::Integer;
 use super::{Allowance, BodyError, BodyErrorKind, FromJson, Reader, Writer};
 use std::marker::PhantomData;
 use std::num::IntErrorKind;
 
-/// A way to read a `T`.
+/// A form in which a `T` is read.
 #[diagnostic::on_unimplemented(
     message = "a field of type `{T}` cannot be read in this form",
     note = "`empty_is_absent` needs an `Option`"
@@ -15,7 +14,7 @@ pub trait Form<T> {
     /// Reads the next value.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the value.
     fn read(reader: &mut Reader<'_>) -> Result<T, BodyError>;
 }
 
@@ -70,8 +69,8 @@ impl<T: ReadLenientBool> Form<T> for LenientBool {
     }
 }
 
-/// `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as an absent optional field, anything
-/// else in the form `F`.
+/// `empty_is_absent`: `null`, `{}`, `[]` and `""` are read as an absent optional field, any other value in the form
+/// `F`.
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyIsAbsent<F = Plain>(PhantomData<F>);
 
@@ -101,7 +100,7 @@ impl Reader<'_> {
         empty
     }
 
-    /// Reads a string whose whole text `parse` reads as a value.
+    /// Reads a string and parses its whole content with `parse`.
     fn quoted<T>(
         &mut self,
         wanted: &str,
@@ -114,7 +113,7 @@ impl Reader<'_> {
         let text = self.string()?;
         let mut inside = Reader::new(&text, Allowance::depth(0));
         let value = parse(&mut inside);
-        // A number in a string has no whitespace around it.
+        // Whitespace around a number in a string is an error.
         let begins = !text.starts_with([' ', '\t', '\n', '\r']);
         match value {
             Ok(value) if begins && inside.byte().is_none() => Ok(value),
@@ -130,7 +129,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads the number 1 as true and 0 as false, however they are written.
+    /// Reads the number 1 as true and 0 as false, in any notation.
     fn zero_or_one(&mut self, wanted: &str) -> Result<bool, BodyError> {
         self.peek();
         let mut start = self.clone();
@@ -159,7 +158,7 @@ impl Reader<'_> {
     fn hexadecimal<T: Integer>(&mut self) -> Option<Result<T, BodyError>> {
         let prefixed = self.text.strip_prefix("0x");
         let digits = prefixed.or_else(|| self.text.strip_prefix("0X"))?;
-        // The parser of the standard library takes a sign, which has no place behind `0x`.
+        // The parser of the standard library accepts a sign, which is not allowed after `0x`.
         if digits.starts_with('+') {
             return None;
         }
@@ -178,7 +177,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a whole text is a number: one that is too large may end before its text does.
+/// Returns `true` if the whole text is a number. A number that is out of range may end before its text does.
 #[cold]
 fn is_number(text: &str) -> bool {
     let prefixed = text.strip_prefix("0x");
@@ -189,7 +188,7 @@ fn is_number(text: &str) -> bool {
     reader.skip_value().is_ok() && reader.byte().is_none()
 }
 
-/// A value that can travel inside a JSON string.
+/// A value that can be sent inside a JSON string.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot travel inside a string",
     note = "`wire = \"string\"` is for numbers and bools, and options and lists of them"
@@ -204,7 +203,7 @@ pub trait Quotable: Sized {
     fn write_quoted(&self, writer: &mut Writer<'_>);
 }
 
-/// A value that can travel as a number, though it is none.
+/// A value that can be sent as a number although it is not a number.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot travel as 1 or 0",
     note = "`wire = \"number\"` is for `bool`, and options and lists of it"
@@ -283,7 +282,7 @@ macro_rules! lenient_floats {
                     return reader.$float();
                 }
                 reader.quoted("a number", |inside| match inside.hexadecimal::<u64>() {
-                    // An integer, which a float takes as its nearest value.
+                    // The integer is converted to the nearest float.
                     #[allow(
                         clippy::cast_precision_loss,
                         reason = "the nearest value is what is wanted"

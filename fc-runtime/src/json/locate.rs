@@ -1,21 +1,22 @@
-//! Finds the path of a place in a JSON text, once something is wrong there.
+//! Finds the path of an offset in a JSON text, for error messages.
 //!
-//! Reading notes only offsets; the path is worked out from the text afterwards, in one pass, so
-//! that it costs nothing where nothing is wrong.
+//! The reader keeps only offsets. The path is computed from the text after an error, so that valid texts do not pay for
+//! it.
 
+use super::error::prefix;
 use std::fmt::Write as _;
 
-/// Longest part of a path, in bytes: keys come from the peer.
+/// Longest key in a path, in bytes. Keys come from the peer.
 const LONGEST_KEY: usize = 64;
 
 enum Level<'a> {
-    /// In an object, behind this key (without quotes, as sent).
+    /// In an object, after this key (without quotes, as sent).
     Object { key: Option<&'a str>, value: bool },
     /// In a list, at this item.
     Array { index: usize },
 }
 
-/// The path of the value at `offset`, such as `data.stations[3].x`.
+/// Returns the path of the value at `offset`, such as `data.stations[3].x`.
 pub(super) fn path(text: &str, offset: usize) -> String {
     let bytes = text.as_bytes();
     let mut levels: Vec<Level<'_>> = Vec::new();
@@ -62,7 +63,7 @@ pub(super) fn path(text: &str, offset: usize) -> String {
     print(&levels)
 }
 
-/// Where the quote is that closes a string whose content starts at `at`.
+/// Returns the offset of the closing quote of a string whose content starts at `at`.
 fn string_end(bytes: &[u8], mut at: usize) -> usize {
     while let Some(&byte) = bytes.get(at) {
         match byte {
@@ -85,7 +86,7 @@ fn print(levels: &[Level<'_>]) -> String {
                 if !path.is_empty() {
                     path.push('.');
                 }
-                let short = key.floor_char_boundary_at(LONGEST_KEY);
+                let short = prefix(key, LONGEST_KEY);
                 path.push_str(short);
                 if short.len() < key.len() {
                     path.push('…');
@@ -99,21 +100,6 @@ fn print(levels: &[Level<'_>]) -> String {
         }
     }
     path
-}
-
-trait Shorten {
-    fn floor_char_boundary_at(&self, length: usize) -> &Self;
-}
-
-impl Shorten for str {
-    /// At most the first `length` bytes, ending between characters.
-    fn floor_char_boundary_at(&self, length: usize) -> &Self {
-        let mut end = length.min(self.len());
-        while !self.is_char_boundary(end) {
-            end -= 1;
-        }
-        self.get(..end).unwrap_or_default()
-    }
 }
 
 #[cfg(test)]

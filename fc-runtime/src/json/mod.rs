@@ -1,26 +1,25 @@
-//! JSON read and written straight from and to typed values.
+//! Reads JSON into typed values and writes it from them, in one pass.
 //!
-//! The type directs the reading: a derived message compares the text with the literal `"key":` of
-//! its next field and only where that fails looks the key up. The grammar is that of RFC 8259,
-//! exactly; what is not JSON is refused as `serde_json` refuses it. Where that leaves open what a
-//! text means, the rules are those of I-JSON (RFC 7493), and they are the protocol's: its vectors
-//! (`json.json`) hold every implementation to them.
+//! The type directs the reader. A derived message compares the text with the literal `"key":` of its next field, and
+//! looks the key up only if they differ. The grammar is exactly RFC 8259, and errors agree with `serde_json`. Where the
+//! grammar leaves the meaning of a text open, the reader follows I-JSON (RFC 7493). The golden frames (`json.json`)
+//! test these rules in every implementation:
 //!
-//! - A known key that comes more than once in its object is `duplicate_key`, whatever its values.
-//! - Unknown keys are kept as their text ([`Extra`]), or skipped where a message keeps none. Nothing but
-//!   the grammar is asked of their values, and nothing is changed in them: who knows the key judges.
-//! - `null` is read as an absent [`Option`]; an absent `Option` is not written.
-//! - An integer is what amounts to one, as in JSON Schema: `5`, `5.0` and `50e-1` are the same `5`,
-//!   exactly, and it is written as `5`. `-0` is `0`.
-//! - A float is the nearest to the number; one beyond its type is `out_of_range`.
-//! - Half of a surrogate pair, `"\ud800"`, is no text: `lone_surrogate` in a string that is read, and in a
-//!   key of an object that is read as a message.
-//! - A text that is not JSON is `bad_json` (or `too_deep`) whatever else is wrong with it.
-//! - A text that costs more than its [`Allowance`] is refused, whatever comes behind that place.
-//! - A body that is not an object is `not_an_object`; inside a body the same is `wrong_type`.
+//! - A known key that occurs twice in its object is `duplicate_key`, whatever its values.
+//! - Unknown keys are kept as text ([`Extra`]), or skipped if the message has no field for them. Their values are
+//!   checked against the grammar only and are never changed.
+//! - `null` is read as an absent [`Option`]. An absent `Option` is not written.
+//! - A number with an integral value is an integer, as in JSON Schema: `5`, `5.0` and `50e-1` are all exactly `5`, and
+//!   are written as `5`. `-0` is `0`.
+//! - A float is the nearest value of its type. A number beyond the type's range is `out_of_range`.
+//! - Half of a surrogate pair, such as `"\ud800"`, is not text. It is `lone_surrogate` in a string that is read, and in
+//!   a key of an object that is read as a message.
+//! - A text that is not JSON is `bad_json` or `too_deep`, even if it has other errors.
+//! - A text beyond its [`Allowance`] is an error, whatever follows.
+//! - A body that is not an object is `not_an_object`. The same inside a body is `wrong_type`.
 
-// The writer, the fields and the values import each other: a value says how it is written, and the writer of an object
-// writes values. A file below them all would have to hold their traits without what the traits are about.
+// The writer, the fields and the values import each other: a value specifies how it is written, and the writer of an
+// object writes values. Only a module with all of their traits could avoid this.
 mod allowance;
 mod base64;
 mod choice;
@@ -31,11 +30,11 @@ mod error;
 mod extra;
 mod fields;
 mod form;
-mod halt;
 mod locate;
 mod number;
 mod primitive;
 mod reader;
+mod reader_state;
 mod scan;
 #[cfg(feature = "serde")]
 mod serde;
@@ -65,8 +64,8 @@ pub use self::serde::Serde;
 pub use self::value::{Json, JsonRef};
 pub use self::writer::{ObjectWriter, Writer};
 
-/// The deepest nesting that any reader enters, whatever limit it is given: it bounds the stack, and
-/// `serde_json` reads as deep.
+/// The deepest nesting that any reader accepts, whatever its limit. It bounds the stack, and is the limit of
+/// `serde_json`.
 pub const MAX_DEPTH: usize = 127;
 
 /// A type that a JSON value can be read as.
@@ -75,16 +74,16 @@ pub const MAX_DEPTH: usize = 127;
     note = "derive `Message`, `OpenEnum` or `OneOf`; wrap a serde type in `Serde` (feature `serde`)"
 )]
 pub trait FromJson: Sized {
-    /// Whether the key of a field of this type may be missing.
+    /// `true` if the key of a field of this type may be missing.
     const OPTIONAL: bool = false;
 
     /// Reads the next value.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error of the value.
     fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError>;
 
-    /// The value of a field whose key is missing, if it may be.
+    /// Returns the value of a field whose key is missing, or `None` if the key is required.
     #[must_use]
     fn absent() -> Option<Self> {
         None
@@ -100,15 +99,15 @@ pub trait ToJson {
     /// Writes the value.
     fn write(&self, writer: &mut Writer<'_>);
 
-    /// Whether the key of a field of this value is left out.
+    /// Returns `true` if the key of a field with this value is not written.
     fn is_absent(&self) -> bool {
         false
     }
 
-    /// Whether it can be sent: the constraints of all messages inside hold, and every float is a number.
+    /// Checks the constraints of all messages inside, and that every float is finite.
     ///
     /// # Errors
-    /// The first that does not, or is not.
+    /// The first violation.
     fn check_value(&self) -> Result<(), BodyError> {
         Ok(())
     }
@@ -117,7 +116,7 @@ pub trait ToJson {
 /// Checks the messages and floats inside a field.
 ///
 /// # Errors
-/// The first constraint that does not hold; `out_of_range` of NaN and infinities.
+/// The first violated constraint; `out_of_range` for NaN and infinities.
 #[inline]
 pub fn inside<T: ToJson>(key: &'static str, value: &T) -> Result<(), BodyError> {
     match value.check_value() {

@@ -4,9 +4,9 @@ use super::{BodyError, BodyErrorKind, Reader};
 
 /// An integer type that JSON integers are read into and written from.
 pub trait Integer: Copy + Sized {
-    /// The value of this sign and magnitude, if the type has it.
+    /// Returns the value with this sign and magnitude, or `None` if the type cannot represent it.
     fn from_parts(negative: bool, magnitude: u64) -> Option<Self>;
-    /// Its smallest and largest value, for messages.
+    /// Smallest and largest value, for error texts.
     const RANGE: (i128, i128);
 }
 
@@ -39,14 +39,14 @@ macro_rules! integer {
 
 integer!(signed: i8 i16 i32 i64; unsigned: u8 u16 u32 u64);
 
-/// Most decimal digits that always fit in a `u64`.
+/// Number of decimal digits that always fit into a `u64`.
 const SAFE_DIGITS: usize = 19;
 
 impl Reader<'_> {
-    /// Reads an integral number, however it is written: `1.0` and `1e2` are integers, as in JSON Schema.
+    /// Reads an integer in any notation: `1.0` and `1e2` are integers, as in JSON Schema.
     ///
     /// # Errors
-    /// `wrong_type`, also of a number that is not integral; `out_of_range`; `bad_json`.
+    /// `wrong_type`, also for a number that is not integral; `out_of_range`; `bad_json`.
     #[inline]
     pub fn integer<T: Integer>(&mut self) -> Result<T, BodyError> {
         let Some(b'-' | b'0'..=b'9') = self.peek() else {
@@ -61,7 +61,7 @@ impl Reader<'_> {
         let magnitude = if count <= SAFE_DIGITS {
             Some(magnitude)
         } else {
-            // The digits again, by a parser that notices when they are too many.
+            // Parse the digits again with a check for overflow.
             self.since(self.at - count).parse().ok()
         };
         let value = magnitude.and_then(|magnitude| T::from_parts(negative, magnitude));
@@ -110,8 +110,8 @@ impl Reader<'_> {
         minus
     }
 
-    /// Reads the digits before a fraction: `0` or digits that do not start with `0`. Gives their
-    /// value, modulo 2^64, and their number.
+    /// Reads the digits before a fraction: `0`, or digits that do not start with `0`. Returns their value modulo 2^64
+    /// and their number.
     #[inline]
     fn whole_digits(&mut self) -> Result<(u64, usize), BodyError> {
         let start = self.at;
@@ -126,8 +126,8 @@ impl Reader<'_> {
         Ok((value, count))
     }
 
-    /// Reads a run of digits behind those that amount to `value`. Gives what they amount to together,
-    /// modulo 2^64, and how many have been read.
+    /// Reads digits that continue those of `value`. Returns the value of all digits modulo 2^64, and the number of
+    /// digits read here.
     #[inline]
     fn digits(&mut self, mut value: u64) -> (u64, usize) {
         let rest = self.rest();
@@ -140,7 +140,7 @@ impl Reader<'_> {
         (value, count)
     }
 
-    /// Reads a number and forgets it.
+    /// Skips a number.
     pub(super) fn skip_number(&mut self) -> Result<(), BodyError> {
         self.minus();
         self.whole_digits()?;
@@ -168,7 +168,7 @@ impl Reader<'_> {
     /// Reads a number as the nearest `f64`.
     ///
     /// # Errors
-    /// `wrong_type`; `out_of_range` where the nearest is infinite; `bad_json`.
+    /// `wrong_type`; `out_of_range` if the nearest value is infinite; `bad_json`.
     #[inline]
     pub fn f64(&mut self) -> Result<f64, BodyError> {
         let start = self.begin_float()?;
@@ -181,7 +181,7 @@ impl Reader<'_> {
     /// Reads a number as the nearest `f32`.
     ///
     /// # Errors
-    /// `wrong_type`; `out_of_range` where the nearest is infinite; `bad_json`.
+    /// `wrong_type`; `out_of_range` if the nearest value is infinite; `bad_json`.
     pub fn f32(&mut self) -> Result<f32, BodyError> {
         let start = self.begin_float()?;
         self.skip_number()?;
@@ -196,8 +196,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a number to its end. Gives its value if one division of two exact floats yields it:
-    /// such a quotient is the nearest float (Clinger).
+    /// Reads a number. Returns its value if one division of two exact floats yields it: such a quotient is the nearest
+    /// float (Clinger).
     #[inline]
     fn short_float(&mut self) -> Result<Option<f64>, BodyError> {
         /// The powers of ten that are exact as `f64`.
@@ -205,7 +205,7 @@ impl Reader<'_> {
             1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
             1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
         ];
-        /// Integers up to this are exact as `f64`.
+        /// Integers up to this value are exact as `f64`.
         const EXACT: u64 = 1 << 53;
 
         let start = self.at;
@@ -257,17 +257,17 @@ impl Reader<'_> {
     }
 }
 
-/// What a number amounts to, its sign aside.
+/// The magnitude of a number.
 enum Amount {
     Integer(u64),
-    /// An integer past 64 bits.
+    /// An integer of more than 64 bits.
     TooLarge,
-    /// No integer.
+    /// Not an integer.
     Fraction,
 }
 
-/// What a number in any notation amounts to. Exactly, unlike by way of a float, which would make
-/// one number of `9007199254740993.0` and its neighbour.
+/// Returns the exact magnitude of a number in any notation. A float would map `9007199254740993.0` and its neighbour to
+/// the same value.
 fn amount(number: &str) -> Amount {
     let number = number.trim_start_matches('-');
     let (mantissa, exponent) = match number.split_once(['e', 'E']) {
@@ -282,7 +282,7 @@ fn amount(number: &str) -> Amount {
     if significant == 0 {
         return Amount::Integer(0);
     }
-    // The zeros at the end belong to the power of ten.
+    // Trailing zeros count as powers of ten.
     let signed = |length: usize| i64::try_from(length).unwrap_or(i64::MAX);
     let power = exponent.saturating_add(signed(zeros) - signed(part.len()));
     let Ok(power) = u32::try_from(power.min(u32::MAX.into())) else {
@@ -300,8 +300,7 @@ fn amount(number: &str) -> Amount {
     magnitude.map_or(Amount::TooLarge, Amount::Integer)
 }
 
-/// The value of an exponent. Past 64 bits, where it matters only that it is far from zero, the
-/// nearest that they have.
+/// Returns the value of an exponent. Beyond 64 bits only its sign matters, so it is clamped.
 fn power(exponent: &str) -> i64 {
     let far = if exponent.starts_with('-') {
         i64::MIN

@@ -1,4 +1,4 @@
-//! How the types of Rust are written as JSON.
+//! JSON forms of the primitive types.
 
 use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 
@@ -45,8 +45,8 @@ macro_rules! floats {
             }
         }
 
-        /// JSON has neither NaN nor infinities, and `null` in their place would be read as a field that
-        /// is absent: to check them is to refuse them.
+        /// The check rejects NaN and infinities: JSON does not have them, and `null` in their place would be read as an
+        /// absent field.
         impl ToJson for $float {
             #[inline]
             fn write(&self, writer: &mut Writer<'_>) {
@@ -131,7 +131,7 @@ impl<T: ToJson> ToJson for Option<T> {
     fn write(&self, writer: &mut Writer<'_>) {
         match self {
             Some(value) => value.write(writer),
-            // In a list there is no key to leave out.
+            // A list has no key that could be left out.
             None => writer.null(),
         }
     }

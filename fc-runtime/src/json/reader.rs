@@ -1,29 +1,29 @@
-//! Reads JSON text, directed by the type that is wanted.
+//! Reads JSON text, directed by the wanted type.
 
-use super::halt::Halt;
+use super::reader_state::ReaderState;
 use super::{Allowance, BodyError, BodyErrorKind};
 use std::borrow::Cow;
 
-/// A place in a JSON text.
+/// A position in a JSON text.
 ///
-/// Every method that reads a value skips the whitespace in front of it and stops right behind it.
+/// Every method that reads a value skips the whitespace before it and stops right after it.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     pub(super) text: &'a str,
-    /// Bytes read.
+    /// Number of bytes read.
     pub(super) at: usize,
-    /// Levels of nesting that may still be entered.
+    /// Levels of nesting left.
     depth: usize,
-    /// Keys and items that may still be read.
+    /// Keys and items left.
     pub(super) values: usize,
-    /// Memory that lists may still take, in bytes.
+    /// Memory left for lists, in bytes.
     pub(super) list_bytes: usize,
-    /// Why no field is read any more, if none is.
-    pub(super) halt: Halt<'a>,
+    /// Reading, or the reason why no field is read.
+    pub(super) state: ReaderState<'a>,
 }
 
 impl<'a> Reader<'a> {
-    /// A reader at the start of `text`.
+    /// Creates a reader at the start of `text`.
     #[must_use]
     pub fn new(text: &'a str, allowance: Allowance) -> Self {
         Self {
@@ -32,17 +32,17 @@ impl<'a> Reader<'a> {
             depth: allowance.depth.min(super::MAX_DEPTH),
             values: allowance.values,
             list_bytes: allowance.list_bytes,
-            halt: Halt::No,
+            state: ReaderState::Reading,
         }
     }
 
-    /// Bytes read.
+    /// Number of bytes read.
     #[must_use]
     pub fn offset(&self) -> usize {
         self.at
     }
 
-    /// Skips whitespace and tells the next byte, if there is one.
+    /// Skips whitespace and returns the next byte, or `None` at the end.
     #[inline]
     pub fn peek(&mut self) -> Option<u8> {
         loop {
@@ -54,25 +54,25 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The next byte, whitespace or not.
+    /// Returns the next byte, which may be whitespace.
     #[inline]
     pub(super) fn byte(&self) -> Option<u8> {
         self.text.as_bytes().get(self.at).copied()
     }
 
-    /// The text not read yet.
+    /// Returns the unread text.
     #[inline]
     pub(super) fn rest(&self) -> &'a [u8] {
         self.text.as_bytes().get(self.at..).unwrap_or_default()
     }
 
-    /// The text read since `start`.
+    /// Returns the text read since `start`.
     #[inline]
     pub(super) fn since(&self, start: usize) -> &'a str {
         self.text.get(start..self.at).unwrap_or_default()
     }
 
-    /// Reads `literal` if the text goes on with it.
+    /// Reads `literal` if it comes next.
     #[inline(always)]
     #[allow(
         clippy::inline_always,
@@ -105,7 +105,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the next value and gives its text.
+    /// Reads the next value and returns its text.
     ///
     /// # Errors
     /// `bad_json`, `too_deep`, `too_many_values`.
@@ -116,7 +116,7 @@ impl<'a> Reader<'a> {
         Ok(self.since(start))
     }
 
-    /// Reads the next value and forgets it.
+    /// Skips the next value.
     ///
     /// # Errors
     /// `bad_json`, `too_deep`, `too_many_values`.
@@ -156,8 +156,7 @@ impl<'a> Reader<'a> {
 
     // ---- objects ---------------------------------------------------------------------------
 
-    /// Enters an object and stops at its first key or at its closing brace. Gives the place of the
-    /// opening brace.
+    /// Enters an object and stops at its first key or closing brace. Returns the offset of the opening brace.
     ///
     /// # Errors
     /// `wrong_type`, `too_deep`, `bad_json`.
@@ -208,8 +207,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Reads what follows a value in an object: a comma, up to the next key, or nothing, up to the
-    /// closing brace.
+    /// Reads the comma after a value and stops at the next key, or stops at the closing brace.
     ///
     /// # Errors
     /// `bad_json`.
@@ -243,8 +241,7 @@ impl<'a> Reader<'a> {
         self.enter()
     }
 
-    /// Reads the closing bracket if it comes next. Only for an empty list: behind a comma a bracket
-    /// is a fault.
+    /// Reads the closing bracket if it comes next. Only for an empty list, because a bracket after a comma is an error.
     #[inline]
     pub fn end_array(&mut self) -> bool {
         let ends = self.peek() == Some(b']');
@@ -254,7 +251,7 @@ impl<'a> Reader<'a> {
         ends
     }
 
-    /// Reads what follows an item of a list; whether another one comes.
+    /// Reads the text after an item of a list. Returns `true` if another item follows.
     ///
     /// # Errors
     /// `bad_json`.
@@ -273,11 +270,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a list whose items `read` reads.
+    /// Reads a list with `read` for each item.
     ///
     /// # Errors
-    /// `wrong_type`, `too_deep`, `bad_json`, `too_many_values`, `lists_too_large`, or what is wrong
-    /// with an item.
+    /// `wrong_type`, `too_deep`, `bad_json`, `too_many_values`, `lists_too_large`, or the error of an item.
     #[inline]
     pub fn list<T>(
         &mut self,
@@ -302,14 +298,15 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// How many items a list of `length` makes room for: as many as it has, but no more than the
-    /// rest of the text may bring. They are paid for here, and counted at the end of the list.
+    /// Returns the number of items for which a list of `length` reserves memory: its length again, but not more than
+    /// the rest of the text can contain. Subtracts their memory from the allowance. The items are counted at the end of
+    /// the list.
     #[cold]
     fn more_items(&mut self, length: usize, size: usize) -> Result<usize, BodyError> {
         if length >= self.values {
             return Err(self.too_many_values());
         }
-        // One has been read, and any other takes a comma and a byte at least.
+        // One item has been read. Each further item takes at least a comma and a byte.
         let more = length.max(4).min(1 + self.rest().len() / 2);
         let Some(left) = self.list_bytes.checked_sub(more.saturating_mul(size)) else {
             return Err(self.fault(
@@ -360,7 +357,7 @@ impl<'a> Reader<'a> {
 
     // ---- the whole text --------------------------------------------------------------------
 
-    /// Checks that nothing but whitespace is left.
+    /// Checks that only whitespace is left.
     ///
     /// # Errors
     /// `bad_json`.
@@ -373,7 +370,7 @@ impl<'a> Reader<'a> {
 
     // ---- faults ----------------------------------------------------------------------------
 
-    /// A fault at this place.
+    /// Creates an error at this position.
     #[cold]
     #[must_use]
     pub fn fault(&self, kind: BodyErrorKind, detail: impl Into<Cow<'static, str>>) -> BodyError {
@@ -390,7 +387,7 @@ impl<'a> Reader<'a> {
         self.fault(BodyErrorKind::BadJson, format!("{detail}{end}"))
     }
 
-    /// The fault of a value of another kind than `wanted`.
+    /// Creates the error for a value of another kind than `wanted`.
     #[cold]
     #[must_use]
     pub fn unexpected(&mut self, wanted: &str) -> BodyError {

@@ -1,15 +1,15 @@
 //! Finds the bytes of a JSON string that need attention.
 
-/// Bytes looked at together once a string has turned out to be long.
+/// Block size for long strings, in bytes.
 const BLOCK: usize = 64;
 
-/// Whether a byte ends a string, starts an escape or is not allowed in a string.
+/// Returns `true` if a byte ends a string, starts an escape or is not allowed in a string.
 #[inline]
 const fn is_special(byte: u8) -> bool {
     byte < 0x20 || byte == b'"' || byte == b'\\'
 }
 
-/// Length of the run of bytes before the first quote, backslash or control character.
+/// Returns the number of bytes before the first quote, backslash or control character.
 #[inline]
 pub(super) fn plain_run(bytes: &[u8]) -> usize {
     let mut run = 0;
@@ -24,7 +24,7 @@ pub(super) fn plain_run(bytes: &[u8]) -> usize {
     run + plain_run_from(bytes.get(run..).unwrap_or_default())
 }
 
-/// The rest of [`plain_run`]: blocks that the compiler turns into vector instructions, then bytes.
+/// Continues [`plain_run`] with blocks, which the compiler vectorizes, and then with single bytes.
 fn plain_run_from(bytes: &[u8]) -> usize {
     let mut run = 0;
     for block in bytes.as_chunks::<BLOCK>().0 {
@@ -43,8 +43,8 @@ fn plain_run_from(bytes: &[u8]) -> usize {
         .unwrap_or(rest.len())
 }
 
-/// The high bit of each special byte of a word. Only the lowest one set is reliable: a borrow may
-/// mark bytes above it.
+/// Returns a word with the high bit set for each special byte. Only the lowest set bit is reliable, because a borrow
+/// may set higher ones.
 #[inline]
 const fn specials(word: u64) -> u64 {
     const ONES: u64 = u64::from_ne_bytes([1; 8]);

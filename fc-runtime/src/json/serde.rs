@@ -1,14 +1,13 @@
-//! Hand-written serde types among messages.
+//! Handwritten serde types in messages.
 
 use super::error::shortened;
 use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// A serde type as the value of a field. It goes through `serde_json`: meant for types that exist
-/// already, not for the hot path.
+/// A serde type as the value of a field. It uses `serde_json`, so it is slower than other values.
 ///
-/// A value that `serde_json` cannot write (a map with keys that are not strings) is sent as `null`.
+/// A value that `serde_json` cannot write, such as a map with keys that are not strings, is sent as `null`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Serde<T>(pub T);
 

@@ -21,8 +21,8 @@ impl<'a> Reader<'a> {
         self.unescape(plain).map(Cow::Owned)
     }
 
-    /// Makes room for `needed` more bytes of text made of what has been read. It grows by as much as
-    /// it holds, so that it is seldom moved, but by no more than the rest of the text may bring.
+    /// Reserves `needed` more bytes in a string made from the text read so far. Doubles the capacity, but not beyond
+    /// the rest of the text.
     pub(super) fn grow(&self, text: &mut String, needed: usize) {
         if text.capacity() - text.len() < needed {
             text.reserve_exact(needed + text.len().min(self.rest().len()));
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The rest of a string whose first `plain` bytes hold no escape.
+    /// Reads the rest of a string whose first `plain` bytes have no escapes.
     fn unescape(&mut self, plain: &str) -> Result<String, BodyError> {
         let mut out = String::from(plain);
         loop {
@@ -131,8 +131,8 @@ impl<'a> Reader<'a> {
         Ok(value)
     }
 
-    /// Reads a string and forgets it. Halves of surrogate pairs may stand alone in a string that
-    /// nobody looks into: the grammar allows them, and it is passed on unchanged.
+    /// Skips a string. A skipped string may contain half of a surrogate pair, because the grammar allows it and the
+    /// text is passed on unchanged.
     pub(super) fn skip_string(&mut self) -> Result<(), BodyError> {
         self.open_string()?;
         loop {
@@ -152,7 +152,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The fault of a string in which neither a quote nor a backslash comes next.
+    /// Returns the error of a string with neither a quote nor a backslash at this position.
     #[cold]
     fn broken_string(&self) -> BodyError {
         match self.byte() {

@@ -1,30 +1,30 @@
-//! JSON that is carried along without being understood.
+//! JSON values that are kept without being read.
 
 use super::{Allowance, BodyError, FromJson, Reader, ToJson, Writer, from_str};
 use std::fmt;
 
 /// One JSON value, kept as its exact text.
 ///
-/// Equality is equality of the text: `1.0` and `1` differ.
+/// Two values are equal if their texts are equal: `1.0` and `1` differ.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct Json(Box<str>);
 
 impl Json {
-    /// Takes `text` if it is one JSON value; whitespace around it is dropped.
+    /// Creates a value from a text that is one JSON value. Surrounding whitespace is dropped.
     ///
     /// # Errors
-    /// `bad_json` if it is not, `too_deep` if it is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
+    /// `bad_json` if the text is not JSON; `too_deep` if it is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
     pub fn new(text: &str) -> Result<Self, BodyError> {
         from_str(text, Allowance::ANY)
     }
 
-    /// The value `null`.
+    /// Returns the value `null`.
     #[must_use]
     pub fn null() -> Self {
         Self("null".into())
     }
 
-    /// The text.
+    /// Returns the text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
@@ -33,7 +33,7 @@ impl Json {
     /// Reads the value as a serde type. Needs the feature `serde`.
     ///
     /// # Errors
-    /// Whatever `serde_json` finds wrong.
+    /// The error of `serde_json`.
     #[cfg(feature = "serde")]
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, serde_json::Error> {
         self.borrowed().parse()
@@ -42,13 +42,12 @@ impl Json {
     /// Reads the value as a runtime type, such as a generated message.
     ///
     /// # Errors
-    /// What is wrong with the value, placed within it, or that it takes more than
-    /// [`Allowance::DEFAULT`].
+    /// The error of the value with its position in the value, also if it exceeds [`Allowance::DEFAULT`].
     pub fn read_as<T: FromJson>(&self) -> Result<T, BodyError> {
         self.borrowed().read_as()
     }
 
-    /// The value without its owner.
+    /// Borrows the value.
     #[must_use]
     pub fn borrowed(&self) -> JsonRef<'_> {
         JsonRef(&self.0)
@@ -94,20 +93,20 @@ impl ToJson for Json {
     }
 }
 
-/// One JSON value in a text that somebody else holds, such as [`Extra`](super::Extra).
+/// One JSON value in a borrowed text, such as one in [`Extra`](super::Extra).
 ///
-/// Equality is equality of the text, as with [`Json`].
+/// Two values are equal if their texts are equal, as with [`Json`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct JsonRef<'a>(pub(super) &'a str);
 
 impl<'a> JsonRef<'a> {
-    /// The text.
+    /// Returns the text.
     #[must_use]
     pub fn as_str(self) -> &'a str {
         self.0
     }
 
-    /// The value with a text of its own.
+    /// Copies the value.
     #[must_use]
     pub fn to_json(self) -> Json {
         Json(self.0.into())
@@ -116,7 +115,7 @@ impl<'a> JsonRef<'a> {
     /// Reads the value as a serde type. Needs the feature `serde`.
     ///
     /// # Errors
-    /// Whatever `serde_json` finds wrong.
+    /// The error of `serde_json`.
     #[cfg(feature = "serde")]
     pub fn parse<T: serde::de::DeserializeOwned>(self) -> Result<T, serde_json::Error> {
         serde_json::from_str(self.0)
@@ -125,8 +124,7 @@ impl<'a> JsonRef<'a> {
     /// Reads the value as a runtime type, such as a generated message.
     ///
     /// # Errors
-    /// What is wrong with the value, placed within it, or that it takes more than
-    /// [`Allowance::DEFAULT`].
+    /// The error of the value with its position in the value, also if it exceeds [`Allowance::DEFAULT`].
     pub fn read_as<T: FromJson>(self) -> Result<T, BodyError> {
         from_str(self.0, Allowance::DEFAULT)
     }

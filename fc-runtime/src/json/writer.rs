@@ -10,7 +10,7 @@ pub struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// A writer that appends to `out`.
+    /// Creates a writer that appends to `out`.
     #[inline]
     pub fn new(out: &'a mut Vec<u8>) -> Self {
         Self { out }
@@ -36,8 +36,7 @@ impl<'a> Writer<'a> {
         self.out.extend_from_slice(buffer.format(value).as_bytes());
     }
 
-    /// Writes a number in the shortest form that reads back as the same `f64`; NaN and the
-    /// infinities, which JSON lacks, as `null`.
+    /// Writes a number in the shortest form that reads back as the same value. Writes NaN and infinities as `null`.
     pub fn f64(&mut self, value: f64) {
         if let Some(text) = Decimal::default().format(value) {
             self.out.extend_from_slice(text);
@@ -50,8 +49,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes a number in the shortest form that reads back as the same `f32`; NaN and the
-    /// infinities, which JSON lacks, as `null`.
+    /// Writes a number in the shortest form that reads back as the same value. Writes NaN and infinities as `null`.
     pub fn f32(&mut self, value: f32) {
         if value.is_finite() {
             let mut buffer = zmij::Buffer::new();
@@ -62,7 +60,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes a string, escaping what JSON requires and nothing more.
+    /// Writes a string with only the escapes that JSON requires.
     #[inline]
     pub fn string(&mut self, text: &str) {
         self.out.push(b'"');
@@ -111,7 +109,7 @@ impl<'a> Writer<'a> {
         self.out.extend_from_slice(&[b'\\', short]);
     }
 
-    /// Writes text that is one JSON value already.
+    /// Writes a text that already is one JSON value.
     #[inline]
     pub(crate) fn raw(&mut self, text: &str) {
         self.out.extend_from_slice(text.as_bytes());
@@ -130,7 +128,7 @@ impl<'a> Writer<'a> {
         self.list(items, T::write);
     }
 
-    /// Writes a list whose items `write` writes.
+    /// Writes a list with `write` for each item.
     #[inline]
     pub fn list<T>(&mut self, items: &[T], write: impl Fn(&T, &mut Writer<'_>)) {
         let start = self.out.len();
@@ -141,7 +139,7 @@ impl<'a> Writer<'a> {
         self.close(start, b'[', b']');
     }
 
-    /// Writes a value without quotes of its own as a string.
+    /// Writes a value without quotes as a string.
     pub(crate) fn quoted<T: ToJson>(&mut self, value: &T) {
         self.out.push(b'"');
         value.write(self);
@@ -158,7 +156,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Turns the comma in front of the first item, if there is one, into the opening bracket.
+    /// Replaces the comma before the first item by the opening bracket, or adds the bracket to an empty list.
     #[inline]
     fn close(&mut self, start: usize, open: u8, close: u8) {
         match self.out.get_mut(start) {
@@ -179,8 +177,8 @@ pub struct ObjectWriter<'a> {
 impl ObjectWriter<'_> {
     /// Writes a field unless it is absent.
     ///
-    /// `key` is the text in front of the value, comma first: `,"stationId":`. (The comma of the
-    /// first field becomes the opening brace at the end.)
+    /// `key` is the text before the value with a leading comma: `,"stationId":`. At the end, the comma of the first
+    /// field becomes the opening brace.
     #[inline(always)]
     #[allow(
         clippy::inline_always,
@@ -193,7 +191,7 @@ impl ObjectWriter<'_> {
         }
     }
 
-    /// Writes a field inside a string, as [`field`](Self::field) writes it without.
+    /// Writes a field inside a string, unless it is absent.
     #[inline]
     pub fn quoted_field<T: Quotable + ToJson>(&mut self, key: &'static str, value: &T) {
         if !value.is_absent() {
@@ -202,7 +200,7 @@ impl ObjectWriter<'_> {
         }
     }
 
-    /// Writes a field as a number, as [`field`](Self::field) writes it in its type's own form.
+    /// Writes a field as a number, unless it is absent.
     #[inline]
     pub fn numeric_field<T: AsNumber + ToJson>(&mut self, key: &'static str, value: &T) {
         if !value.is_absent() {
@@ -211,7 +209,7 @@ impl ObjectWriter<'_> {
         }
     }
 
-    /// Writes keys that the message does not know.
+    /// Writes unknown keys.
     pub fn extra(&mut self, extra: &Extra) {
         self.writer.raw(extra.text());
     }

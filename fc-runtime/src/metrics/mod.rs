@@ -1,7 +1,6 @@
-//! What is counted and timed, for the recorder that the program has installed with the `metrics` crate.
+//! Counters and times for the recorder that the program has installed with the `metrics` crate.
 //!
-//! What counts and times is here in two forms: `on` hands it to the recorder, `off` is empty and costs
-//! nothing.
+//! There are two implementations: `on` passes values to the recorder, `off` is empty and costs nothing.
 
 #[cfg(not(feature = "metrics"))]
 mod off;
@@ -13,24 +12,24 @@ pub(crate) use off::*;
 #[cfg(feature = "metrics")]
 pub(crate) use on::*;
 
-/// A family of metrics by operation, and the results that its calls can have.
+/// Metrics of calls by operation.
 #[cfg_attr(
     not(feature = "metrics"),
     allow(dead_code, reason = "names of metrics")
 )]
 #[derive(Debug)]
 pub(crate) struct Family {
-    /// Calls, by operation and result.
+    /// Name of the counter by operation and result.
     pub(crate) calls: &'static str,
-    /// What it says of them.
+    /// Help text.
     pub(crate) calls_help: &'static str,
-    /// Seconds, by operation.
+    /// Name of the histogram of seconds by operation.
     pub(crate) seconds: &'static str,
-    /// What it says of them.
+    /// Help text.
     pub(crate) seconds_help: &'static str,
 }
 
-/// Of calls at the client.
+/// Metrics of calls of the client.
 #[cfg(feature = "client")]
 pub(crate) const CLIENT: Family = Family {
     calls: "fc_client_calls_total",
@@ -39,7 +38,7 @@ pub(crate) const CLIENT: Family = Family {
     seconds_help: "Time from a call to its end, by operation.",
 };
 
-/// Of requests at the server.
+/// Metrics of requests at the server.
 #[cfg(feature = "server")]
 pub(crate) const SERVER: Family = Family {
     calls: "fc_server_calls_total",

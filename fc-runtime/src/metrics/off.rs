@@ -1,4 +1,4 @@
-//! Without a recorder: nothing is kept and nothing done.
+//! Metrics without a recorder: all functions are empty.
 
 #![allow(
     clippy::extra_unused_type_parameters,

@@ -1,14 +1,16 @@
-//! With a recorder.
+//! Metrics with a recorder.
 
 use super::Family;
 use crate::clock;
-use crate::protocol::{OperationKind, Protocol};
+use crate::operation::OperationKind;
+use crate::protocol::Protocol;
+use crate::sync::lock;
 use metrics::{Histogram, Unit};
 use std::collections::HashMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-/// The label of every code that the spec does not name: there are as many as a peer likes.
+/// Label of all codes that the spec does not have, because a peer can send any number of them.
 const UNKNOWN: &str = "unknown";
 
 /// A number that only grows.
@@ -16,7 +18,7 @@ const UNKNOWN: &str = "unknown";
 pub(crate) struct Counter(metrics::Counter);
 
 impl Counter {
-    /// The one of this name, with the text that explains it.
+    /// Returns the counter with this name and help text.
     pub(crate) fn new(name: &'static str, help: &'static str) -> Self {
         metrics::describe_counter!(name, help.trim_start());
         Self(metrics::counter!(name))
@@ -32,7 +34,7 @@ impl Counter {
 pub(crate) struct Gauge(metrics::Gauge);
 
 impl Gauge {
-    /// The one of this name, of the port of this name if there is one for each.
+    /// Returns the gauge with this name, or its part for a port.
     pub(crate) fn new(name: &'static str, help: &'static str, port: Option<&'static str>) -> Self {
         metrics::describe_gauge!(name, help);
         Self(if let Some(port) = port {
@@ -42,14 +44,14 @@ impl Gauge {
         })
     }
 
-    /// One more, for as long as what it gives lives.
+    /// Adds one until the returned value is dropped.
     pub(crate) fn hold(&self) -> Held {
         self.0.increment(1.0);
         Held(self.0.clone())
     }
 }
 
-/// One of a [`Gauge`].
+/// One unit of a [`Gauge`].
 #[derive(Debug)]
 pub(crate) struct Held(metrics::Gauge);
 
@@ -59,7 +61,7 @@ impl Drop for Held {
     }
 }
 
-/// Calls and times by operation. What the spec names has a label of its own, all else shares one.
+/// Calls and times by operation. Operations of the spec have their own label; all other codes share one.
 #[derive(Debug)]
 pub(crate) struct Operations {
     family: &'static Family,
@@ -71,7 +73,7 @@ pub(crate) struct Operations {
 struct Operation {
     name: &'static str,
     seconds: OnceLock<Histogram>,
-    /// By result: there are few.
+    /// Counters by result. There are few results.
     calls: Mutex<Vec<(&'static str, metrics::Counter)>>,
 }
 
@@ -111,10 +113,7 @@ impl Operations {
     /// Counts a call with its result, which is one of few.
     pub(crate) fn called(&self, code: u16, result: &'static str) {
         let operation = self.get(code);
-        let mut calls = operation
-            .calls
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut calls = lock(&operation.calls);
         if let Some((_, calls)) = calls.iter().find(|(known, _)| *known == result) {
             return calls.increment(1);
         }
@@ -125,7 +124,7 @@ impl Operations {
         calls.push((result, counter));
     }
 
-    /// Notes how long one has taken.
+    /// Records the time of a call.
     pub(crate) fn took(&self, code: u16, time: Duration) {
         let operation = self.get(code);
         let seconds = operation.seconds.get_or_init(
@@ -135,7 +134,7 @@ impl Operations {
     }
 }
 
-/// When something began.
+/// A start time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Since(Instant);
 

@@ -1,7 +1,7 @@
-//! Who may connect, and who may call what.
+//! Access rules by network and effect.
 
 use super::network::Network;
-use crate::protocol::Effect;
+use crate::operation::Effect;
 use std::net::IpAddr;
 
 /// A set of effects.
@@ -31,18 +31,18 @@ impl FromIterator<Effect> for Effects {
     }
 }
 
-/// The networks that apps may connect from; all, if none is named.
+/// The networks that apps may connect from. If the list is empty, all may connect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Allowed(Vec<(Network, Effects)>);
 
 impl Allowed {
-    /// Names a network. Named again, it is as it was named last.
+    /// Adds a network, or replaces its effects.
     pub(super) fn add(&mut self, network: Network, effects: Effects) {
         self.0.retain(|(named, _)| *named != network);
         self.0.push((network, effects));
     }
 
-    /// What may be called from an address; `None` if nobody may connect from there.
+    /// Returns the allowed effects for an address, or `None` if it may not connect.
     pub(super) fn effects(&self, address: IpAddr) -> Option<Effects> {
         if self.0.is_empty() {
             return Some(Effects::ALL);

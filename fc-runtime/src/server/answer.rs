@@ -1,4 +1,4 @@
-//! How a request is answered and refused, and what may be asked at all.
+//! Responses and refusals, and the check of permissions.
 
 use super::allow::Effects;
 use super::counters::Answered;
@@ -7,23 +7,22 @@ use super::peer::Peer;
 use crate::clock;
 use crate::frame::{FrameError, FrameId, PreparedBody};
 use crate::json::{BodyError, Json, decode, to_vec};
-use crate::keys::Keys;
 use crate::message::{Empty, Message, read_enveloped, write_enveloped};
-use crate::protocol::{
-    DigestOf, Effect, OperationInfo, OperationKind, Protocol, ResponseEnvelope, ResultText,
-};
-use crate::raw::Refusal;
+use crate::open_message::OpenMessage;
+use crate::operation::{Effect, OperationInfo, OperationKind, ResultText};
+use crate::protocol::{DigestOf, Protocol, ResponseEnvelope};
+use crate::refusal::Refusal;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The envelope of success.
+/// Returns the envelope of success.
 fn success<P: Protocol>(now: i64) -> P::Response {
     let success = P::RESULTS.success;
     P::Response::at(now, success.code, success.text)
 }
 
 impl<P: Protocol> Peer<P> {
-    /// Answers with success and a response; with a refusal if the response breaks a constraint of the
-    /// spec, which is the handler's fault and not the app's.
+    /// Answers with success and a response. If the response violates a constraint of the spec, answers with a refusal,
+    /// because that is an error of the handler.
     pub(super) fn answer<M: Message>(&self, request: FrameId, response: &M) {
         if let Err(error) = response.check() {
             return self.no_response(request, &error);
@@ -33,7 +32,7 @@ impl<P: Protocol> Peer<P> {
         });
     }
 
-    /// Answers with success and a response that has been checked and encoded before.
+    /// Answers with success and a prepared response.
     pub(super) fn answer_prepared(&self, request: FrameId, response: &PreparedBody<DigestOf<P>>) {
         self.succeed(request, |output, envelope| {
             let (encoder, out) = (&mut output.encoder, &mut output.out);
@@ -41,7 +40,7 @@ impl<P: Protocol> Peer<P> {
         });
     }
 
-    /// Answers with what `write` makes of the envelope of success.
+    /// Answers with a frame that `write` writes with the envelope of success.
     fn succeed(
         &self,
         request: FrameId,
@@ -50,7 +49,7 @@ impl<P: Protocol> Peer<P> {
         let now = clock::unix_ms();
         let written = {
             let mut output = self.output();
-            // A panic while it is out costs no more than this envelope.
+            // A panic in `write` loses only this envelope.
             let (made, envelope) = (output.success.take())
                 .filter(|(made, _)| *made == now)
                 .unwrap_or_else(|| (now, success::<P>(now)));
@@ -65,8 +64,7 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Answers with an object that was made elsewhere. The envelope of success supplies the keys of the
-    /// envelope that it lacks.
+    /// Answers with a JSON object. The envelope of success supplies its missing envelope keys.
     pub(super) fn answer_raw(&self, request: FrameId, text: &Json) {
         let (missing, keys, success) = match self.completed(text) {
             Ok(read) => read,
@@ -91,19 +89,20 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// What an answer lacks of the envelope, its keys, and whether both together say that all went well.
-    fn completed(&self, text: &Json) -> Result<(Keys, Keys, bool), BodyError> {
+    /// Returns the envelope keys that an answer lacks, its keys, and `true` if together they mean success.
+    fn completed(&self, text: &Json) -> Result<(OpenMessage, OpenMessage, bool), BodyError> {
         let allowance = self.settings.limits.json();
-        let keys = decode::<Keys>(text.as_str().as_bytes(), allowance)?;
+        let keys = decode::<OpenMessage>(text.as_str().as_bytes(), allowance)?;
         let success = to_vec(&success::<P>(clock::unix_ms()));
-        let missing = decode::<Keys>(&success, allowance)?.without(&keys);
+        let missing = decode::<OpenMessage>(&success, allowance)?.without(&keys);
         let mut whole = Vec::with_capacity(text.as_str().len());
         write_enveloped(&missing, &keys, &mut whole);
         let read = read_enveloped::<P::Response, Empty>(&whole, allowance)?;
         Ok((missing, keys, Refusal::of::<P>(&read.envelope).is_none()))
     }
 
-    /// What the handler has made is no response. Its values are not logged, as no text of a body is.
+    /// Logs an invalid response of a handler and answers with an error. Its values are not logged, like any text of a
+    /// body.
     #[cold]
     fn no_response(&self, request: FrameId, error: &BodyError) {
         let (code, msg_id) = (request.code, request.id);
@@ -119,7 +118,7 @@ impl<P: Protocol> Peer<P> {
         self.refuse_with(request, P::RESULTS.protocol);
     }
 
-    /// The response does not fit into a frame.
+    /// Logs a response that does not fit into a frame, and answers with an error.
     #[cold]
     fn no_frame(&self, request: FrameId, error: &FrameError) {
         let (code, msg_id) = (request.code, request.id);
@@ -133,7 +132,7 @@ impl<P: Protocol> Peer<P> {
         self.refuse_with(request, P::RESULTS.protocol);
     }
 
-    /// Answers with a result alone; not at all where no response can carry one.
+    /// Answers with only a result, or not at all if responses have no result.
     pub(super) fn refuse(&self, request: FrameId, refusal: &Refusal) {
         let results = P::RESULTS;
         let (answered, usable) = match refusal.code {
@@ -147,7 +146,7 @@ impl<P: Protocol> Peer<P> {
         if !usable {
             self.unusable();
         }
-        // Its text may quote the body: the code alone is logged.
+        // Only the code is logged, because the text may quote the body.
         let (code, msg_id, result) = (request.code, request.id, refusal.code);
         tracing::debug!(protocol = P::NAME, code, msg_id, result, "refused");
         if !P::Response::HAS_RESULT {
@@ -163,16 +162,16 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Runs the user's code for a request. `None` if it has panicked: that is counted and logged,
-    /// but not what the panic says, which may quote the body.
+    /// Runs code of the user for a request. A panic is counted and logged and returns `None`. The text of the panic is
+    /// not logged, because it may quote the body.
     pub(super) fn guard<T>(&self, request: FrameId, code: impl FnOnce() -> T) -> Option<T> {
-        // What is ours is left whole, see `lock`; what is the user's he has to look after himself.
+        // The state of the runtime stays consistent, see `lock`. The user is responsible for their own state.
         if let Ok(done) = catch_unwind(AssertUnwindSafe(code)) {
             return Some(done);
         }
         let (protocol, connection) = (P::NAME, self.id.0);
         let (name, code, msg_id) = (name::<P>(request.code), request.code, request.id);
-        if self.counters.handlers_panicked.one_to_log() {
+        if self.counters.handlers_panicked.increment_sampled() {
             tracing::error!(
                 protocol,
                 connection,
@@ -194,9 +193,9 @@ impl<P: Protocol> Peer<P> {
         None
     }
 
-    /// Counts a request for a command of the spec that this robot does not implement, and says so.
+    /// Counts and logs a command of the spec that this robot does not implement.
     pub(super) fn note_not_implemented(&self, code: u16) {
-        if self.counters.calls_not_implemented.one_to_log() {
+        if self.counters.calls_not_implemented.increment_sampled() {
             let (protocol, connection, name) = (P::NAME, self.id.0, name::<P>(code));
             tracing::warn!(protocol, connection, name, code, "not implemented");
         }
@@ -207,15 +206,15 @@ impl<P: Protocol> Peer<P> {
         self.refuse(request, &Refusal::panicked::<P>());
     }
 
-    /// Whether a command may be called from the app's address.
+    /// Returns `true` if the app's address may call a command.
     pub(super) fn may_call(&self, code: u16) -> bool {
         self.effects == Effects::ALL || self.effects.has(effect::<P>(code))
     }
 
-    /// Refuses a request that may not be made from the app's address.
+    /// Refuses a request that the app's address may not make.
     pub(super) fn refuse_as_forbidden(&self, request: FrameId) {
-        self.counters.calls_forbidden.one();
-        if let Some(held) = self.counters.lines.forbidden_calls.line() {
+        self.counters.calls_forbidden.increment();
+        if let Some(held) = self.counters.limiters.forbidden_calls.admit() {
             let (protocol, connection, peer) = (P::NAME, self.id.0, self.address);
             let (name, code) = (name::<P>(request.code), request.code);
             let (effect, held) = (effect::<P>(code), held.shown());
@@ -224,10 +223,10 @@ impl<P: Protocol> Peer<P> {
         self.refuse(request, &Refusal::forbidden::<P>());
     }
 
-    /// Refuses a request that is not begun because too many handlers run on.
+    /// Refuses a request that is not started because too many handlers run on.
     pub(super) fn refuse_as_full(&self, request: FrameId) {
         let limit = self.settings.abandoned_handlers;
-        if self.counters.abandoned_reached.one_to_log() {
+        if self.counters.abandoned_reached.increment_sampled() {
             let (protocol, connection, code) = (P::NAME, self.id.0, request.code);
             tracing::warn!(
                 protocol,
@@ -240,25 +239,25 @@ impl<P: Protocol> Peer<P> {
         self.refuse(request, &Refusal::too_many::<P>());
     }
 
-    /// Answers with one of the protocol's own results.
+    /// Answers with one of the protocol's results.
     pub(super) fn refuse_with(&self, request: FrameId, result: ResultText) {
         self.refuse(request, &result.into());
     }
 }
 
-/// What the spec says of a code on the command port; a stream may have that of its command.
+/// Returns the operation with this code on the command port. A stream may have the code of its command.
 fn operation<P: Protocol>(code: u16) -> Option<&'static OperationInfo> {
     P::operations()
         .iter()
         .find(|operation| operation.code == Some(code) && operation.kind != OperationKind::Stream)
 }
 
-/// The spec's name for a command code.
+/// Returns the spec's name of a command code.
 pub(super) fn name<P: Protocol>(code: u16) -> &'static str {
     operation::<P>(code).map_or("unknown", |operation| operation.name)
 }
 
-/// What a command does according to the spec.
+/// Returns the effect of a command in the spec.
 pub(super) fn effect<P: Protocol>(code: u16) -> Effect {
     let effect = operation::<P>(code).and_then(|operation| operation.effect);
     effect.unwrap_or(Effect::Unknown)

@@ -1,77 +1,75 @@
-//! What apps may make a server hold in memory, those of both ports together, and who goes when that
-//! does not suffice.
+//! The memory that apps may make a server hold, for both ports together, and the choice of a connection to be closed.
 //!
-//! Each connection has an account of what its end would give back: what has come and what is to be
-//! sent, requests that wait for their handlers, reports that wait for the app. What has left its
-//! connection and is still in somebody's hands is charged to the server alone. Nobody gets
-//! memory beyond the limit: he waits until there is some, and the connection that holds most is
-//! closed.
+//! For each connection, the budget counts the memory that closing it would free: received and unsent bytes, waiting
+//! requests, queued reports. Memory that has left its connection but is still in use is charged to the server only. No
+//! memory is granted beyond the limit: the connection waits, and the one with the most memory is closed.
 
 use super::connection_id::ConnectionId;
+use crate::sync::lock;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use std::task::{Context, Poll, Waker};
 
-/// Why a connection has ended whose memory was needed, for the log.
+/// The reason of a connection closed for its memory, for the log.
 pub(super) const NO_MEMORY: &str = "memory is short, and it held most";
 
-/// Who holds less than this is not closed, in bytes: that is what any connection needs.
+/// Memory below which a connection is not closed, in bytes. Any connection needs this much.
 const NEEDED: usize = 128 * 1024;
 
-/// One that can be told to give memory back. Called under no lock of the budget.
-pub(super) trait Holder: Send + Sync {
-    /// Give back what is not needed at this moment.
+/// An owner of memory that can release it. It is called without a lock of the budget.
+pub(super) trait MemoryHolder: Send + Sync {
+    /// Releases unused memory.
     fn tidy(&self);
 
-    /// End the connection at once: it holds so many bytes, and memory is short.
+    /// Ends the connection at once. It holds this many bytes, and memory is short.
     fn evict(&self, held: usize);
 }
 
-/// What all connections of a server share.
+/// The memory budget of all connections of a server.
 #[derive(Clone)]
-pub(super) struct Budget(Arc<Shared>);
+pub(super) struct MemoryBudget(Arc<Shared>);
 
 struct Shared {
     limit: usize,
     held: AtomicUsize,
-    /// What the end of no connection gives back, of what is held.
+    /// Held memory that closing a connection does not free.
     lent: AtomicUsize,
-    /// Somebody waits for memory.
+    /// `true` if a task waits for memory.
     short: AtomicBool,
     state: Mutex<State>,
 }
 
 #[derive(Default)]
 struct State {
-    accounts: HashMap<ConnectionId, Entry>,
+    connections: HashMap<ConnectionId, Entry>,
     waiting: Vec<Waker>,
 }
 
 struct Entry {
-    own: Arc<Own>,
-    holder: Weak<dyn Holder>,
+    usage: Arc<Usage>,
+    holder: Weak<dyn MemoryHolder>,
     leaving: bool,
 }
 
-/// What the end of a connection gives back, in bytes.
+/// The memory that closing a connection frees, in bytes.
 #[derive(Default)]
-struct Own {
+struct Usage {
     busy: AtomicUsize,
-    /// Memory that is kept for what comes next.
+    /// Memory kept for the next frames.
     idle: AtomicUsize,
     queued: AtomicUsize,
 }
 
-impl Own {
-    /// What it needs at this moment.
+impl Usage {
+    /// Returns the memory in use.
     fn needed(&self) -> usize {
         self.busy.load(Ordering::Relaxed) + self.queued.load(Ordering::Relaxed)
     }
 }
 
-impl Budget {
+impl MemoryBudget {
     pub(super) fn new(limit: usize) -> Self {
         Self(Arc::new(Shared {
             limit,
@@ -82,23 +80,27 @@ impl Budget {
         }))
     }
 
-    /// How much is held at this moment, in bytes.
+    /// Returns the held memory in bytes.
     pub(super) fn held(&self) -> usize {
         self.0.held.load(Ordering::Relaxed)
     }
 
-    /// The account of a new connection; it is closed when it is dropped.
-    pub(super) fn open(&self, id: ConnectionId, holder: Weak<dyn Holder>) -> Account {
-        let own = Arc::<Own>::default();
+    /// Registers a connection until the returned value is dropped.
+    pub(super) fn open(
+        &self,
+        id: ConnectionId,
+        holder: Weak<dyn MemoryHolder>,
+    ) -> ConnectionMemory {
+        let usage = Arc::<Usage>::default();
         let entry = Entry {
-            own: Arc::clone(&own),
+            usage: Arc::clone(&usage),
             holder,
             leaving: false,
         };
-        self.0.lock().accounts.insert(id, entry);
-        Account {
+        self.0.lock().connections.insert(id, entry);
+        ConnectionMemory {
             id,
-            own,
+            usage,
             shared: Arc::clone(&self.0),
         }
     }
@@ -106,10 +108,10 @@ impl Budget {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
-    /// Takes so many bytes if they are there.
+    /// Takes memory if it is available.
     fn take(&self, bytes: usize) -> bool {
         let more = |held: usize| held.checked_add(bytes).filter(|held| *held <= self.limit);
         self.held
@@ -128,12 +130,12 @@ impl Shared {
         }
     }
 
-    /// Takes so many bytes, or lets `cx` hear when some are given back.
+    /// Takes memory, or wakes the task of `cx` when some is freed.
     fn poll_take(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         self.poll_once(cx, || self.take(bytes))
     }
 
-    /// Ready once `done`, which is asked again whenever something is given back.
+    /// Ready when `done` returns `true`. It is called again after each release of memory.
     fn poll_once(&self, cx: &mut Context<'_>, done: impl Fn() -> bool) -> Poll<()> {
         if done() {
             return Poll::Ready(());
@@ -146,7 +148,7 @@ impl Shared {
             }
             self.short.store(true, Ordering::SeqCst);
         }
-        // What was given back before that has woken nobody.
+        // Memory freed before this point has not woken this task.
         if done() {
             Poll::Ready(())
         } else {
@@ -154,8 +156,7 @@ impl Shared {
         }
     }
 
-    /// Lends so many bytes of what is held, if no more than half of all is lent then, or nothing else
-    /// is.
+    /// Lends held memory if at most half of the limit is lent then, or if nothing else is lent.
     fn lend(&self, bytes: usize) -> bool {
         let more = |lent: usize| {
             let after = lent.saturating_add(bytes);
@@ -166,7 +167,7 @@ impl Shared {
             .is_ok()
     }
 
-    /// Takes so many bytes, or sees to it that they are given back.
+    /// Takes memory, or makes room for it.
     fn poll_demand(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.poll_take(cx, bytes);
         if taken.is_pending() {
@@ -175,19 +176,18 @@ impl Shared {
         taken
     }
 
-    /// Has memory given back until so many bytes more fit: first what nobody needs, then by those
-    /// who hold most.
+    /// Frees memory until `bytes` more fit: first unused memory, then connections with the most memory.
     fn make_room(&self, bytes: usize) {
         let mut tidy = Vec::new();
         let mut evict = Vec::new();
         {
             let mut state = self.lock();
             let mut coming = 0;
-            for entry in state.accounts.values() {
-                let idle = entry.own.idle.load(Ordering::Relaxed);
+            for entry in state.connections.values() {
+                let idle = entry.usage.idle.load(Ordering::Relaxed);
                 coming += idle;
                 if entry.leaving {
-                    coming += entry.own.needed();
+                    coming += entry.usage.needed();
                 } else if idle > 0 {
                     tidy.push(entry.holder.clone());
                 }
@@ -195,13 +195,16 @@ impl Shared {
             let wanted =
                 (self.held.load(Ordering::SeqCst).saturating_add(bytes)).saturating_sub(self.limit);
             while coming < wanted {
-                let staying = state.accounts.values_mut().filter(|entry| !entry.leaving);
-                let Some(greatest) = staying.max_by_key(|entry| entry.own.needed()) else {
+                let staying = state
+                    .connections
+                    .values_mut()
+                    .filter(|entry| !entry.leaving);
+                let Some(greatest) = staying.max_by_key(|entry| entry.usage.needed()) else {
                     break;
                 };
-                let held = greatest.own.needed();
+                let held = greatest.usage.needed();
                 if held < NEEDED {
-                    // What is missing is in the hands of handlers; they end by themselves.
+                    // The rest is held by handlers, which will end.
                     break;
                 }
                 greatest.leaving = true;
@@ -220,25 +223,25 @@ impl Shared {
     }
 }
 
-/// What is held for one connection.
-pub(super) struct Account {
+/// The memory of one connection.
+pub(super) struct ConnectionMemory {
     id: ConnectionId,
-    own: Arc<Own>,
+    usage: Arc<Usage>,
     shared: Arc<Shared>,
 }
 
-impl Account {
-    /// Asks for memory that the connection is to hold from now on. Until it is there, the one that
-    /// holds most is told to go, and that may be the one that asks.
-    pub(super) fn poll_more(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
+impl ConnectionMemory {
+    /// Requests memory for the connection. Until it is available, the connection with the most memory is closed, which
+    /// may be this one.
+    pub(super) fn poll_grow(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<()> {
         let taken = self.shared.poll_demand(cx, bytes);
         if taken.is_ready() {
-            self.own.busy.fetch_add(bytes, Ordering::Relaxed);
+            self.usage.busy.fetch_add(bytes, Ordering::Relaxed);
         }
         taken
     }
 
-    /// The same for memory that is given back at once.
+    /// Requests memory that is released soon.
     pub(super) fn poll_lend(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<Charge> {
         let taken = self.shared.poll_demand(cx, bytes);
         taken.map(|()| {
@@ -247,13 +250,13 @@ impl Account {
         })
     }
 
-    /// Says how much the connection holds, beside what is queued: what it needs, and what it keeps
-    /// for what comes next.
-    pub(super) fn hold(&self, busy: usize, idle: usize) {
-        let before = self.own.busy.load(Ordering::Relaxed) + self.own.idle.load(Ordering::Relaxed);
+    /// Sets the memory in use and the memory kept for the next frames, besides queued memory.
+    pub(super) fn update(&self, busy: usize, idle: usize) {
+        let before =
+            self.usage.busy.load(Ordering::Relaxed) + self.usage.idle.load(Ordering::Relaxed);
         let after = busy + idle;
-        self.own.busy.store(busy, Ordering::Relaxed);
-        self.own.idle.store(idle, Ordering::Relaxed);
+        self.usage.busy.store(busy, Ordering::Relaxed);
+        self.usage.idle.store(idle, Ordering::Relaxed);
         if after > before {
             self.add(after - before);
         } else {
@@ -261,50 +264,50 @@ impl Account {
         }
     }
 
-    /// Charges what waits to be sent, if there is memory for it; nobody has to go for it.
-    pub(super) fn queue(&self, bytes: usize) -> Option<Charge> {
+    /// Charges queued data if there is memory for it. Closes no connection.
+    pub(super) fn try_queue(&self, bytes: usize) -> Option<Charge> {
         let taken = self.shared.take(bytes);
         taken.then(|| self.queued_charge(bytes))
     }
 
-    /// The same, as soon as there is memory for it.
+    /// Charges queued data when there is memory for it.
     pub(super) fn poll_queue(&self, cx: &mut Context<'_>, bytes: usize) -> Poll<Charge> {
         let taken = self.shared.poll_take(cx, bytes);
         taken.map(|()| self.queued_charge(bytes))
     }
 
     fn queued_charge(&self, bytes: usize) -> Charge {
-        self.own.queued.fetch_add(bytes, Ordering::Relaxed);
-        self.charge(Some(Arc::clone(&self.own)), bytes)
+        self.usage.queued.fetch_add(bytes, Ordering::Relaxed);
+        self.charge(Some(Arc::clone(&self.usage)), bytes)
     }
 
-    fn charge(&self, own: Option<Arc<Own>>, bytes: usize) -> Charge {
+    fn charge(&self, usage: Option<Arc<Usage>>, bytes: usize) -> Charge {
         Charge {
             shared: Arc::clone(&self.shared),
-            own,
+            usage,
             bytes,
         }
     }
 
-    /// How much is queued, in bytes.
+    /// Returns the queued memory in bytes.
     pub(super) fn queued(&self) -> usize {
-        self.own.queued.load(Ordering::Relaxed)
+        self.usage.queued.load(Ordering::Relaxed)
     }
 
-    /// Charges what is there already, and goes with the connection.
-    pub(super) fn keep(&self, bytes: usize) -> Charge {
+    /// Charges existing data to the connection.
+    pub(super) fn queue_existing(&self, bytes: usize) -> Charge {
         self.add(bytes);
         self.queued_charge(bytes)
     }
 
-    /// Charges what is there already, and stays when the connection ends.
-    pub(super) fn lend(&self, bytes: usize) -> Charge {
+    /// Charges existing data that outlives the connection.
+    pub(super) fn lend_existing(&self, bytes: usize) -> Charge {
         self.add(bytes);
         self.shared.lent.fetch_add(bytes, Ordering::SeqCst);
         self.charge(None, bytes)
     }
 
-    /// What is there already is counted even if it is too much.
+    /// Counts existing data even beyond the limit.
     fn add(&self, bytes: usize) {
         let held = self.shared.held.fetch_add(bytes, Ordering::SeqCst) + bytes;
         if held > self.shared.limit {
@@ -312,30 +315,30 @@ impl Account {
         }
     }
 
-    /// The connection has ended.
+    /// Removes the connection.
     pub(super) fn close(&self) {
-        self.shared.lock().accounts.remove(&self.id);
-        self.hold(0, 0);
+        self.shared.lock().connections.remove(&self.id);
+        self.update(0, 0);
     }
 }
 
-impl Drop for Account {
+impl Drop for ConnectionMemory {
     fn drop(&mut self) {
         self.close();
     }
 }
 
-impl fmt::Debug for Account {
+impl fmt::Debug for ConnectionMemory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Account({})", self.id)
+        write!(f, "ConnectionMemory({})", self.id)
     }
 }
 
-/// Memory that is given back when this is dropped.
+/// Charged memory, released on drop.
 pub(super) struct Charge {
     shared: Arc<Shared>,
-    /// Of the connection that it is queued at.
-    own: Option<Arc<Own>>,
+    /// Usage of the connection that it is queued at.
+    usage: Option<Arc<Usage>>,
     bytes: usize,
 }
 
@@ -346,17 +349,16 @@ impl fmt::Debug for Charge {
 }
 
 impl Charge {
-    /// Lets what is charged to a connection leave it: ready when not too much is out of
-    /// reach already.
+    /// Moves the charge from its connection to the server. Ready when not too much is lent already.
     pub(super) fn poll_hand_over(&mut self, cx: &mut Context<'_>) -> Poll<()> {
-        if self.own.is_none() {
+        if self.usage.is_none() {
             return Poll::Ready(());
         }
         let handed = self.shared.poll_once(cx, || self.shared.lend(self.bytes));
         if handed.is_ready()
-            && let Some(own) = self.own.take()
+            && let Some(usage) = self.usage.take()
         {
-            own.queued.fetch_sub(self.bytes, Ordering::Relaxed);
+            usage.queued.fetch_sub(self.bytes, Ordering::Relaxed);
         }
         handed
     }
@@ -364,8 +366,8 @@ impl Charge {
 
 impl Drop for Charge {
     fn drop(&mut self) {
-        match &self.own {
-            Some(own) => own.queued.fetch_sub(self.bytes, Ordering::Relaxed),
+        match &self.usage {
+            Some(usage) => usage.queued.fetch_sub(self.bytes, Ordering::Relaxed),
             None => self.shared.lent.fetch_sub(self.bytes, Ordering::SeqCst),
         };
         self.shared.give(self.bytes);

@@ -1,47 +1,39 @@
-//! What a server can be told beforehand.
+//! The configuration of a server.
 
 use super::allow::Allowed;
 use super::network::Network;
-use crate::clock;
+use crate::connection_settings::{ConnectionSettings, connection_setters};
 use crate::frame::{Decoder, Encoder, Gzip, Work};
-use crate::link::KEEPALIVE;
-use crate::protocol::{Effect, Limits, Protocol};
-use crate::rate::Least;
+use crate::operation::Effect;
+use crate::protocol::Protocol;
+use crate::rate::MinimumRate;
+use crate::wire::Limits;
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
-/// Connections from one address at each port, unless told otherwise.
+/// Default limit of connections from one address at each port.
 const PER_ADDRESS: usize = 8;
 
-/// Handlers that may run on though nobody waits for their answer, unless told otherwise.
+/// Default limit of handlers that run on without a waiting app.
 const ABANDONED: usize = 64;
 
-/// What apps may make a server hold in memory, in bytes, unless told otherwise.
+/// Default limit of the memory held for apps, in bytes.
 const MEMORY: usize = 256 << 20;
 
-/// What a server can be told beforehand. Whatever is not set is the protocol's default.
+/// Settings of a server. Unset values are the protocol's defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServerConfig {
     pub(super) address: IpAddr,
-    command_port: Option<u16>,
-    data_port: Option<u16>,
+    pub(super) connection: ConnectionSettings,
     handler_timeout: Option<Duration>,
     max_age: MaxAge,
-    limits: Option<Limits>,
-    queued_bytes: Option<usize>,
     connections_per_address: usize,
     allowed: Allowed,
     abandoned_handlers: usize,
     memory: usize,
-    first_id: Option<u32>,
-    gzip: Option<Gzip>,
-    verify_digest: bool,
-    resync: bool,
     header_timeout: Duration,
-    stall_timeout: Duration,
     least_rate: u32,
     idle_timeout: Option<Duration>,
-    keepalive: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,111 +49,79 @@ impl Default for ServerConfig {
 }
 
 impl ServerConfig {
-    /// All addresses of the machine and the protocol's ports and limits; nothing compressed; five
-    /// seconds for a header, thirty for a peer that has stopped in the middle or is slower than a
-    /// kibibyte per second there, any time in between frames.
+    /// Creates the default settings: all addresses of the machine, no compression, five seconds for a header, thirty
+    /// seconds for a stalled peer. A frame must transfer at least one KiB per second. There is no limit between frames.
     #[must_use]
     pub fn new() -> Self {
         Self {
             address: IpAddr::V4(Ipv4Addr::UNSPECIFIED),
-            command_port: None,
-            data_port: None,
+            connection: ConnectionSettings::new(Duration::from_secs(30)),
             handler_timeout: None,
             max_age: MaxAge::Default,
-            limits: None,
-            queued_bytes: None,
             connections_per_address: PER_ADDRESS,
             allowed: Allowed::default(),
             abandoned_handlers: ABANDONED,
             memory: MEMORY,
-            first_id: None,
-            gzip: None,
-            verify_digest: true,
-            resync: false,
             header_timeout: Duration::from_secs(5),
-            stall_timeout: Duration::from_secs(30),
             least_rate: 1024,
             idle_timeout: None,
-            keepalive: Some(KEEPALIVE),
         }
     }
 
-    /// Address to listen at.
+    connection_setters!();
+
+    /// Sets the address to listen at.
     #[must_use]
     pub fn address(mut self, address: impl Into<IpAddr>) -> Self {
         self.address = address.into();
         self
     }
 
-    /// Port of commands and reports; 0 for any that is free.
-    #[must_use]
-    pub fn command_port(mut self, port: u16) -> Self {
-        self.command_port = Some(port);
-        self
-    }
-
-    /// Port of streams; 0 for any that is free.
-    #[must_use]
-    pub fn data_port(mut self, port: u16) -> Self {
-        self.data_port = Some(port);
-        self
-    }
-
-    /// How long a handler may take before the app is answered with the result of a timeout. What
-    /// becomes of the handler then, [`Request::handle`](super::Request::handle) says.
+    /// Sets the longest time of a handler before the app is answered with the timeout result.
+    /// [`Request::handle`](super::Request::handle) describes the further fate of the handler.
     #[must_use]
     pub fn handler_timeout(mut self, timeout: Duration) -> Self {
         self.handler_timeout = Some(timeout);
         self
     }
 
-    /// Oldest request that is still served, by the time in its envelope; `None` for any.
+    /// Sets the largest age of a request, by the time in its envelope; `None` for any age.
     #[must_use]
     pub fn max_age(mut self, age: Option<Duration>) -> Self {
         self.max_age = MaxAge::Set(age);
         self
     }
 
-    /// Bounds of everything that grows with what apps send. To change one of them:
-    /// `Limits { connections: 4, ..P::DEFAULTS.limits }`.
-    #[must_use]
-    pub fn limits(mut self, limits: Limits) -> Self {
-        self.limits = Some(limits);
-        self
-    }
-
-    /// Most bytes of reports that wait for one app or for its acknowledgement; as many as the longest
-    /// body may have, unless set. Where a new report does not fit, the oldest that have not been sent
-    /// give way, and if that is not enough the report itself is dropped.
+    /// Sets the limit of report bytes that wait for one app or its acknowledgement. By default it is the length of the
+    /// longest body. If a new report does not fit, the oldest unsent reports are dropped, and if that is not enough,
+    /// the new one.
     #[must_use]
     pub fn queued_bytes(mut self, limit: usize) -> Self {
-        self.queued_bytes = Some(limit);
+        self.connection.queued_bytes = Some(limit);
         self
     }
 
-    /// Most connections from one address, at each port; 8 unless set. Apps behind one router share
-    /// an address: raise it where more of them come from there.
+    /// Sets the limit of connections from one address at each port; 8 by default. Apps behind one router share an
+    /// address, so raise it for them.
     ///
-    /// One more, of an address or in total, takes the place of a connection over which nothing has
-    /// come yet, if there is one: of the address that most connections come from, the one that has
-    /// been there for longest. A data connection stays if a command connection of its address has
-    /// sent something, because an app that only receives streams has nothing to send there.
+    /// A further connection, from an address or in total, replaces a connection over which no data has been received,
+    /// if there is one. The server chooses the oldest one of the address with the most connections. It never replaces a
+    /// data connection whose address has an active command connection, because an app may only receive streams.
     #[must_use]
     pub fn connections_per_address(mut self, limit: usize) -> Self {
         self.connections_per_address = limit;
         self
     }
 
-    /// Lets apps of this network connect, at both ports, and call commands with these effects;
-    /// nobody else, once it is called. Unless it is, everybody may do everything.
+    /// Allows apps of this network to connect at both ports and to call commands with these effects. After the first
+    /// call, all other networks are forbidden. Without a call, everything is allowed.
     ///
-    /// Of several networks that an address is in, the smallest counts. Who connects from
-    /// elsewhere is closed at once. A command with another effect is refused with the protocol's
-    /// error result, and its handler is not run; what the spec does not know has the effect
-    /// [`Effect::Unknown`]. Reports go to all who are connected, and what is sent at the data port has
-    /// no effect that could be refused.
+    /// The smallest network that contains the address applies. A connection from a forbidden address is closed at once.
+    /// A command with another effect is refused with the protocol's error result, and its handler is not run. A command
+    /// unknown to the spec has the effect [`Effect::Unknown`]. Reports are sent to all connected apps, and frames at
+    /// the data port are not checked for effects.
     ///
-    /// An address is no proof of who sends: in a network that others are in too, use TLS.
+    /// An address does not prove the identity of the sender. Use TLS in a shared network.
     ///
     /// ```
     /// use fc_runtime::{Effect, ServerConfig};
@@ -178,152 +138,95 @@ impl ServerConfig {
         self
     }
 
-    /// How many handlers may run on though nobody waits for their answer any more, at the whole
-    /// server; 64 unless set. While there are as many, commands that set something in motion, or of
-    /// which nobody knows what they do, are refused with the protocol's error result before they
-    /// begin, so that none that has begun is dropped: when their connections break, as many more as
-    /// `in_flight` on each may still run on. With 0, none runs on: all are dropped with their
-    /// connection or at their timeout.
+    /// Sets the limit of handlers that run on without a waiting app, for the whole server; 64 by default.
+    ///
+    /// At the limit, commands with [`Effect::Motion`] or [`Effect::Unknown`] are refused with the protocol's error
+    /// result before they start, so that no started handler is dropped. If connections break, up to `in_flight` more
+    /// handlers per connection may run on. With 0, no handler runs on: all are dropped with their connection or at
+    /// their timeout.
     #[must_use]
     pub fn abandoned_handlers(mut self, limit: usize) -> Self {
         self.abandoned_handlers = limit;
         self
     }
 
-    /// Message id of the first report on each connection; the local time of day unless set, so that
-    /// a robot that restarts does not use its ids again. Set it where runs have to be the same
-    /// each time.
-    #[must_use]
-    pub fn first_id(mut self, id: u32) -> Self {
-        self.first_id = Some(id);
-        self
-    }
-
-    /// Compresses responses and reports, for apps known to take it.
-    #[must_use]
-    pub fn gzip(mut self, gzip: impl Into<Option<Gzip>>) -> Self {
-        self.gzip = gzip.into();
-        self
-    }
-
-    /// Whether to verify the digests of what is received (the default).
-    #[must_use]
-    pub fn verify_digest(mut self, verify: bool) -> Self {
-        self.verify_digest = verify;
-        self
-    }
-
-    /// Whether to search for the next frame where one should begin and does not, instead of
-    /// closing the connection (the default).
-    #[must_use]
-    pub fn resync(mut self, resync: bool) -> Self {
-        self.resync = resync;
-        self
-    }
-
-    /// How long a header may take from its first byte to its last before the connection is closed; and
-    /// a handshake that [`ServerHandle::serve_after`](super::ServerHandle::serve_after) waits for.
+    /// Sets the longest time of a header from its first to its last byte, and of a handshake in
+    /// [`ServerHandle::serve_after`](super::ServerHandle::serve_after). After it, the connection is closed.
     #[must_use]
     pub fn header_timeout(mut self, timeout: Duration) -> Self {
         self.header_timeout = timeout;
         self
     }
 
-    /// How long a connection may make no progress, in the middle of a frame or while it has
-    /// something to read, before it is closed. What is slower than [`least_rate`](Self::least_rate)
-    /// is no progress.
+    /// Sets how long a connection may make no progress, in the middle of a frame or while the app does not read, before
+    /// it is closed. A transfer below [`least_rate`](Self::least_rate) is not progress.
     #[must_use]
     pub fn stall_timeout(mut self, timeout: Duration) -> Self {
-        self.stall_timeout = timeout;
+        self.connection.stall_timeout = timeout;
         self
     }
 
-    /// How fast a frame has to come, and what is sent has to be read, in bytes per second, averaged
-    /// over the stall timeout: a connection that stays below it for so long is closed. With 0, a byte
-    /// is progress enough, and somebody who sends one now and then holds the memory of a frame for as
-    /// long as he likes.
+    /// Sets the minimum rate of frames, in both directions, in bytes per second. The average over the stall timeout
+    /// counts, and a slower connection is closed. With 0, any byte is progress, and a peer that sends one now and then
+    /// holds the memory of a frame for ever.
     #[must_use]
     pub fn least_rate(mut self, bytes_per_second: u32) -> Self {
         self.least_rate = bytes_per_second;
         self
     }
 
-    /// How long a connection may be silent in between frames before it is closed; `None` for any
-    /// time.
+    /// Sets how long a connection may be silent between frames before it is closed; `None` for any time.
     #[must_use]
     pub fn idle_timeout(mut self, timeout: Option<Duration>) -> Self {
         self.idle_timeout = timeout;
         self
     }
 
-    /// After how much silence TCP asks whether the app is still there (thirty seconds by default),
-    /// or `None` not to ask. Where the system allows it (Linux, Android), a connection whose app is
-    /// gone without a word ends after twice that time, otherwise somewhat later.
-    #[must_use]
-    pub fn keepalive(mut self, silence: Option<Duration>) -> Self {
-        self.keepalive = silence;
-        self
-    }
-
-    /// How much memory apps may make the server hold, those of both ports together, in bytes: what has come
-    /// of frames and what that is decompressed to, requests in handlers' hands, streams that nobody has
-    /// taken yet, answers, reports and streams not sent yet. 256 MiB by default.
+    /// Sets the memory that apps may make the server hold, for both ports together, in bytes; 256 MiB by default. It
+    /// covers received and inflated frames, requests in handlers, streams that no receiver has taken, and unsent
+    /// responses, reports and streams.
     ///
-    /// An eighth of it is kept for what is read and answered at a moment. When the rest is used up,
-    /// the connection that holds most is closed, and others are not read until its memory is there; a
-    /// report that finds no room drops older ones of its app. Whatever a robot's own handlers keep is
-    /// not counted.
+    /// An eighth of it is reserved for the requests being read and answered. When the rest is used up, the connection
+    /// with the most memory is closed, and others are not read until memory is free. A report without room drops older
+    /// reports of its app. Memory of the robot's handlers is not counted.
     ///
-    /// A frame that could not be dealt with even if it were alone is refused: beside itself it may
-    /// take up to four times its JSON text. With 256 MiB these are texts of more than 38 MiB.
+    /// A frame that would need too much memory even alone is refused. Besides the frame, reading may take up to four
+    /// times its JSON text. With 256 MiB, texts of more than 38 MiB are refused.
     #[must_use]
     pub fn memory(mut self, bytes: usize) -> Self {
         self.memory = bytes;
         self
     }
 
-    pub(super) fn command_port_or<P: Protocol>(&self) -> u16 {
-        self.command_port.unwrap_or(P::COMMAND_PORT)
-    }
-
-    pub(super) fn data_port_or<P: Protocol>(&self) -> u16 {
-        self.data_port.unwrap_or(P::DATA_PORT)
-    }
-
     pub(super) fn settings<P: Protocol>(&self) -> Settings {
         let memory = self.memory - self.memory / 8;
-        let limits = self.limits.unwrap_or(P::DEFAULTS.limits);
+        let limits = self.connection.limits::<P>();
         let limits = Limits {
             frame_bytes: limits.frame_bytes.min(at_most(memory / 16 * 3)),
             json_list_bytes: limits.json_list_bytes.min(memory / 6),
             ..limits
         };
-        let longest = usize::try_from(limits.inflated_bytes).unwrap_or(usize::MAX);
         Settings {
+            connection: self.connection.clone(),
             limits,
-            queued_bytes: self.queued_bytes.unwrap_or(longest),
+            queued_bytes: self.connection.queued_bytes::<P>(),
             connections_per_address: self.connections_per_address,
             allowed: self.allowed.clone(),
             abandoned_handlers: self.abandoned_handlers,
             memory,
-            first_id: self.first_id,
             handler_timeout: self.handler_timeout.unwrap_or(P::DEFAULTS.handler_timeout),
             max_age: match self.max_age {
                 MaxAge::Default => P::DEFAULTS.max_age,
                 MaxAge::Set(age) => age,
             },
-            gzip: self.gzip,
-            verify_digest: self.verify_digest,
-            resync: self.resync,
             header_timeout: self.header_timeout,
-            stall: Least::new(self.least_rate, self.stall_timeout),
+            stall: MinimumRate::new(self.least_rate, self.connection.stall_timeout),
             idle_timeout: self.idle_timeout,
-            keepalive: self.keepalive,
         }
     }
 }
 
-/// What a text that is read takes at most beside itself and the items of lists, in times its length:
+/// Largest memory of a text that is read, in multiples of its length, besides the text and list items.
 /// `tests/memory.rs` measures it.
 const TEXT: usize = 3;
 
@@ -334,38 +237,31 @@ fn at_most(bytes: usize) -> u32 {
 /// A configuration with all defaults filled in.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
+    pub(super) connection: ConnectionSettings,
+    /// Limits that fit into the memory. They are used in place of those of the connection.
     pub(super) limits: Limits,
     pub(super) queued_bytes: usize,
     pub(super) connections_per_address: usize,
     pub(super) allowed: Allowed,
     pub(super) abandoned_handlers: usize,
-    /// What may be held, in bytes, but for a reserve.
+    /// Limit of the memory without the reserve, in bytes.
     pub(super) memory: usize,
-    first_id: Option<u32>,
     pub(super) handler_timeout: Duration,
     pub(super) max_age: Option<Duration>,
-    gzip: Option<Gzip>,
-    verify_digest: bool,
-    resync: bool,
     pub(super) header_timeout: Duration,
-    /// What is progress in the middle of a frame, either way.
-    pub(super) stall: Least,
+    /// Minimum rate in the middle of a frame, in both directions.
+    pub(super) stall: MinimumRate,
     pub(super) idle_timeout: Option<Duration>,
-    pub(super) keepalive: Option<Duration>,
 }
 
 impl Settings {
-    pub(super) fn first_id(&self) -> u32 {
-        self.first_id.unwrap_or_else(clock::first_id)
-    }
-
-    /// A decoder for requests, which are read as JSON.
+    /// Returns a decoder for requests, which are read as JSON.
     pub(super) fn decoder<P: Protocol>(&self) -> Decoder<P> {
         let frame = usize::try_from(self.limits.frame_bytes).unwrap_or(usize::MAX);
         self.decoder_up_to((self.memory / 4 * 3).saturating_sub(frame) / (1 + TEXT))
     }
 
-    /// A decoder for streams, which nobody reads.
+    /// Returns a decoder for streams, which are not read.
     pub(super) fn stream_decoder<P: Protocol>(&self) -> Decoder<P> {
         self.decoder_up_to(self.memory / 2)
     }
@@ -375,23 +271,18 @@ impl Settings {
             inflated_bytes: self.limits.inflated_bytes.min(at_most(inflated)),
             ..self.limits
         };
-        Decoder::new()
-            .limits(&limits)
-            .verify_digest(self.verify_digest)
-            .resync(self.resync)
+        self.connection.decoder(&limits)
     }
 
-    /// What it may take to decompress and read a request, in bytes.
+    /// Returns the memory for inflating and reading a request, in bytes.
     pub(super) fn reading(&self, work: Work) -> usize {
         let text = work.data.max(work.inflated);
-        // A list that grows is in memory twice for a moment: the old half beside the new whole.
+        // A growing list is in memory twice for a moment: the old half and the new whole.
         let lists = self.limits.json_list_bytes / 2 * 3;
         work.inflated + text.saturating_mul(TEXT) + lists
     }
 
     pub(super) fn encoder<P: Protocol>(&self) -> Encoder<P> {
-        Encoder::new()
-            .gzip(self.gzip)
-            .frame_bytes(self.limits.frame_bytes)
+        self.connection.encoder(&self.limits)
     }
 }

@@ -1,8 +1,8 @@
-//! The name of a connection, which everybody who speaks of it has.
+//! The id of a connection.
 
 use std::fmt;
 
-/// Which of a server's connections. Never used twice by one server.
+/// A connection of a server. Ids are never reused by one server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ConnectionId(pub(crate) u64);
 

@@ -1,17 +1,17 @@
-//! What a handler is told beside the request.
+//! The context of a request for its handler.
 
 use super::connection_id::ConnectionId;
 use super::peer::Peer;
 use crate::clock;
 use crate::protocol::Protocol;
-use crate::raw::Refusal;
+use crate::refusal::Refusal;
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Instant;
 use tokio::time::sleep_until;
 
-/// What a handler is told beside the request.
+/// The context of a request for its handler.
 pub struct Context<P: Protocol> {
     /// Address of the app.
     pub peer: SocketAddr,
@@ -21,34 +21,34 @@ pub struct Context<P: Protocol> {
     pub id: u32,
     /// Command code of the request.
     pub code: u16,
-    /// When the request was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so.
+    /// Time of the request in milliseconds since 1970-01-01T00:00:00Z, if the envelope contains it.
     pub time_ms: Option<i64>,
     pub(super) app: Arc<Peer<P>>,
     pub(super) deadline: Instant,
 }
 
 impl<P: Protocol> Context<P> {
-    /// The refusal of a command that the spec has and this robot does not carry out: nothing has been
-    /// done. Counted in [`ServerCounters::calls_not_implemented`](super::ServerCounters::calls_not_implemented) and logged with the command's name.
+    /// Returns the refusal of a command of the spec that this robot does not implement. It is counted in
+    /// [`ServerCounters::calls_not_implemented`](super::ServerCounters::calls_not_implemented) and logged with the
+    /// command's name.
     ///
-    /// It has the protocol's error result, as an unknown code has, for there is none of its own. Its
-    /// text says which it is.
+    /// It has the protocol's error result, like an unknown code, because there is no separate result. Its text
+    /// distinguishes it.
     #[must_use]
     pub fn not_implemented(&self) -> Refusal {
         self.app.note_not_implemented(self.code);
         Refusal::not_implemented::<P>()
     }
 
-    /// Whether nobody waits for the answer any more: the connection has ended, or the handler
-    /// timeout is over and the app has been told so. An app that has closed only its own side still
-    /// waits.
+    /// Returns `true` if the app no longer waits for the response: its connection has ended, or the handler timeout has
+    /// passed and the app was told. An app that has closed only its sending side still waits.
     #[must_use]
     pub fn is_abandoned(&self) -> bool {
         self.app.is_gone() || clock::now() >= self.deadline
     }
 
-    /// Resolves once [`is_abandoned`](Self::is_abandoned). A handler of a motion runs on then; this
-    /// is how it learns of that and stops, if it should:
+    /// Resolves when [`is_abandoned`](Self::is_abandoned) becomes `true`. The handler of a motion then runs on. With
+    /// this method it can stop instead:
     ///
     /// ```
     /// use fc_runtime::{Context, Protocol, Refusal};

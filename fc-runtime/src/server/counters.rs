@@ -1,16 +1,17 @@
-//! What a server has seen, in numbers.
+//! Counters of a server.
 
 use super::connection_id::ConnectionId;
 use crate::clock;
+use crate::log_limiter::{LogLimiter, Suppressed};
 use crate::metrics::{Counter, Gauge, Operations, SERVER, Since};
 use crate::protocol::Protocol;
-use crate::thin::{Held, Thin};
+use crate::sync::lock;
 use std::fmt::Display;
 use std::net::SocketAddr;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
 
-/// The metric of a counter. Those `by` operation are one together, which [`Counting::call`] counts.
+/// The metric of a counter. The counters `by` operation share one metric, which [`Counters::call`] counts.
 macro_rules! metric {
     ($name:ident) => {
         Some(concat!("fc_server_", stringify!($name), "_total"))
@@ -22,87 +23,29 @@ macro_rules! metric {
 
 macro_rules! counters {
     ($($(#[doc = $doc:literal])* $name:ident $(by $operation:ident)?,)*) => {
-        /// What a server has seen since it was bound.
+        /// Counters of a server since it was bound.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[non_exhaustive]
         pub struct ServerCounters {
             $($(#[doc = $doc])* pub $name: u64,)*
         }
 
-        /// The same, being counted.
+        /// The counters while the server runs.
         #[derive(Debug)]
-        pub(super) struct Counting {
+        pub(super) struct Counters {
             $(pub(super) $name: Count,)*
-            pub(super) lines: Lines,
+            pub(super) limiters: LogLimiters,
             pub(super) gauges: Gauges,
             operations: Operations,
         }
 
-        impl Counting {
+        impl Counters {
             pub(super) fn of<P: Protocol>() -> Self {
                 Self {
                     $($name: Count::new(metric!($name $(by $operation)?), concat!($($doc),*)),)*
-                    lines: Lines::default(),
+                    limiters: LogLimiters::default(),
                     gauges: Gauges::new(),
                     operations: Operations::of::<P>(&SERVER),
-                }
-            }
-
-            /// Counts a frame that could not be read.
-            pub(super) fn bad_frame<P: Protocol>(
-                &self,
-                lines: &mut Thin,
-                (connection, peer): (ConnectionId, SocketAddr),
-                name: &'static str,
-                error: &dyn Display,
-            ) {
-                self.bad_frames.one();
-                if let Some(held) = lines.line(clock::now()) {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
-                }
-            }
-
-            /// Counts a connection that has to go because memory is short, and logs what it held.
-            pub(super) fn evicted<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-                held: usize,
-            ) {
-                self.connections_evicted.one();
-                if let Some(held_back) = self.lines.evicted.line() {
-                    let (protocol, connection, bytes) = (P::NAME, connection.0, held);
-                    let held = held_back.shown();
-                    tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
-                }
-            }
-
-            /// Logs that a connection has begun at the `port` of this name.
-            pub(super) fn connected<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-            ) {
-                if let Some(held) = self.lines.connected.line() {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::info!(protocol, connection, %peer, port, held, "connected");
-                }
-            }
-
-            /// Logs that it has ended.
-            pub(super) fn ended<P: Protocol>(
-                &self,
-                connection: ConnectionId,
-                peer: SocketAddr,
-                port: &'static str,
-                reason: &'static str,
-            ) {
-                if let Some(held) = self.lines.ended.line() {
-                    let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
-                    tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
                 }
             }
 
@@ -190,7 +133,7 @@ counters! {
     bytes_out,
 }
 
-/// How a request was answered.
+/// The kind of answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Answered {
     Success,
@@ -201,7 +144,7 @@ pub(super) enum Answered {
     Refused,
 }
 
-impl Counting {
+impl Counters {
     /// Counts a request with this command code.
     pub(super) fn call(&self, code: u16, answered: Answered) {
         let (count, result) = match answered {
@@ -212,17 +155,75 @@ impl Counting {
             Answered::Expired => (&self.calls_expired, "expired"),
             Answered::Refused => (&self.calls_refused, "refused"),
         };
-        count.one();
+        count.increment();
         self.operations.called(code, result);
     }
 
-    /// Notes the time of a handler that has ended.
+    /// Counts and logs an unreadable frame.
+    pub(super) fn bad_frame<P: Protocol>(
+        &self,
+        limiters: &mut LogLimiter,
+        (connection, peer): (ConnectionId, SocketAddr),
+        name: &'static str,
+        error: &dyn Display,
+    ) {
+        self.bad_frames.increment();
+        if let Some(held) = limiters.admit(clock::now()) {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::warn!(protocol, connection, %peer, error = name, held, "{error}");
+        }
+    }
+
+    /// Counts and logs a connection that is closed because memory is short, with its memory.
+    pub(super) fn evicted<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+        held: usize,
+    ) {
+        self.connections_evicted.increment();
+        if let Some(held_back) = self.limiters.evicted.admit() {
+            let (protocol, connection, bytes) = (P::NAME, connection.0, held);
+            let held = held_back.shown();
+            tracing::warn!(protocol, connection, %peer, port, bytes, held, "closed: memory is short");
+        }
+    }
+
+    /// Logs a new connection at a port.
+    pub(super) fn connected<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+    ) {
+        if let Some(held) = self.limiters.connected.admit() {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::info!(protocol, connection, %peer, port, held, "connected");
+        }
+    }
+
+    /// Logs the end of a connection.
+    pub(super) fn ended<P: Protocol>(
+        &self,
+        connection: ConnectionId,
+        peer: SocketAddr,
+        port: &'static str,
+        reason: &'static str,
+    ) {
+        if let Some(held) = self.limiters.ended.admit() {
+            let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
+            tracing::info!(protocol, connection, %peer, port, reason, held, "ended");
+        }
+    }
+
+    /// Records the time of a handler.
     pub(super) fn handled(&self, code: u16, since: Since) {
         self.operations.took(code, since.elapsed());
     }
 }
 
-/// What there is at this moment. Not counters: nothing but metrics shows it.
+/// Current numbers. Only metrics contain them.
 #[derive(Debug)]
 pub(super) struct Gauges {
     pub(super) connections: Gauge,
@@ -251,48 +252,47 @@ impl Gauges {
     }
 }
 
-/// What is logged of all connections of a server together: they may come and go by the thousand.
+/// Limits of log lines about all connections of a server together. There may be thousands of connections.
 #[derive(Debug)]
-pub(super) struct Lines {
-    pub(super) connected: SharedThin,
-    pub(super) ended: SharedThin,
-    pub(super) refused: SharedThin,
-    pub(super) forbidden: SharedThin,
-    pub(super) handshakes: SharedThin,
-    pub(super) forbidden_calls: SharedThin,
-    pub(super) evicted: SharedThin,
-    pub(super) dropped: SharedThin,
+pub(super) struct LogLimiters {
+    pub(super) connected: SharedLogLimiter,
+    pub(super) ended: SharedLogLimiter,
+    pub(super) refused: SharedLogLimiter,
+    pub(super) forbidden: SharedLogLimiter,
+    pub(super) handshakes: SharedLogLimiter,
+    pub(super) forbidden_calls: SharedLogLimiter,
+    pub(super) evicted: SharedLogLimiter,
+    pub(super) dropped: SharedLogLimiter,
 }
 
-impl Default for Lines {
+impl Default for LogLimiters {
     fn default() -> Self {
-        let each = || SharedThin(Mutex::new(Thin::per_second()));
+        let each = || SharedLogLimiter(Mutex::new(LogLimiter::per_second()));
         Self {
             connected: each(),
             ended: each(),
-            refused: SharedThin::default(),
-            forbidden: SharedThin::default(),
-            handshakes: SharedThin::default(),
-            forbidden_calls: SharedThin::default(),
-            evicted: SharedThin::default(),
-            dropped: SharedThin::default(),
+            refused: SharedLogLimiter::default(),
+            forbidden: SharedLogLimiter::default(),
+            handshakes: SharedLogLimiter::default(),
+            forbidden_calls: SharedLogLimiter::default(),
+            evicted: SharedLogLimiter::default(),
+            dropped: SharedLogLimiter::default(),
         }
     }
 }
 
-/// Lines of one cause that several connections write.
+/// Limits lines of one cause that several connections write.
 #[derive(Debug, Default)]
-pub(super) struct SharedThin(Mutex<Thin>);
+pub(super) struct SharedLogLimiter(Mutex<LogLimiter>);
 
-impl SharedThin {
-    /// What [`Thin::line`] says.
-    pub(super) fn line(&self) -> Option<Held> {
-        let mut thin = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        thin.line(clock::now())
+impl SharedLogLimiter {
+    /// Calls [`LogLimiter::admit`].
+    pub(super) fn admit(&self) -> Option<Suppressed> {
+        lock(&self.0).admit(clock::now())
     }
 }
 
-/// One number, and the metric that it feeds.
+/// A counter and its metric.
 #[derive(Debug)]
 pub(super) struct Count(AtomicU64, Option<Counter>);
 
@@ -302,12 +302,12 @@ impl Count {
         Self(AtomicU64::new(0), metric)
     }
 
-    pub(super) fn one(&self) {
+    pub(super) fn increment(&self) {
         self.add(1);
     }
 
-    /// Counts one more, and says whether to log it: a flood must not become a flood in the log.
-    pub(super) fn one_to_log(&self) -> bool {
+    /// Counts one. Returns `true` if it should be logged: only powers of two are, so that the log stays short.
+    pub(super) fn increment_sampled(&self) -> bool {
         self.count(1).wrapping_add(1).is_power_of_two()
     }
 
@@ -315,7 +315,7 @@ impl Count {
         self.count(n as u64);
     }
 
-    /// Counts, and gives what it was before.
+    /// Counts, and returns the number before.
     fn count(&self, n: u64) -> u64 {
         if let Some(metric) = &self.1 {
             metric.add(n);

@@ -1,83 +1,84 @@
-//! The data port: frames of raw bytes to and from apps.
+//! The data port: frames of raw bytes from and to apps.
 
-use super::bounded::Bounded;
-use super::budget::{Account, Charge, Holder, NO_MEMORY};
+use super::budget::{Charge, ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
 use super::driver::FRAME;
 use super::gate::Gate;
-use super::pace::{Pace, inflated};
+use super::metered_receiver::MeteredReceiver;
+use super::penalty::{Penalty, inflated};
 use crate::clock;
 use crate::frame::{FrameId, LONG, Prepared};
 use crate::link::{CLOSING, Transport};
+use crate::log_limiter::LogLimiter;
 use crate::message::{Empty, write_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::stream::{Patience, Receiver, Sender, StreamError, StreamFrame};
-use crate::thin::Thin;
+use crate::sync::lock;
 use std::convert::Infallible;
 use std::future::poll_fn;
 use std::marker::PhantomData;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use tokio::io::{ReadHalf, WriteHalf};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio::task::yield_now;
 use tokio::time::{sleep, timeout};
 
-/// Frames waiting for one app, or for the robot, besides the one on its way.
+/// Frames in the queue to one app or to the robot, besides the frame in flight.
 pub(super) const QUEUE: usize = 4;
 
 /// A frame to be sent.
 pub(super) struct Outgoing {
     pub(super) id: FrameId,
     pub(super) body: Prepared,
-    /// The memory of the body, as if nobody shared it.
+    /// Memory of the body, as if it were not shared.
     pub(super) charge: Charge,
 }
 
-/// Where frames of apps go.
+/// The receiver of frames from apps.
 pub(super) type Inbox = Mutex<Option<mpsc::Sender<AppStream>>>;
 
-/// A frame of raw bytes that an app has sent.
+/// A frame of raw bytes from an app.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppStream {
-    /// Data connection that brought it.
+    /// Data connection of the frame.
     pub connection: ConnectionId,
     /// Address of the app.
     pub peer: SocketAddr,
     /// The frame.
     pub frame: StreamFrame,
-    charge: Lent,
+    charge: MemoryGuard,
 }
 
-/// The memory of a frame, charged to the server as long as nobody has taken the frame apart.
+/// The memory of a frame, charged to the server until the frame is taken apart.
 #[derive(Debug)]
-struct Lent(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
+struct MemoryGuard(#[allow(dead_code, reason = "counts while it lives")] Option<Charge>);
 
-/// A copy is the robot's own.
-impl Clone for Lent {
+/// A copy is not charged; it belongs to the robot.
+impl Clone for MemoryGuard {
     fn clone(&self) -> Self {
         Self(None)
     }
 }
 
-impl PartialEq for Lent {
+impl PartialEq for MemoryGuard {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for Lent {}
+impl Eq for MemoryGuard {}
 
-/// The frames of raw bytes that apps send, in the order they came on each connection.
+/// Frames of raw bytes from apps, in the order received on each connection.
 #[derive(Debug)]
 pub struct AppStreams(pub(super) mpsc::Receiver<AppStream>);
 
 impl AppStreams {
-    /// The next frame; `None` once the server has ended or another receiver has taken over.
+    /// Returns the next frame, or `None` if the server has ended or another receiver has replaced this one.
     ///
     /// Cancellation safe.
     pub async fn recv(&mut self) -> Option<AppStream> {
@@ -104,22 +105,22 @@ impl futures_core::Stream for AppStreams {
     }
 }
 
-/// Whose a data connection is. The protocol does not say; an address does, as long as there is one app
-/// behind it.
+/// The app of a data connection. The protocol does not specify it. Its address identifies it as long as only one app
+/// has that address.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// Nobody has had a command connection from the same address meanwhile.
+    /// No command connection from the same address so far.
     #[default]
     Nobody,
-    /// There has been this one alone.
+    /// Only this command connection so far.
     One(ConnectionId),
-    /// There have been several, and it may be anybody's.
+    /// Several command connections so far, so the owner is unknown.
     Several,
 }
 
 impl Owner {
     /// Notes a command connection from the same address.
-    pub(super) fn saw(&mut self, app: ConnectionId) {
+    pub(super) fn note(&mut self, app: ConnectionId) {
         *self = match *self {
             Self::Nobody => Self::One(app),
             Self::One(known) if known == app => Self::One(app),
@@ -128,13 +129,13 @@ impl Owner {
     }
 }
 
-/// What others know of a data connection. It ends once this is gone and all is sent.
+/// The shared part of a data connection. The connection ends when this is dropped and everything is sent.
 pub(super) struct DataEntry {
     pub(super) sender: mpsc::Sender<Outgoing>,
-    pub(super) account: Arc<Account>,
+    pub(super) memory: Arc<ConnectionMemory>,
     pub(super) heard: Arc<AtomicBool>,
     pub(super) owner: Owner,
-    /// Ends the handshake with the entry.
+    /// Ends the handshake when the entry is dropped.
     pub(super) _entered: oneshot::Sender<Infallible>,
 }
 
@@ -143,28 +144,28 @@ pub(super) struct DataPeer<P> {
     pub(super) id: ConnectionId,
     pub(super) address: SocketAddr,
     pub(super) settings: Arc<Settings>,
-    pub(super) counters: Arc<Counting>,
+    pub(super) counters: Arc<Counters>,
     pub(super) inbox: Arc<Inbox>,
-    /// To answer with; weak, so that the connection ends when nobody else sends.
+    /// Queue for responses. It is weak, so that the connection ends when there are no other senders.
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
-    pub(super) account: Arc<Account>,
-    pub(super) leave: Arc<Leave<P>>,
-    /// A frame has been received.
+    pub(super) memory: Arc<ConnectionMemory>,
+    pub(super) eviction: Arc<Eviction<P>>,
+    /// `true` if a frame has been received.
     pub(super) heard: Arc<AtomicBool>,
 }
 
 /// Tells a data connection to end at once.
-pub(super) struct Leave<P> {
+pub(super) struct Eviction<P> {
     id: ConnectionId,
     address: SocketAddr,
-    counters: Arc<Counting>,
+    counters: Arc<Counters>,
     told: Notify,
     protocol: PhantomData<P>,
 }
 
-impl<P> Leave<P> {
-    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counting>) -> Self {
+impl<P> Eviction<P> {
+    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counters>) -> Self {
         Self {
             id,
             address,
@@ -175,8 +176,8 @@ impl<P> Leave<P> {
     }
 }
 
-impl<P: Protocol> Holder for Leave<P> {
-    /// It keeps no memory that it does not need.
+impl<P: Protocol> MemoryHolder for Eviction<P> {
+    /// Does nothing, because it keeps no unused memory.
     fn tidy(&self) {}
 
     fn evict(&self, held: usize) {
@@ -187,7 +188,7 @@ impl<P: Protocol> Holder for Leave<P> {
 }
 
 impl<P: Protocol> DataPeer<P> {
-    /// Serves the connection until it ends, or until `outbox` does.
+    /// Serves the connection until it or `outbox` ends.
     pub(super) async fn run<S: Transport>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
@@ -195,7 +196,7 @@ impl<P: Protocol> DataPeer<P> {
             stall: Some(self.settings.stall),
         };
         let receiver = Receiver::new(read, self.settings.stream_decoder(), patience);
-        let receiver = Bounded::new(receiver, self.gate.clone(), Arc::clone(&self.account));
+        let receiver = MeteredReceiver::new(receiver, self.gate.clone(), Arc::clone(&self.memory));
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
         let reason = tokio::select! {
@@ -203,23 +204,22 @@ impl<P: Protocol> DataPeer<P> {
                 Ok(()) => "closed",
                 Err(error) => {
                     if matches!(error, StreamError::Stalled) {
-                        self.counters.connections_timed_out.one();
+                        self.counters.connections_timed_out.increment();
                     }
                     error.name()
                 }
             },
-            () = self.leave.told.notified() => NO_MEMORY,
+            () = self.eviction.told.notified() => NO_MEMORY,
         };
-        self.account.close();
+        self.memory.close();
         self.counters
             .ended::<P>(self.id, self.address, "data", reason);
     }
 
-    /// Reads and writes until one of them ends. What waits to be sent when the app sends no more is
-    /// sent still.
+    /// Reads and writes until one of them ends. If the app sends no more, the queued frames are still sent.
     async fn converse<S: Transport>(
         &self,
-        receiver: Bounded<ReadHalf<S>, P>,
+        receiver: MeteredReceiver<ReadHalf<S>, P>,
         sender: Sender<WriteHalf<S>>,
         outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
@@ -238,11 +238,11 @@ impl<P: Protocol> DataPeer<P> {
 
     async fn read<S: Transport>(
         &self,
-        receiver: &mut Bounded<ReadHalf<S>, P>,
+        receiver: &mut MeteredReceiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
-        let mut pace = Pace::default();
-        let mut lines = Thin::default();
+        let mut penalty = Penalty::default();
+        let mut limiters = LogLimiter::default();
         loop {
             if work >= LONG {
                 work = 0;
@@ -263,33 +263,28 @@ impl<P: Protocol> DataPeer<P> {
                 Err(error) => {
                     let counters = &self.counters;
                     let whose = (self.id, self.address);
-                    counters.bad_frame::<P>(&mut lines, whose, error.name(), &error);
+                    counters.bad_frame::<P>(&mut limiters, whose, error.name(), &error);
                     if error.is_fatal() {
                         return Err(error);
                     }
                     if let Some(frame) = error.answerable() {
                         self.refuse(frame);
                     }
-                    rest = rest.max(pace.unusable(1, clock::now()));
+                    rest = rest.max(penalty.unusable(1, clock::now()));
                 }
             }
             if !rest.is_zero() {
-                self.counters.connections_paced.one();
+                self.counters.connections_paced.increment();
                 sleep(rest).await;
             }
         }
     }
 
-    /// Gives a frame to the receiver of streams, and waits while it is busy: the app is not read
-    /// meanwhile.
+    /// Passes a frame to the receiver of streams, and waits while it is busy. The app is not read meanwhile.
     async fn hand_on(&self, frame: StreamFrame) {
-        self.counters.stream_frames_in.one();
-        let inbox = self
-            .inbox
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone();
-        let mut charge = self.account.keep(frame.data.memory());
+        self.counters.stream_frames_in.increment();
+        let inbox = lock(&self.inbox).clone();
+        let mut charge = self.memory.queue_existing(frame.data.memory());
         let taken = match inbox {
             Some(inbox) => match inbox.reserve().await {
                 Ok(place) => {
@@ -298,7 +293,7 @@ impl<P: Protocol> DataPeer<P> {
                         connection: self.id,
                         peer: self.address,
                         frame,
-                        charge: Lent(Some(charge)),
+                        charge: MemoryGuard(Some(charge)),
                     });
                     true
                 }
@@ -307,11 +302,11 @@ impl<P: Protocol> DataPeer<P> {
             None => false,
         };
         if !taken {
-            self.counters.stream_frames_dropped.one();
+            self.counters.stream_frames_dropped.increment();
         }
     }
 
-    /// Replies to a frame that cannot be used; nothing is lost if there is no room for that.
+    /// Responds to an unusable frame. The response is dropped if there is no room for it.
     fn refuse(&self, frame: FrameId) {
         if !P::Response::HAS_RESULT {
             return;
@@ -323,7 +318,7 @@ impl<P: Protocol> DataPeer<P> {
             .encoder::<P>()
             .prepare(|out| write_enveloped(&envelope, &Empty, out));
         if let (Ok(body), Some(answers)) = (body, self.answers.upgrade())
-            && let Some(charge) = self.account.queue(body.len())
+            && let Some(charge) = self.memory.try_queue(body.len())
         {
             let id = frame.answer();
             let _ = answers.try_send(Outgoing { id, body, charge });
@@ -351,7 +346,7 @@ impl<P: Protocol> DataPeer<P> {
             drop(charge);
             self.counters.bytes_out.add(sent);
             if !id.response {
-                self.counters.stream_frames_out.one();
+                self.counters.stream_frames_out.increment();
             }
         }
         sender.close().await

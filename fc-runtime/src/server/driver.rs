@@ -1,27 +1,28 @@
-//! The one task of a command connection: it alone touches the socket.
+//! The task of a command connection. Only it uses the socket.
 //!
-//! Each time it is woken it goes on with waiting handlers, reads all there is, handles it in place,
-//! takes up reports and answers, and sends all of it with one write. An app that does not read its
-//! answers is not read either.
+//! When it wakes, it continues waiting handlers, reads and handles all requests, takes reports and responses, and sends
+//! everything with one write. An app that does not read its responses is not read either.
+
+mod requests;
 
 use super::connection_id::ConnectionId;
-use super::gate::{Gate, LARGE, Pass, Place, through};
+use super::gate::{Gate, GateQueue};
 use super::handlers::Handlers;
 use super::output::Output;
-use super::pace::Rests;
 use super::peer::Peer;
+use super::penalty::ReadPause;
 use super::push::AckOutcome;
-use super::service::{Request, Service};
-use super::watch::{Late, Reading, Reason, Standing, Watchdog};
+use super::service::Service;
+use super::watch::{Activity, Expected, Overdue, Reason, Watchdog};
 use crate::clock;
 use crate::frame::LONG;
-use crate::json::Allowance;
 use crate::link::{CLOSING, Link, Transport};
-use crate::message::{Empty, read_enveloped};
-use crate::protocol::{AckPolicy, Protocol};
-use crate::raw::Refusal;
-use crate::session::{Due, Incoming, after};
-use crate::thin::Thin;
+use crate::log_limiter::LogLimiter;
+use crate::operation::AckPolicy;
+use crate::protocol::Protocol;
+use crate::session::Due;
+use crate::sync::register;
+use requests::ReadEnd;
 use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -29,44 +30,31 @@ use std::time::Instant;
 use tokio::task::yield_now;
 use tokio::time::timeout;
 
-/// Beyond this much unsent, in bytes, nothing is read or taken up.
+/// Unsent bytes beyond which nothing is read or taken from queues.
 const HIGH_WATER: usize = 256 * 1024;
 
-/// What a connection may do in one turn before the others have theirs, in bytes received and
-/// answered: some sixty small requests.
+/// Work of a connection in one turn, in bytes received and answered: about sixty small requests. Then other connections
+/// run.
 const TURN: usize = 160 * 1024;
 
-/// After so many requests their answers are sent, though more requests are at hand: the app then
-/// works on the ones while the robot works on the others.
-const SLICE: usize = 32;
-
-/// What is digested at once of a long answer, in bytes: some sixty microseconds.
+/// Bytes of a long response that are digested at once, in about sixty microseconds.
 const DIGEST: usize = 32 * 1024;
 
-/// What is written at once, in bytes: the system copies it while nobody else has his turn.
+/// Bytes written at once. The system copies them while no other task runs.
 const WRITE: usize = 256 * 1024;
 
-/// What the work on a frame counts beside its bytes.
+/// Work per frame in addition to its bytes.
 pub(super) const FRAME: usize = 2 * 1024;
 
-/// Nothing can be sent any more either.
+/// The reason if nothing can be sent any more.
 const BROKEN: Reason = "the connection broke";
 
-/// How a turn of the connection has ended.
+/// The end of a turn of the connection.
 enum Turn {
-    /// All that it may do at once is done.
+    /// The turn has used up its work.
     Spent,
-    /// And the connection with it.
+    /// The connection has ended.
     Over(Reason),
-}
-
-/// Why nothing more can be received.
-enum End {
-    /// Answers cannot be sent either.
-    Broken,
-    /// Answers can still be sent: the app has closed its half, or what it sends cannot be told into
-    /// frames.
-    Deaf(Reason),
 }
 
 pub(super) struct Driver<S, P: Protocol> {
@@ -74,17 +62,17 @@ pub(super) struct Driver<S, P: Protocol> {
     peer: Arc<Peer<P>>,
     service: Arc<dyn Service<P>>,
     handlers: Handlers<P>,
-    /// What is left of the turn, in bytes.
+    /// Work left in this turn, in bytes.
     turn: usize,
-    gate: Place,
-    /// There is no memory to read on.
+    gate: GateQueue,
+    /// `true` if there is no memory to read on.
     short: bool,
-    rests: Rests,
-    /// What is logged of frames that could not be read, and of the limit in flight.
-    bad_frames: Thin,
-    in_flight: Thin,
-    /// Why nothing more is read at all. What has been carried out is answered all the same.
-    deaf: Option<Reason>,
+    pause: ReadPause,
+    /// Log limits for unreadable frames, and for the limit of calls in flight.
+    bad_frames: LogLimiter,
+    in_flight: LogLimiter,
+    /// The reason why nothing more is read. Handled requests are answered nevertheless.
+    half_closed: Option<Reason>,
     watch: Watchdog,
 }
 
@@ -101,12 +89,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             service,
             handlers: Handlers::default(),
             turn: TURN,
-            gate: Place::new(gate),
+            gate: GateQueue::new(gate),
             short: false,
-            rests: Rests::default(),
-            bad_frames: Thin::default(),
-            in_flight: Thin::default(),
-            deaf: None,
+            pause: ReadPause::default(),
+            bad_frames: LogLimiter::default(),
+            in_flight: LogLimiter::default(),
+            half_closed: None,
             watch: Watchdog::new(clock::now()),
         }
     }
@@ -120,12 +108,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let turn = poll_fn(|cx| {
                 let turn = self.poll(cx);
                 self.gate.keep_if_asked();
-                self.account();
+                self.update_memory();
                 turn
             });
             match turn.await {
                 Turn::Over(reason) => break reason,
-                // There may be more to handle; first it is the others' turn.
+                // More requests may be available, but other tasks run first.
                 Turn::Spent => yield_now().await,
             }
         };
@@ -133,7 +121,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             .ended::<P>(peer.id, peer.address, "command", reason);
         self.leave();
         if peer.evicted().is_none() {
-            // A peer that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the app may neither read nor stop sending.
             let _ = timeout(CLOSING, self.link.goodbye()).await;
         }
     }
@@ -156,29 +144,29 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 self.charge(before);
             }
             let mut more = false;
-            if !self.peer.is_draining() && self.deaf.is_none() {
+            if !self.peer.is_draining() && self.half_closed.is_none() {
                 match self.receive(cx, now) {
                     Ok(read) => more = read,
-                    Err(End::Broken) => return Poll::Ready(Turn::Over(BROKEN)),
-                    Err(End::Deaf(reason)) => self.deaf = Some(reason),
+                    Err(ReadEnd::Broken) => return Poll::Ready(Turn::Over(BROKEN)),
+                    Err(ReadEnd::HalfClosed(reason)) => self.half_closed = Some(reason),
                 }
             }
             more |= self.handlers.take_fresh();
             let sealed = self.seal();
-            let (loaded, due) = self.tend(cx, now);
+            let (loaded, due) = self.update_state(cx, now);
             more |= loaded;
             let before = self.link.unwritten();
             let write = self.link.poll_write(cx, WRITE);
             let unwritten = self.link.unwritten();
             let written = before.saturating_sub(unwritten);
             self.watch.wrote(written, &self.peer.settings, now);
-            // What is long is digested and written bit by bit, and the others have their turn in between.
+            // Long data is digested and written in pieces, with pauses for other tasks.
             let long = !sealed || (write.is_ready() && unwritten > 0);
             more &= !long;
             match write {
                 Poll::Ready(Ok(())) if more || long => {}
                 Poll::Ready(Ok(())) if self.is_drained() => {
-                    return Poll::Ready(Turn::Over(self.deaf.unwrap_or("drained")));
+                    return Poll::Ready(Turn::Over(self.half_closed.unwrap_or("drained")));
                 }
                 Poll::Ready(Ok(())) => {}
                 Poll::Ready(Err(_)) => return Poll::Ready(Turn::Over(BROKEN)),
@@ -187,17 +175,17 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             if more {
                 continue;
             }
-            let standing = self.standing(now, due);
-            match self.watch.poll(cx, now, &self.peer.settings, standing) {
+            let activity = self.activity(now, due);
+            match self.watch.poll(cx, now, &self.peer.settings, activity) {
                 Poll::Ready(late) => {
-                    // One that has fallen silent before has been counted then.
-                    if self.deaf.is_none() {
-                        self.peer.counters.connections_timed_out.one();
+                    // A connection that is no longer read has been counted before.
+                    if self.half_closed.is_none() {
+                        self.peer.counters.connections_timed_out.increment();
                     }
                     match late {
-                        Late::All(reason) => return Poll::Ready(Turn::Over(reason)),
-                        // Requests before it may still be carried out.
-                        Late::Frame(reason) => self.deaf = Some(reason),
+                        Overdue::All(reason) => return Poll::Ready(Turn::Over(reason)),
+                        // Requests before it may still be running.
+                        Overdue::Frame(reason) => self.half_closed = Some(reason),
                     }
                 }
                 Poll::Pending if self.turn == 0 || long => return Poll::Ready(Turn::Spent),
@@ -206,21 +194,21 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// What it is at now that all is done that can be.
-    fn standing(&mut self, now: Instant, due: Option<Instant>) -> Standing {
-        let rest = self.rests.until(now);
+    /// Returns the activity of the connection after all possible work.
+    fn activity(&mut self, now: Instant, due: Option<Instant>) -> Activity {
+        let rest = self.pause.until(now);
         let inside = self.link.decoder.pending() > 0;
         let reads = self.handlers.len() < self.peer.settings.limits.in_flight
             && self.has_room()
             && !self.gate.is_waiting()
             && !self.short
             && rest.is_none()
-            && self.deaf.is_none();
-        Standing {
-            reading: match (reads, inside) {
-                (false, _) => Reading::Nothing,
-                (true, false) => Reading::Frame,
-                (true, true) => Reading::Rest,
+            && self.half_closed.is_none();
+        Activity {
+            expected: match (reads, inside) {
+                (false, _) => Expected::Nothing,
+                (true, false) => Expected::Frame,
+                (true, true) => Expected::Rest,
             },
             unwritten: self.link.unwritten() > 0,
             idle: self.handlers.is_empty() && !inside,
@@ -228,8 +216,8 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Says what is held for the connection.
-    fn account(&self) {
+    /// Updates the memory held for the connection.
+    fn update_memory(&self) {
         let (mut busy, mut idle) = (self.handlers.weight(), 0);
         let unsent = {
             let output = self.peer.output();
@@ -241,10 +229,10 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         let kept = self.link.decoder.idle();
         busy += self.link.decoder.capacity() - kept;
-        self.peer.account.hold(busy, idle + kept);
+        self.peer.memory.update(busy, idle + kept);
     }
 
-    /// Gives back what is not needed at this moment.
+    /// Releases unused memory.
     fn tidy(&mut self) {
         self.link.tidy();
         let mut output = self.peer.output();
@@ -253,12 +241,12 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
     }
 
-    /// Whether an answer more may be written.
+    /// Returns `true` if another response may be written.
     fn has_room(&self) -> bool {
         self.link.unwritten() + self.peer.unsent() < HIGH_WATER
     }
 
-    /// Goes on with the digests of long answers. Whether they are done.
+    /// Continues the digests of long responses. Returns `true` if they are complete.
     fn seal(&mut self) -> bool {
         if self.peer.unsent() < LONG {
             return true;
@@ -268,207 +256,22 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         output.is_sealed()
     }
 
-    /// Counts what has been answered since as much as `before` was unsent.
+    /// Subtracts new responses from the turn. `before` is the number of unsent bytes before them.
     fn charge(&mut self, before: usize) {
         let answered = self.peer.unsent().saturating_sub(before);
         self.turn = self.turn.saturating_sub(answered);
     }
 
-    /// Whether all that has been carried out is answered, and nothing more is to come.
+    /// Returns `true` if all requests are answered and no more are to come.
     fn is_drained(&self) -> bool {
-        (self.peer.is_draining() || self.deaf.is_some())
+        (self.peer.is_draining() || self.half_closed.is_some())
             && self.peer.unsent() == 0
             && self.handlers.is_empty()
     }
 
-    /// Handles what has been received and reads on until nothing more is there, nothing more may be
-    /// taken or a slice has been handled. `Ok(true)` if there may be more to come at once.
-    fn receive(&mut self, cx: &mut Context<'_>, now: Instant) -> Result<bool, End> {
-        let mut slice = SLICE;
-        loop {
-            while self.has_room() {
-                if self.handlers.len() >= self.peer.settings.limits.in_flight {
-                    self.peer.counters.in_flight_reached.one();
-                    self.full(now);
-                    return Ok(false);
-                }
-                if self.turn == 0 || self.rests.until(now).is_some() {
-                    return Ok(false);
-                }
-                let before = self.peer.unsent();
-                let taken = if let Some(work) = self.link.decoder.work(LARGE) {
-                    let Poll::Ready(pass) = self.gate.poll_pass(cx) else {
-                        return Ok(false);
-                    };
-                    let bytes = self.peer.settings.reading(work);
-                    let Poll::Ready(_read) = self.peer.account.poll_lend(cx, bytes) else {
-                        self.short = true;
-                        return Ok(false);
-                    };
-                    self.take(cx, now, Some(pass))?
-                } else {
-                    self.take(cx, now, None)?
-                };
-                self.short = false;
-                self.charge(before);
-                let surplus = self.link.decoder.take_surplus();
-                if surplus > 0 {
-                    self.link.decoder.release();
-                }
-                self.owe(surplus, now);
-                if !taken {
-                    break;
-                }
-                slice -= 1;
-                if slice == 0 {
-                    return Ok(true);
-                }
-            }
-            if !self.has_room() {
-                // The answers have to go out first.
-                return Ok(true);
-            }
-            let begins = self.link.decoder.pending() == 0;
-            let read = if self.link.decoder.is_bare() {
-                self.short = false;
-                self.link.poll_begin(cx)
-            } else {
-                let grows = self.link.decoder.growth();
-                self.short = grows > 0 && self.peer.account.poll_more(cx, grows).is_pending();
-                if self.short {
-                    return Ok(false);
-                }
-                self.link.poll_read(cx)
-            };
-            match read {
-                Poll::Pending => return Ok(false),
-                Poll::Ready(Ok(0)) => {
-                    let inside = self.link.decoder.finish().is_err();
-                    return Err(End::Deaf(if inside {
-                        "closed inside a frame"
-                    } else {
-                        "closed by the app"
-                    }));
-                }
-                Poll::Ready(Ok(n)) => {
-                    self.peer.hear();
-                    if begins {
-                        self.watch.begins(now);
-                    } else {
-                        self.watch.received(n, &self.peer.settings, now);
-                    }
-                    self.peer.counters.bytes_in.add(n);
-                }
-                Poll::Ready(Err(_)) => return Err(End::Broken),
-            }
-        }
-    }
-
-    /// Logs that as many handlers are at work as may be.
-    fn full(&mut self, now: Instant) {
-        if let Some(held) = self.in_flight.line(now) {
-            let (protocol, held) = (P::NAME, held.shown());
-            let (connection, peer) = (self.peer.id.0, self.peer.address);
-            let in_flight = self.peer.settings.limits.in_flight;
-            tracing::info!(protocol, connection, %peer, in_flight, held, "not read: too many requests");
-        }
-    }
-
-    /// Has the connection rest for the useless work that its last frame has made.
-    fn owe(&mut self, surplus: u64, now: Instant) {
-        let unusable = self.peer.take_unusable();
-        let Some((time, line)) = self.rests.owe(surplus, unusable, now) else {
-            return;
-        };
-        self.peer.counters.connections_paced.one();
-        if let Some(held) = line {
-            let (protocol, held) = (P::NAME, held.shown());
-            let (connection, peer) = (self.peer.id.0, self.peer.address);
-            tracing::info!(protocol, connection, %peer, held, "not read for {time:?}: useless work");
-        }
-    }
-
-    /// Handles the next frame; `Ok(false)` if there is none yet.
-    fn take(
-        &mut self,
-        cx: &mut Context<'_>,
-        now: Instant,
-        pass: Option<Pass>,
-    ) -> Result<bool, End> {
-        let peer = &self.peer;
-        let decoder = &mut self.link.decoder;
-        let frame = match through(pass.as_ref(), || decoder.next()) {
-            Ok(Some(frame)) => {
-                self.turn = self.turn.saturating_sub(FRAME + frame.body().len());
-                frame
-            }
-            Ok(None) => {
-                self.watch.ends_inside_header(decoder.inside_header(), now);
-                return Ok(false);
-            }
-            Err(error) => {
-                self.turn = self.turn.saturating_sub(FRAME);
-                let counters = &peer.counters;
-                let whose = (peer.id, peer.address);
-                counters.bad_frame::<P>(&mut self.bad_frames, whose, error.name(), &error);
-                let id = error.frame().ok_or(End::Deaf(error.name()))?;
-                if id.response {
-                    peer.unusable();
-                } else {
-                    peer.refuse_with(id, P::RESULTS.protocol);
-                }
-                return Ok(true);
-            }
-        };
-        self.watch.frame(now);
-        let id = frame.id();
-        let incoming = if id.response || id.kind != P::COMMAND {
-            peer.lock().session.receive(id, now)
-        } else {
-            Incoming::Command
-        };
-        match incoming {
-            Incoming::Command if !peer.may_call(id.code) => peer.refuse_as_forbidden(id),
-            Incoming::Command => {
-                let request = Request {
-                    frame: id,
-                    body: frame.body(),
-                    peer,
-                    waker: cx.waker(),
-                    pass,
-                    at: now,
-                };
-                let service = &self.service;
-                let Some(handling) = peer.guard(id, || service.call(request)) else {
-                    peer.refuse_after_panic(id);
-                    return Ok(true);
-                };
-                if let Some(begun) = handling.0 {
-                    let deadline = after(now, peer.settings.handler_timeout);
-                    self.handlers.push(begun, id, peer, deadline);
-                }
-            }
-            Incoming::Answer(queued) => {
-                let allowance = peer.settings.limits.json();
-                let outcome = acknowledged::<P>(frame.body(), allowance);
-                match outcome {
-                    AckOutcome::Acknowledged => peer.counters.reports_acknowledged.one(),
-                    _ => peer.counters.reports_refused.one(),
-                }
-                queued.end(outcome);
-            }
-            Incoming::Late => peer.unusable(),
-            // Robots take no reports, and streams have a port of their own.
-            Incoming::Report | Incoming::Repeated | Incoming::Stream => {
-                peer.refuse_with(id, P::RESULTS.protocol);
-            }
-        }
-        Ok(true)
-    }
-
-    /// Everything else that happens under the lock: reports, deadlines, what is to be sent. Says
-    /// whether there is something to send, and when the next report is due.
-    fn tend(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
+    /// Handles reports, deadlines and the send buffer under the lock. Returns `true` if there is something to send, and
+    /// the deadline of the next report.
+    fn update_state(&mut self, cx: &mut Context<'_>, now: Instant) -> (bool, Option<Instant>) {
         let mut guard = self.peer.lock();
         let state = &mut *guard;
         let mut output = self.peer.output();
@@ -483,16 +286,16 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
                 Due::Again(id, queued) => {
                     if output.out.len() < HIGH_WATER {
                         output.encoder.prepared(&mut output.out, id, &queued.body);
-                        counters.reports_repeated.one();
+                        counters.reports_repeated.increment();
                     }
                 }
                 Due::Expired(_, queued) => {
-                    counters.reports_timed_out.one();
+                    counters.reports_timed_out.increment();
                     expired.push(queued);
                 }
             }
         }
-        while self.deaf.is_none()
+        while self.half_closed.is_none()
             && room(output, &self.link)
             && state.session.in_flight() < self.peer.settings.limits.in_flight
             && let Some(queued) = state.queue.pop_front()
@@ -501,7 +304,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
             let policy = spread(queued.policy, self.peer.id);
             if let Ok(id) = state.session.open(P::REPORT, code, policy, now, queued) {
                 output.encoder.prepared(&mut output.out, id, &body);
-                counters.reports_sent.one();
+                counters.reports_sent.increment();
             }
         }
         let loads = self.link.unwritten() == 0 && !output.out.is_empty() && output.is_sealed();
@@ -512,13 +315,7 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
         }
         self.peer.note(output);
         let due = state.session.next_due();
-        if !state
-            .driver
-            .as_ref()
-            .is_some_and(|waker| waker.will_wake(cx.waker()))
-        {
-            state.driver = Some(cx.waker().clone());
-        }
+        register(&mut state.driver, cx);
         drop(guard);
         for queued in expired {
             queued.end(AckOutcome::TimedOut);
@@ -528,23 +325,23 @@ impl<S: Transport, P: Protocol> Driver<S, P> {
 }
 
 impl<S, P: Protocol> Driver<S, P> {
-    /// Nothing more will be answered.
+    /// Notes that no more responses are sent.
     fn leave(&mut self) {
         self.peer.end();
         self.handlers.abandon();
     }
 }
 
-/// However the task ends.
+/// Runs however the task ends.
 impl<S, P: Protocol> Drop for Driver<S, P> {
     fn drop(&mut self) {
         self.leave();
-        self.peer.account.close();
+        self.peer.memory.close();
     }
 }
 
-/// Repetitions to different apps are spread over an eighth of the wait: what many apps have not
-/// acknowledged does not go to all of them again at once.
+/// Spreads repetitions to different apps over an eighth of the wait, so that many unacknowledged reports are not
+/// repeated at once.
 fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
     const PLACES: u32 = 32;
     let place = u32::try_from(connection.0 % u64::from(PLACES)).unwrap_or_default();
@@ -552,16 +349,5 @@ fn spread(policy: AckPolicy, connection: ConnectionId) -> AckPolicy {
     AckPolicy {
         timeout: policy.timeout.saturating_add(step * place),
         ..policy
-    }
-}
-
-/// What an app has answered to a report.
-fn acknowledged<P: Protocol>(body: &[u8], allowance: Allowance) -> AckOutcome {
-    match read_enveloped::<P::Response, Empty>(body, allowance) {
-        Err(error) => AckOutcome::Invalid(error),
-        Ok(read) => match Refusal::of::<P>(&read.envelope) {
-            None => AckOutcome::Acknowledged,
-            Some(refusal) => AckOutcome::Refused(refusal),
-        },
     }
 }

@@ -1,8 +1,7 @@
-//! Large frames: one at a time, and not in the way of everybody else.
+//! Processing of large frames, one at a time.
 //!
-//! To check, inflate and read a frame of many MiB takes many milliseconds, in which a thread serves
-//! nobody else. A server does so for one connection at a time, so that neither all of its threads
-//! nor the memory for a body of every connection are taken up.
+//! Checking, inflating and reading a frame of many MiB occupies a thread for many milliseconds. A server does this for
+//! one connection at a time. So large frames occupy neither all threads nor the memory for one body per connection.
 
 use std::pin::Pin;
 use std::sync::Arc;
@@ -11,10 +10,10 @@ use tokio::runtime::{Handle, RuntimeFlavor};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::block_in_place;
 
-/// From this much work on, in bytes, a frame is large.
+/// Amount of work from which a frame is large, in bytes.
 pub(super) const LARGE: usize = 256 * 1024;
 
-/// What all connections of a server share: who comes first has his turn first.
+/// The gate of a server, which its connections pass in order of arrival.
 #[derive(Clone, Debug)]
 pub(super) struct Gate(Arc<Semaphore>);
 
@@ -25,21 +24,21 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// Waits for leave to deal with a large frame.
+    /// Waits for the permission to process a large frame.
     pub(super) async fn pass(self) -> Pass {
-        // It is never closed; were it, nobody would have to wait.
+        // The semaphore is never closed. If it were, no connection would have to wait.
         Pass(self.0.acquire_owned().await.ok())
     }
 }
 
-/// The place of a connection in the queue before the gate.
-pub(super) struct Place {
+/// The place of a connection in the queue at the gate.
+pub(super) struct GateQueue {
     gate: Gate,
     waiting: Option<Pin<Box<dyn Future<Output = Pass> + Send>>>,
     asked: bool,
 }
 
-impl Place {
+impl GateQueue {
     pub(super) fn new(gate: Gate) -> Self {
         Self {
             gate,
@@ -48,7 +47,7 @@ impl Place {
         }
     }
 
-    /// Leave to deal with a large frame.
+    /// Polls for the permission to process a large frame.
     pub(super) fn poll_pass(&mut self, cx: &mut Context<'_>) -> Poll<Pass> {
         self.asked = true;
         let waiting = self
@@ -59,13 +58,13 @@ impl Place {
         Poll::Ready(pass)
     }
 
-    /// Whether it waits for its turn.
+    /// Returns `true` if the connection waits for its turn.
     pub(super) fn is_waiting(&self) -> bool {
         self.waiting.is_some()
     }
 
-    /// Leaves the queue if it has not asked since this was last called: one who cannot go on
-    /// meanwhile keeps nobody waiting.
+    /// Leaves the queue if the connection has not polled since the last call. A connection that cannot continue must
+    /// not block others.
     pub(super) fn keep_if_asked(&mut self) {
         if !std::mem::take(&mut self.asked) {
             self.waiting = None;
@@ -73,12 +72,11 @@ impl Place {
     }
 }
 
-/// Leave to deal with one frame, now.
+/// The permission to process one frame.
 pub(super) struct Pass(#[allow(dead_code, reason = "held")] Option<OwnedSemaphorePermit>);
 
-/// Does the work on a frame. If that is large, the runtime lets another thread see to the other tasks
-/// meanwhile, provided that it has several.
-pub(super) fn through<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
+/// Processes a frame. For a large frame on a multi-threaded runtime, other tasks move to another thread.
+pub(super) fn process_frame<T>(pass: Option<&Pass>, work: impl FnOnce() -> T) -> T {
     let runtime = pass.and_then(|_| Handle::try_current().ok());
     match runtime.map(|runtime| runtime.runtime_flavor()) {
         Some(RuntimeFlavor::MultiThread) => block_in_place(work),

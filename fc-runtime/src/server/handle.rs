@@ -1,18 +1,20 @@
-//! The handle of a server: what the robot's own code does with it.
+//! The handle of a server, for the robot's own code.
 
 use super::connection_id::ConnectionId;
 use super::counters::ServerCounters;
 use super::data::{AppStreams, QUEUE};
 use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
-use super::shared::{Shared, lock};
+use super::shared::Shared;
 use crate::clock;
 use crate::frame::FrameId;
 use crate::json::to_vec;
 use crate::link::Transport;
 use crate::message::{Message, write_enveloped};
-use crate::protocol::{Protocol, Report, RequestEnvelope};
+use crate::operation::Report;
+use crate::protocol::{Protocol, RequestEnvelope};
 use crate::session::after;
 use crate::stream::prepare;
+use crate::sync::lock;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::fmt;
 use std::future::{pending, ready};
@@ -23,7 +25,7 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::timeout;
 
-/// A handle of a server, for reports, counters and the end. Cheap to clone.
+/// A handle of a server for reports, counters and shutdown. Cheap to clone.
 pub struct ServerHandle<P: Protocol> {
     shared: Arc<Shared<P>>,
 }
@@ -33,19 +35,18 @@ impl<P: Protocol> ServerHandle<P> {
         Self { shared }
     }
 
-    /// Sends a report to one app or to all that are connected, and waits for what becomes of it.
+    /// Sends a report to one app or to all connected apps, and waits for the outcomes.
     ///
-    /// The report is encoded once. Each app has a queue of `queued_reports` and `queued_bytes`; when it
-    /// is full, the oldest report in it gives way and ends as [`AckOutcome::Dropped`](super::AckOutcome::Dropped),
-    /// so that a slow app costs nobody else anything. A report that is not acknowledged in time is
-    /// sent again with the same id, as often as its [`AckPolicy`](crate::AckPolicy) says.
+    /// The report is encoded once. Each app has a queue, limited by `queued_reports` and `queued_bytes`. If it is full,
+    /// the oldest report is dropped and ends as [`AckOutcome::Dropped`](super::AckOutcome::Dropped), so a slow app does
+    /// not affect others. A report without acknowledgement is sent again with the same id, as its
+    /// [`AckPolicy`](crate::AckPolicy) specifies.
     ///
-    /// Cancellation: the report is queued before the future first waits; dropping the future then
-    /// only means not to hear of the acknowledgements.
+    /// Cancellation: the report is queued before the future waits. Dropping the future loses only the outcomes.
     ///
     /// # Errors
     ///
-    /// [`PushError`] if it was not even queued.
+    /// [`PushError`] if the report was not queued.
     pub async fn push<R: Report>(
         &self,
         audience: Audience,
@@ -70,27 +71,23 @@ impl<P: Protocol> ServerHandle<P> {
         Ok(push)
     }
 
-    /// Sends a frame of raw bytes to the data connections of one app or of all: `code` says what
-    /// they belong to, `id` which request they answer. An app is named by a data connection or by
-    /// its command connection.
+    /// Sends a frame of raw bytes to the data connections of one app or of all apps. `code` is the stream, `id` the
+    /// request that it answers. An app is identified by a data connection or by its command connection.
     ///
-    /// The protocol has nothing that ties the two but the address. So a data connection is that of an
-    /// app if the app's command connection is the only one that has been open at the same address
-    /// while the data connection was. Where there have been several, as behind a router, on one
-    /// computer or when the command connection was lost and made again, nothing is sent, and the
-    /// error is [`PushError::Ambiguous`]. Then the app has to connect to the data port again while it
-    /// is alone at its address, or to send a frame over its data connection:
-    /// [`AppStream::connection`](super::AppStream::connection) names the one to send to.
+    /// In the protocol, only the address links the two. A data connection belongs to an app if the app's command
+    /// connection was the only one at that address since the data connection opened. With several, as behind a router,
+    /// on one computer or after a reconnection, nothing is sent, and the error is [`PushError::Ambiguous`]. Then the
+    /// app must make its data connection again while it is alone at its address, or send a frame over it:
+    /// [`AppStream::connection`](super::AppStream::connection) is the connection to send to.
     ///
-    /// The bytes are digested once. Each data connection has a short queue; the future waits for
-    /// room in all of them, but in none longer than the stall timeout. Gives the number of
-    /// connections that took the frame.
+    /// The bytes are digested once. Each data connection has a short queue. The future waits for room in all of them,
+    /// but in each no longer than the stall timeout. Returns the number of connections that took the frame.
     ///
-    /// Cancellation: connections whose queue had room have got the frame.
+    /// Cancellation: connections with room in their queue have got the frame.
     ///
     /// # Errors
     ///
-    /// [`PushError`] if there is no connection to send to, or if it cannot be told which.
+    /// [`PushError`] if there is no connection to send to, or if it is ambiguous.
     pub async fn send_stream(
         &self,
         audience: Audience,
@@ -115,11 +112,11 @@ impl<P: Protocol> ServerHandle<P> {
         Ok(sent.into_iter().filter(|sent| *sent == Ok(true)).count())
     }
 
-    /// Sends a frame with a JSON object, without an envelope; all else is as with [`send_stream`](Self::send_stream).
+    /// Sends a frame with a JSON object, without an envelope, like [`send_stream`](Self::send_stream).
     ///
     /// # Errors
     ///
-    /// [`PushError::Invalid`] if it breaks one of its own constraints, and those of [`send_stream`](Self::send_stream).
+    /// [`PushError::Invalid`] if it violates a constraint, and the errors of [`send_stream`](Self::send_stream).
     pub async fn send_stream_json<M: Message>(
         &self,
         audience: Audience,
@@ -131,8 +128,8 @@ impl<P: Protocol> ServerHandle<P> {
         self.send_stream(audience, code, id, &to_vec(content)).await
     }
 
-    /// The frames of raw bytes that apps send from now on. While nobody takes them, they are
-    /// dropped and counted; while the receiver is busy, apps are not read. A later call takes over.
+    /// Returns a receiver of frames of raw bytes from apps. Without a receiver, frames are dropped and counted. While
+    /// the receiver is busy, apps are not read. A later call replaces the receiver.
     #[must_use]
     pub fn streams(&self) -> AppStreams {
         let (sender, receiver) = mpsc::channel(QUEUE);
@@ -140,25 +137,23 @@ impl<P: Protocol> ServerHandle<P> {
         AppStreams(receiver)
     }
 
-    /// Serves a data connection that was accepted elsewhere, beside those of the data port. `None`
-    /// if there are too many connections, or none may come from the address.
+    /// Serves a data connection that was accepted elsewhere, like one of the data port. Returns `None` if there are too
+    /// many connections, or the address may not connect.
     pub fn serve_data<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve_data(ready(Ok(stream)), address)
     }
 
-    /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, beside
-    /// those of the command port. `None` if there are too many connections, or none may come from the
-    /// address.
+    /// Serves a connection that was accepted elsewhere, such as TLS or a pipe in a test, like one of the command port.
+    /// Returns `None` if there are too many connections, or the address may not connect.
     pub fn serve<S: Transport>(&self, stream: S, address: SocketAddr) -> Option<ConnectionId> {
         self.shared.serve(ready(Ok(stream)), address)
     }
 
-    /// Serves a connection once its `handshake` has made it, such as that of TLS. It has its place from
-    /// now on, with all that limits connections: `None` if there are too many, or none may come from
-    /// the address, and the handshake is then not begun; while it lasts, it is a connection over which
-    /// nothing has come yet. It may take the
-    /// [`header_timeout`](super::ServerConfig::header_timeout). One that fails or comes too late closes the
-    /// connection, is counted and logged.
+    /// Serves a connection after its `handshake`, such as that of TLS. It counts for all limits from now on. Returns
+    /// `None` without a handshake if there are too many connections, or the address may not connect. During the
+    /// handshake it counts as a connection without received data. The handshake may take the
+    /// [`header_timeout`](super::ServerConfig::header_timeout). A failed or late handshake closes the connection, and
+    /// is counted and logged.
     pub fn serve_after<S, F>(&self, handshake: F, address: SocketAddr) -> Option<ConnectionId>
     where
         S: Transport,
@@ -167,7 +162,7 @@ impl<P: Protocol> ServerHandle<P> {
         self.shared.serve(handshake, address)
     }
 
-    /// [`serve_after`](Self::serve_after) for a data connection.
+    /// Serves a data connection after its handshake, like [`serve_after`](Self::serve_after).
     pub fn serve_data_after<S, F>(&self, handshake: F, address: SocketAddr) -> Option<ConnectionId>
     where
         S: Transport,
@@ -176,7 +171,7 @@ impl<P: Protocol> ServerHandle<P> {
         self.shared.serve_data(handshake, address)
     }
 
-    /// The apps connected at this moment.
+    /// Returns the connected apps.
     #[must_use]
     pub fn connections(&self) -> Vec<(ConnectionId, SocketAddr)> {
         let peers = lock(&self.shared.peers);
@@ -185,28 +180,25 @@ impl<P: Protocol> ServerHandle<P> {
         connections
     }
 
-    /// How much memory is held for apps at this moment, in bytes: see
-    /// [`ServerConfig::memory`](super::ServerConfig::memory) for what that is.
+    /// Returns the memory held for apps, in bytes; see [`ServerConfig::memory`](super::ServerConfig::memory).
     #[must_use]
     pub fn memory(&self) -> usize {
         self.shared.budget.held()
     }
 
-    /// What the server has seen so far.
+    /// Returns the counters of the server.
     #[must_use]
     pub fn counters(&self) -> ServerCounters {
         self.shared.counters.read()
     }
 
-    /// Ends the server: accepts nothing more, reads no more requests, answers those that are being
-    /// handled, waits for handlers that run on though nobody waits for their answer, and cuts off
-    /// after `grace` what is not done by then. Resolves when all is over.
+    /// Ends the server: accepts no connections, reads no requests, answers running requests, waits for detached
+    /// handlers, and aborts everything after `grace`. Resolves at the end.
     ///
-    /// Never takes longer than `grace`, whatever apps and handlers do, as long as handlers do not
-    /// block their threads; also if nobody runs the server, which then ends with the grace. Of several
-    /// calls, the earliest end counts.
+    /// Takes no longer than `grace`, whatever apps and handlers do, as long as handlers do not block their threads. It
+    /// also ends if the server is not run. Of several calls, the earliest end applies.
     ///
-    /// Cancellation: the server ends all the same, if it is [run](super::Server::run).
+    /// Cancellation: the server ends nevertheless, if it is [run](super::Server::run).
     pub async fn shutdown(&self, grace: Duration) {
         self.shared.stop(after(clock::now(), grace));
         self.shared.over(pending()).await;

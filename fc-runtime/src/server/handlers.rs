@@ -1,11 +1,11 @@
-//! Handlers at work: each is polled, answered and dropped where its panic harms nobody else, and left to itself when
-//! nobody waits for it any more.
+//! Running handlers. A panic of a handler affects no other request, and handlers without a waiting app are detached.
 
 use super::peer::Peer;
-use super::work::{Begun, Work, outlives};
+use super::running_handler::{RunningHandler, StartedHandler, outlives};
 use crate::frame::FrameId;
 use crate::metrics::{Held, Since};
-use crate::protocol::{Effect, Protocol};
+use crate::operation::Effect;
+use crate::protocol::Protocol;
 use futures_util::stream::{FuturesUnordered, StreamExt};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -14,11 +14,11 @@ use std::time::Instant;
 use tokio::time::{Sleep, sleep_until};
 use tracing::instrument::Instrumented;
 
-/// Sends what a handler has come to.
+/// Sends the result of a handler.
 pub(super) type Answer<P, T> = fn(&Peer<P>, FrameId, &T);
 
-/// Polls a handler for the first time and answers if it is ready. Panics where the handler does,
-/// without having answered.
+/// Polls a handler for the first time, and answers if it is ready. If the handler panics, this panics too and sends
+/// nothing.
 pub(super) fn begin<P: Protocol, F>(
     peer: &Arc<Peer<P>>,
     request: FrameId,
@@ -26,7 +26,7 @@ pub(super) fn begin<P: Protocol, F>(
     answer: Answer<P, F::Output>,
     effect: fn(u16) -> Effect,
     waker: &Waker,
-) -> Option<Box<dyn Work>>
+) -> Option<Box<dyn RunningHandler>>
 where
     F: Future<Output: 'static> + Send + 'static,
 {
@@ -35,7 +35,7 @@ where
     let mut cx = Context::from_waker(waker);
     if let Poll::Ready(output) = future.as_mut().poll(&mut cx) {
         future.span().in_scope(|| answer(peer, request, &output));
-        // From here on a panic must not be answered any more.
+        // After the response, a panic must not be answered any more.
         peer.guard(request, || drop((future, output)));
         peer.counters.handled(request.code, since);
         return None;
@@ -56,7 +56,7 @@ struct Handler<P: Protocol, F: Future> {
     _waiting: Held,
     peer: Arc<Peer<P>>,
     request: FrameId,
-    /// `None` once it has ended.
+    /// `None` after the end.
     future: Option<Pin<Box<Instrumented<F>>>>,
     answer: Answer<P, F::Output>,
     effect: fn(u16) -> Effect,
@@ -72,7 +72,7 @@ impl<P: Protocol, F: Future> Handler<P, F> {
     }
 }
 
-impl<P: Protocol, F: Future + Send> Work for Handler<P, F> {
+impl<P: Protocol, F: Future + Send> RunningHandler for Handler<P, F> {
     fn poll(&mut self, cx: &mut Context<'_>, waits: bool) -> Poll<()> {
         let Some(future) = &mut self.future else {
             return Poll::Ready(());
@@ -102,7 +102,7 @@ impl<P: Protocol, F: Future + Send> Work for Handler<P, F> {
     }
 }
 
-/// However it ends: the values of a handler may panic when they are dropped.
+/// Runs however the handler ends, because dropping its values may panic.
 impl<P: Protocol, F: Future> Drop for Handler<P, F> {
     fn drop(&mut self) {
         self.end();
@@ -112,9 +112,9 @@ impl<P: Protocol, F: Future> Drop for Handler<P, F> {
 /// The handlers of one connection that were not ready at once.
 pub(super) struct Handlers<P: Protocol> {
     waiting: FuturesUnordered<Waiting<P>>,
-    /// What their requests take in memory, in bytes.
+    /// Memory of their requests, in bytes.
     weight: usize,
-    /// One has come that has not been polled in its place.
+    /// `true` if a new handler has not been polled here yet.
     fresh: bool,
 }
 
@@ -137,36 +137,36 @@ impl<P: Protocol> Handlers<P> {
         self.waiting.is_empty()
     }
 
-    /// What their requests take in memory, in bytes.
+    /// Memory of their requests, in bytes.
     pub(super) fn weight(&self) -> usize {
         self.weight
     }
 
-    /// Waits for one more, until the deadline.
+    /// Adds a handler, which is waited for until the deadline.
     pub(super) fn push(
         &mut self,
-        begun: Begun,
+        started: StartedHandler,
         request: FrameId,
         peer: &Arc<Peer<P>>,
         deadline: Instant,
     ) {
-        self.weight += begun.weight;
+        self.weight += started.weight;
         self.fresh = true;
         self.waiting.push(Waiting {
-            work: Some(begun.work),
-            weight: begun.weight,
+            handler: Some(started.handler),
+            weight: started.weight,
             request,
             peer: Arc::clone(peer),
             deadline: Box::pin(sleep_until(deadline.into())),
         });
     }
 
-    /// Whether one has come that has not been polled in its place since this was last asked.
+    /// Returns `true` if a handler has been added since the last call. It has not been polled here yet.
     pub(super) fn take_fresh(&mut self) -> bool {
         std::mem::take(&mut self.fresh)
     }
 
-    /// Ready once one of them has ended, and been answered.
+    /// Ready when a handler has ended and has been answered.
     pub(super) fn poll_next(&mut self, cx: &mut Context<'_>) -> Poll<()> {
         match self.waiting.poll_next_unpin(cx) {
             Poll::Ready(Some(weight)) => {
@@ -177,7 +177,7 @@ impl<P: Protocol> Handlers<P> {
         }
     }
 
-    /// Nobody waits for their answers any more.
+    /// Detaches all handlers, because the app no longer waits.
     pub(super) fn abandon(&mut self) {
         for mut waiting in std::mem::take(&mut self.waiting) {
             waiting.abandon();
@@ -186,23 +186,23 @@ impl<P: Protocol> Handlers<P> {
     }
 }
 
-/// A handler at work that is waited for until its deadline.
+/// A handler with a waiting app and a deadline.
 struct Waiting<P: Protocol> {
-    /// `None` once it is somebody else's.
-    work: Option<Box<dyn Work>>,
+    /// `None` after it has been detached.
+    handler: Option<Box<dyn RunningHandler>>,
     weight: usize,
     request: FrameId,
     peer: Arc<Peer<P>>,
     deadline: Pin<Box<Sleep>>,
 }
 
-/// Resolves to what the request weighed.
+/// Resolves to the memory of the request.
 impl<P: Protocol> Future for Waiting<P> {
     type Output = usize;
 
     fn poll(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<usize> {
-        if let Some(work) = &mut self.work
-            && work.poll(cx, true).is_pending()
+        if let Some(handler) = &mut self.handler
+            && handler.poll(cx, true).is_pending()
         {
             if self.deadline.as_mut().poll(cx).is_pending() {
                 return Poll::Pending;
@@ -215,13 +215,13 @@ impl<P: Protocol> Future for Waiting<P> {
 }
 
 impl<P: Protocol> Waiting<P> {
-    /// Nobody waits for the answer any more.
+    /// Detaches the handler, because the app no longer waits.
     fn abandon(&mut self) {
-        if let Some(work) = self.work.take()
-            && work.outlives()
-            && (self.peer.abandoned).take_over(work, self.peer.account.lend(self.weight))
+        if let Some(handler) = self.handler.take()
+            && handler.outlives()
+            && (self.peer.detached).take_over(handler, self.peer.memory.lend_existing(self.weight))
         {
-            self.peer.counters.handlers_abandoned.one();
+            self.peer.counters.handlers_abandoned.increment();
         }
     }
 }

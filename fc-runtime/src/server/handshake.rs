@@ -1,28 +1,28 @@
-//! What comes before the first frame: TLS, or nothing.
+//! The handshake before the first frame, such as that of TLS.
 
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
 use crate::protocol::Protocol;
 use std::io;
 use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// Why there is nothing to serve.
+/// The reason for the end of a handshake.
 enum Failed {
     Late,
     Broken(io::Error),
-    /// Another has taken its place, or the server ends.
+    /// The connection was replaced, or the server ends.
     Gone,
 }
 
-/// Waits for a handshake, but not for longer than `limit` nor than until `gone`. `None`, counted and
-/// logged, if it comes to nothing.
+/// Waits for a handshake, for up to `limit` or until `gone`. A failed handshake is counted and logged, and returns
+/// `None`.
 pub(super) async fn shake<P: Protocol, S>(
     handshake: impl Future<Output = io::Result<S>>,
     gone: impl Future<Output = ()>,
     limit: Duration,
-    counters: &Counting,
+    counters: &Counters,
     (connection, peer): (ConnectionId, SocketAddr),
 ) -> Option<S> {
     let shaken = tokio::select! {
@@ -39,8 +39,8 @@ pub(super) async fn shake<P: Protocol, S>(
         Err(Failed::Late) => "it did not come in time".to_owned(),
         Err(Failed::Broken(error)) => error.to_string(),
     };
-    counters.handshakes_failed.one();
-    if let Some(held) = counters.lines.handshakes.line() {
+    counters.handshakes_failed.increment();
+    if let Some(held) = counters.limiters.handshakes.admit() {
         let (protocol, connection, held) = (P::NAME, connection.0, held.shown());
         tracing::warn!(protocol, connection, %peer, held, "the handshake failed: {why}");
     }

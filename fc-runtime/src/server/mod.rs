@@ -1,7 +1,7 @@
 //! The tokio server: a robot's side of the protocol.
 //!
-//! Each connection is one task. A request is read from the receive buffer, handled in place and
-//! answered into the send buffer; only handlers that have to wait are kept aside.
+//! Each connection is one task. A request is read from the receive buffer, handled there, and answered into the send
+//! buffer. Only handlers that have to wait are stored.
 //!
 //! ```no_run
 //! use fc_runtime::{Command, Message, Protocol, Request, Server, ServerConfig};
@@ -19,31 +19,31 @@
 //! }
 //! ```
 
-mod abandoned;
 mod allow;
 mod answer;
-mod bounded;
 mod budget;
 mod config;
 mod connection_id;
 mod context;
 mod counters;
 mod data;
+mod detached;
 mod driver;
 mod gate;
 mod handle;
 mod handlers;
 mod handshake;
+mod metered_receiver;
 mod network;
 mod output;
-mod pace;
 mod peer;
+mod penalty;
 mod push;
+mod running_handler;
 mod service;
 mod shared;
 mod table;
 mod watch;
-mod work;
 
 pub use config::ServerConfig;
 pub use connection_id::ConnectionId;
@@ -69,10 +69,10 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::task::yield_now;
 use tokio::time::sleep;
 
-/// How long to wait after accepting has failed, as it does when there are no file handles left.
+/// Wait after a failed accept, such as without free file handles.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 
-/// A robot listening for apps.
+/// A robot that listens for apps.
 pub struct Server<P: Protocol> {
     command: TcpListener,
     data: TcpListener,
@@ -82,14 +82,15 @@ pub struct Server<P: Protocol> {
 }
 
 impl<P: Protocol> Server<P> {
-    /// Listens at both ports. Nothing is accepted before [`run`](Self::run).
+    /// Listens at both ports. Connections are accepted only by [`run`](Self::run).
     ///
     /// # Errors
     ///
-    /// Whatever the network says, such as that a port is taken.
+    /// An error of the network, such as a port that is in use.
     pub async fn bind(config: ServerConfig, service: impl Service<P>) -> io::Result<Self> {
-        let command = TcpListener::bind((config.address, config.command_port_or::<P>())).await?;
-        let data = TcpListener::bind((config.address, config.data_port_or::<P>())).await?;
+        let command =
+            TcpListener::bind((config.address, config.connection.command_port::<P>())).await?;
+        let data = TcpListener::bind((config.address, config.connection.data_port::<P>())).await?;
         Ok(Self {
             command_address: command.local_addr()?,
             data_address: data.local_addr()?,
@@ -99,19 +100,19 @@ impl<P: Protocol> Server<P> {
         })
     }
 
-    /// Where commands are taken.
+    /// Returns the address of the command port.
     #[must_use]
     pub fn command_addr(&self) -> SocketAddr {
         self.command_address
     }
 
-    /// Where streams are taken.
+    /// Returns the address of the data port.
     #[must_use]
     pub fn data_addr(&self) -> SocketAddr {
         self.data_address
     }
 
-    /// A handle for reports, counters and the end.
+    /// Returns a handle for reports, counters and shutdown.
     #[must_use]
     pub fn handle(&self) -> ServerHandle<P> {
         ServerHandle::new(Arc::clone(&self.shared))
@@ -136,14 +137,14 @@ impl<P: Protocol> Server<P> {
                 },
                 () = self.shared.stop_requested() => break,
             }
-            // Those who are connected have their turn between two who connect.
+            // Existing connections run between two accepted ones.
             yield_now().await;
         }
         self.shared.drain().await;
     }
 
-    /// Accepts who waits at the command port. An app connects there first: if its data connection
-    /// came before, it would be taken for that of another app at its address.
+    /// Accepts all waiting connections of the command port. An app connects there first. If its data connection were
+    /// accepted before, it might be assigned to another app at the same address.
     async fn accept_commands(&self) {
         for _ in 0..self.shared.settings.limits.connections {
             let waiting = poll_fn(|cx| Poll::Ready(self.command.poll_accept(cx))).await;
@@ -156,7 +157,7 @@ impl<P: Protocol> Server<P> {
     }
 
     fn accept(&self, stream: TcpStream, address: SocketAddr, data: bool) {
-        if let Err(error) = prepare(&stream, self.shared.settings.keepalive) {
+        if let Err(error) = prepare(&stream, self.shared.settings.connection.keepalive) {
             tracing::debug!(protocol = P::NAME, %error, "the connection was gone at once");
             return;
         }
@@ -173,7 +174,7 @@ async fn failed(error: &io::Error) {
     sleep(ACCEPT_AGAIN).await;
 }
 
-/// However the server ends, its connections end with it.
+/// Ends all connections with the server.
 impl<P: Protocol> Drop for Server<P> {
     fn drop(&mut self) {
         self.shared.abort();

@@ -1,14 +1,13 @@
-//! Networks of addresses.
+//! Networks of IP addresses.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
 
-/// A network of addresses, such as `10.0.0.0/8` or `fd00::/8`; an address without a length is a
-/// network of its own.
+/// A network of addresses, such as `10.0.0.0/8` or `fd00::/8`. An address without a length is a network of one address.
 ///
-/// An IPv4 address that arrives at an IPv6 socket (`::ffff:10.1.2.3`) is that IPv4 address, and such
-/// a network is that IPv4 network. `::/0` holds no IPv4 address.
+/// An IPv4 address at an IPv6 socket (`::ffff:10.1.2.3`) counts as that IPv4 address, and a network of such addresses
+/// as an IPv4 network. `::/0` contains no IPv4 address.
 ///
 /// ```
 /// use fc_runtime::Network;
@@ -21,24 +20,24 @@ use std::str::FromStr;
 pub struct Network {
     /// The first address.
     first: IpAddr,
-    /// How many leading bits all its addresses share.
+    /// Number of leading bits that all addresses share.
     prefix: u8,
 }
 
 impl Network {
-    /// Whether the address is one of the network's.
+    /// Returns `true` if the network contains the address.
     #[must_use]
     pub fn contains(&self, address: IpAddr) -> bool {
         first(address.to_canonical(), self.prefix) == Some(self.first)
     }
 
-    /// How many leading bits its addresses share: the more, the smaller the network.
+    /// Returns the number of shared leading bits. A larger number means a smaller network.
     pub(super) fn prefix(&self) -> u8 {
         self.prefix
     }
 }
 
-/// How many bits such an address has.
+/// Returns the number of bits of the address.
 fn bits(address: IpAddr) -> u8 {
     match address {
         IpAddr::V4(_) => 32,
@@ -46,7 +45,7 @@ fn bits(address: IpAddr) -> u8 {
     }
 }
 
-/// The first address that shares so many leading bits with this one; `None` if it has fewer.
+/// Returns the first address with the same `prefix` leading bits, or `None` if the address has fewer bits.
 fn first(address: IpAddr, prefix: u8) -> Option<IpAddr> {
     let rest = u32::from(bits(address).checked_sub(prefix)?);
     Some(match address {
@@ -61,27 +60,27 @@ fn first(address: IpAddr, prefix: u8) -> Option<IpAddr> {
     })
 }
 
-/// Why a text is no [`Network`].
+/// A text is not a [`Network`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {
-    /// What is in front of the slash is no address.
+    /// The part before the slash is not an address.
     #[error("`{text}` is no IP address: write 10.0.0.0/8, fd00::/8 or one address")]
     Address {
-        /// It.
+        /// The text.
         text: String,
     },
-    /// What is behind the slash is no length of a prefix.
+    /// The part after the slash is not a prefix length.
     #[error("`{text}` is no prefix length: write a number from 0 to {longest}")]
     Prefix {
-        /// It.
+        /// The text.
         text: String,
-        /// The longest prefix, in bits, that an address of this kind has.
+        /// Longest prefix of such an address, in bits.
         longest: u8,
     },
-    /// The address is not the first of its network: one of the two is mistyped.
+    /// The address is not the first of its network, so address or prefix is wrong.
     #[error("the address has bits beyond its prefix: write {network}, or the address alone")]
     HostBits {
-        /// The network of this length that the address is in.
+        /// The network with this prefix that contains the address.
         network: Network,
     },
 }
@@ -124,7 +123,7 @@ impl FromStr for Network {
     }
 }
 
-/// The network of this address alone.
+/// The network of one address.
 impl From<IpAddr> for Network {
     fn from(address: IpAddr) -> Self {
         let first = address.to_canonical();

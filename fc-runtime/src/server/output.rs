@@ -1,23 +1,23 @@
-//! The frames that are to be written to an app.
+//! Frames to be sent to an app.
 
 use crate::frame::{Encoder, FrameError, FrameId, Unsealed};
 use crate::message::{Message, write_enveloped};
 use crate::protocol::Protocol;
 use std::collections::VecDeque;
 
-/// What is to be sent. Only the driver's task locks it: nobody waits while a large answer is encoded.
+/// The send buffer. Only the driver's task locks it, so no task waits while a large response is encoded.
 pub(super) struct Output<P: Protocol> {
     /// Frames to be written.
     pub(super) out: Vec<u8>,
     pub(super) encoder: Encoder<P>,
-    /// Long frames in `out` that are not digested yet, in their order.
+    /// Long frames in `out` that are not digested yet, in order.
     unsealed: VecDeque<Unsealed<P>>,
-    /// The envelope of success as of a certain millisecond: many answers share one.
+    /// The envelope of success of a certain millisecond, which many responses share.
     pub(super) success: Option<(i64, P::Response)>,
 }
 
 impl<P: Protocol> Output<P> {
-    /// With nothing to be sent.
+    /// Creates an empty buffer.
     pub(super) fn new(encoder: Encoder<P>) -> Self {
         Self {
             out: Vec::new(),
@@ -27,7 +27,7 @@ impl<P: Protocol> Output<P> {
         }
     }
 
-    /// Appends a frame; a long one is digested bit by bit.
+    /// Appends a frame. A long frame is digested in pieces.
     pub(super) fn append<E: Message, B: Message>(
         &mut self,
         id: FrameId,
@@ -40,7 +40,7 @@ impl<P: Protocol> Output<P> {
         Ok(())
     }
 
-    /// Digests at most so many bytes more of what is long, and gives how many it were.
+    /// Digests up to `most` further bytes of long frames, and returns their number.
     pub(super) fn seal(&mut self, most: usize) -> usize {
         let mut done = 0;
         while let Some(first) = self.unsealed.front_mut() {
@@ -55,7 +55,7 @@ impl<P: Protocol> Output<P> {
         done
     }
 
-    /// Whether all of it may be sent.
+    /// Returns `true` if all frames are complete.
     pub(super) fn is_sealed(&self) -> bool {
         self.unsealed.is_empty()
     }

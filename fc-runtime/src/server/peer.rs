@@ -1,55 +1,56 @@
-//! One app's connection, as far as driver, handlers and pushes share it.
+//! The state of a command connection that driver, handlers and pushes share.
 
-use super::abandoned::Abandoned;
 use super::allow::Effects;
-use super::budget::{Account, Holder, NO_MEMORY};
+use super::budget::{ConnectionMemory, MemoryHolder, NO_MEMORY};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
+use super::counters::Counters;
+use super::detached::DetachedHandlers;
 use super::output::Output;
 use super::push::{AckOutcome, Queued};
 use crate::protocol::Protocol;
 use crate::session::Session;
+use crate::sync::{lock, register};
 use std::collections::VecDeque;
 use std::future::poll_fn;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::task::{Poll, Waker};
 use tokio::sync::Notify;
 
-/// What pushers and the driver share.
+/// The state that pushes and the driver share.
 pub(super) struct PeerState<P: Protocol> {
     /// Reports in flight.
     pub(super) session: Session<P, Queued>,
     /// Reports not yet sent, oldest first.
     pub(super) queue: VecDeque<Queued>,
-    /// The driver's, while it waits for something to do.
+    /// Waker of the driver while it waits.
     pub(super) driver: Option<Waker>,
 }
 
 pub(super) struct Peer<P: Protocol> {
     pub(super) id: ConnectionId,
     pub(super) address: SocketAddr,
-    /// What may be called from there.
+    /// Effects that the app's address may call.
     pub(super) effects: Effects,
     pub(super) settings: Arc<Settings>,
-    pub(super) counters: Arc<Counting>,
-    pub(super) abandoned: Arc<Abandoned>,
-    pub(super) account: Account,
+    pub(super) counters: Arc<Counters>,
+    pub(super) detached: Arc<DetachedHandlers>,
+    pub(super) memory: ConnectionMemory,
     output: Mutex<Output<P>>,
     state: Mutex<PeerState<P>>,
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
-    /// Something has been received.
+    /// `true` if data has been received.
     heard: AtomicBool,
-    /// It has given way, for this reason.
+    /// Reason if the connection must end at once.
     evicted: OnceLock<&'static str>,
-    /// What is not needed is to be given back.
+    /// `true` if unused memory must be released.
     untidy: AtomicBool,
-    /// Set under the lock: nothing can be sent any more.
+    /// `true` if nothing can be sent any more. Set under the lock.
     gone: AtomicBool,
     going: Notify,
 }
@@ -60,16 +61,20 @@ impl<P: Protocol> Peer<P> {
         address: SocketAddr,
         effects: Effects,
         settings: Arc<Settings>,
-        counters: Arc<Counting>,
-        abandoned: Arc<Abandoned>,
-        account: Account,
+        counters: Arc<Counters>,
+        detached: Arc<DetachedHandlers>,
+        memory: ConnectionMemory,
     ) -> Self {
-        let session = Session::new(&settings.limits, P::DEFAULTS.ack, settings.first_id());
+        let session = Session::new(
+            &settings.limits,
+            P::DEFAULTS.ack,
+            settings.connection.first_id(),
+        );
         Self {
             id,
             address,
             effects,
-            account,
+            memory,
             output: Mutex::new(Output::new(settings.encoder())),
             state: Mutex::new(PeerState {
                 session,
@@ -86,93 +91,92 @@ impl<P: Protocol> Peer<P> {
             going: Notify::new(),
             settings,
             counters,
-            abandoned,
+            detached,
         }
     }
 
-    /// Bytes gathered to be sent, as of the last answer.
+    /// Returns the unsent bytes as of the last response.
     pub(super) fn unsent(&self) -> usize {
         self.unsent.load(Ordering::Relaxed)
     }
 
-    /// Notes how much `output` holds now.
+    /// Updates the number of unsent bytes.
     pub(super) fn note(&self, output: &Output<P>) {
         self.unsent.store(output.out.len(), Ordering::Relaxed);
     }
 
-    /// Notes a frame that nobody can make use of.
+    /// Counts an unusable frame.
     pub(super) fn unusable(&self) {
         self.unusable.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// How many of these there have been since this was last asked.
+    /// Returns the number of unusable frames since the last call.
     pub(super) fn take_unusable(&self) -> u32 {
-        // Mostly there are none, and looking is cheaper than taking.
+        // Usually there are none, and a load is cheaper than a swap.
         match self.unusable.load(Ordering::Relaxed) {
             0 => 0,
             _ => self.unusable.swap(0, Ordering::Relaxed),
         }
     }
 
-    /// Whether no more requests are read, while those being handled are answered still.
+    /// Returns `true` if no more requests are read. Running ones are still answered.
     pub(super) fn is_draining(&self) -> bool {
         self.draining.load(Ordering::Acquire)
     }
 
-    /// Lets the connection end once everything is answered.
+    /// Ends the connection when everything is answered.
     pub(super) fn drain(&self) {
         self.draining.store(true, Ordering::Release);
         self.wake();
     }
 
-    /// Notes that something has been received.
+    /// Notes that data has been received.
     pub(super) fn hear(&self) {
         self.heard.store(true, Ordering::Relaxed);
     }
 
-    /// Whether anything has been received.
+    /// Returns `true` if data has been received.
     pub(super) fn is_heard(&self) -> bool {
         self.heard.load(Ordering::Relaxed)
     }
 
-    /// Why the connection has to go, if it has.
+    /// Returns the reason if the connection must end at once.
     pub(super) fn evicted(&self) -> Option<&'static str> {
         self.evicted.get().copied()
     }
 
-    /// Lets the connection end at once. The first reason counts.
+    /// Ends the connection at once. The first reason is kept.
     pub(super) fn give_way(&self, reason: &'static str) {
         let _ = self.evicted.set(reason);
         self.wake();
     }
 
-    /// Whether memory is to be given back that is not needed.
+    /// Returns `true` if unused memory must be released, once per request.
     pub(super) fn take_untidy(&self) -> bool {
         self.untidy.load(Ordering::Relaxed) && self.untidy.swap(false, Ordering::Relaxed)
     }
 
-    /// Resolves once the connection has to go before it has come to its first frame: another has taken
-    /// its place, or the server ends.
+    /// Resolves when the connection must end before its first frame, because it was replaced or the server ends.
     pub(super) async fn sent_away(&self) {
         poll_fn(|cx| {
             let mut state = self.lock();
-            // Under the lock: who sends it away wakes afterwards.
+            // Check under the lock, because the wake-up follows the change.
             if self.evicted().is_some() || self.is_draining() {
                 return Poll::Ready(());
             }
-            state.driver = Some(cx.waker().clone());
+            register(&mut state.driver, cx);
             Poll::Pending
         })
         .await;
     }
 
-    /// Queues a report. If the queue is full or memory is short, the oldest reports in it give way;
-    /// where all the room is taken by reports in flight, the new one is dropped.
+    /// Queues a report. If the queue is full or memory is short, the oldest reports are dropped. If reports in flight
+    /// take all the room, the new one is dropped.
     pub(super) fn push(&self, mut report: Queued) {
         let (driver, dropped) = {
             let mut state = self.lock();
             if self.is_gone() {
-                // A handler may hold on to the connection; nothing may wait in it.
+                // A handler may keep this object. No report must wait in it.
                 drop(state);
                 return;
             }
@@ -194,8 +198,8 @@ impl<P: Protocol> Peer<P> {
             (state.driver.take(), dropped)
         };
         for dropped in dropped {
-            self.counters.reports_dropped.one();
-            if let Some(held) = self.counters.lines.dropped.line() {
+            self.counters.reports_dropped.increment();
+            if let Some(held) = self.counters.limiters.dropped.admit() {
                 let (protocol, connection, code) = (P::NAME, self.id.0, dropped.code);
                 let (peer, held) = (self.address, held.shown());
                 tracing::warn!(protocol, connection, %peer, code, held, "report dropped: the app is slow");
@@ -207,16 +211,16 @@ impl<P: Protocol> Peer<P> {
         }
     }
 
-    /// Charges a report to the app, if there is room for it.
+    /// Charges a report to the connection, if there is memory for it.
     fn charge(&self, report: &mut Queued) -> bool {
         let bytes = report.body.len();
-        if self.account.queued().saturating_add(bytes) <= self.settings.queued_bytes {
-            report.charge = self.account.queue(bytes);
+        if self.memory.queued().saturating_add(bytes) <= self.settings.queued_bytes {
+            report.charge = self.memory.try_queue(bytes);
         }
         report.charge.is_some()
     }
 
-    /// Ends all reports, because the connection has ended, and keeps nothing for it.
+    /// Ends all reports at the end of the connection, and releases its memory.
     pub(super) fn end(&self) {
         let (queue, in_flight) = {
             let mut state = self.lock();
@@ -225,35 +229,33 @@ impl<P: Protocol> Peer<P> {
             (std::mem::take(&mut state.queue), in_flight)
         };
         *self.output() = Output::new(self.settings.encoder());
-        // Dropped outside the lock: each wakes whoever waits for it.
+        // Dropped outside the lock, because each one wakes its waiter.
         drop((queue, in_flight));
         self.going.notify_waiters();
     }
 
-    /// Whether the connection has ended.
+    /// Returns `true` if the connection has ended.
     pub(super) fn is_gone(&self) -> bool {
         self.gone.load(Ordering::Acquire)
     }
 
-    /// Resolves once the connection has ended.
+    /// Resolves when the connection has ended.
     pub(super) async fn gone(&self) {
         let mut going = pin!(self.going.notified());
-        // From here on it is heard; what was before is seen.
+        // Register first, so that an end between the check and the wait is not missed.
         going.as_mut().enable();
         if !self.is_gone() {
             going.await;
         }
     }
 
-    /// Nothing is left half done when the lock is given back, not even by a panic: the encoder takes
-    /// back what it has begun. So poison means nothing.
+    /// Every holder leaves a consistent state, even after a panic: the encoder removes an unfinished frame.
     pub(super) fn output(&self) -> MutexGuard<'_, Output<P>> {
-        self.output.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.output)
     }
 
-    /// Poison means nothing here either.
     pub(super) fn lock(&self) -> MutexGuard<'_, PeerState<P>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Wakes the driver.
@@ -265,7 +267,7 @@ impl<P: Protocol> Peer<P> {
     }
 }
 
-impl<P: Protocol> Holder for Peer<P> {
+impl<P: Protocol> MemoryHolder for Peer<P> {
     fn tidy(&self) {
         self.untidy.store(true, Ordering::Relaxed);
         self.wake();

@@ -1,64 +1,65 @@
-//! Reports on their way to apps.
+//! Reports for apps.
 
 use super::budget::Charge;
 use super::connection_id::ConnectionId;
 use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
-use crate::protocol::AckPolicy;
-use crate::raw::Refusal;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use crate::operation::AckPolicy;
+use crate::refusal::Refusal;
+use crate::sync::{lock, register};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll, Waker};
 
-/// Whom to send to.
+/// The receivers of a report or stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Audience {
-    /// Every app connected at this moment.
+    /// All connected apps.
     All,
-    /// One app, by its command connection. For a stream also one data connection, by its own id; see
-    /// [`send_stream`](super::ServerHandle::send_stream) for which data connections are those of an app.
+    /// One app, identified by its command connection. For a stream also one data connection, by its id;
+    /// [`send_stream`](super::ServerHandle::send_stream) describes the data connections of an app.
     One(ConnectionId),
 }
 
-/// What has become of a report at one app.
+/// The outcome of a report at one app.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Acknowledgement {
     /// The app.
     pub connection: ConnectionId,
-    /// How it ended.
+    /// The outcome.
     pub outcome: AckOutcome,
 }
 
-/// How a report ended at one app.
+/// The outcome of a report at one app.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AckOutcome {
-    /// The app has acknowledged it.
+    /// The app acknowledged it.
     Acknowledged,
-    /// The app has answered with another result than success.
+    /// The app responded with a result other than success.
     Refused(Refusal),
-    /// The app has answered with something that is not an acknowledgement.
+    /// The app's response is not an acknowledgement.
     Invalid(BodyError),
-    /// No acknowledgement has come, and the report was repeated as often as it may be.
+    /// No acknowledgement after all repetitions.
     TimedOut,
-    /// The app was so slow that the report gave way to newer ones before it was sent.
+    /// The app was slow, and the report was dropped for newer ones before it was sent.
     Dropped,
-    /// The connection ended first.
+    /// The connection ended before.
     Closed,
 }
 
-/// Why a report was not even queued.
+/// A report or stream was not queued.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PushError {
-    /// The report, or the content of a stream, breaks one of its own constraints.
+    /// The report, or the content of a stream, violates a constraint.
     #[error("what is to be sent is invalid: {0}")]
     Invalid(#[source] BodyError),
     /// The report does not fit into a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// There is no such connection any more; for a stream: no data connection of that app.
+    /// The connection does not exist any more; for a stream, the app has no data connection.
     #[error("there is no connection {0} to send to")]
     NoConnection(ConnectionId),
-    /// A stream: its address has data connections, but several command connections have come from
-    /// there, and nothing tells whose they are. Nothing was sent.
+    /// For a stream: there are data connections from the app's address, but several command connections came from
+    /// there, so their owners are unknown. Nothing was sent.
     #[error(
         "several apps share the address of {0}, and nothing tells whose data connection is whose"
     )]
@@ -66,7 +67,7 @@ pub enum PushError {
 }
 
 impl PushError {
-    /// The error's fixed name.
+    /// Returns the fixed name of the error.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -78,13 +79,13 @@ impl PushError {
     }
 }
 
-/// A report waiting for one app, or in flight to it.
+/// A report that is queued or in flight for one app.
 #[derive(Debug)]
 pub(super) struct Queued {
     pub(super) code: u16,
     pub(super) policy: AckPolicy,
     pub(super) body: Prepared,
-    /// `None` before it is queued.
+    /// `None` before the report is queued.
     pub(super) charge: Option<Charge>,
     ticket: Ticket,
 }
@@ -105,7 +106,7 @@ impl Queued {
     }
 }
 
-/// One app's part of a push. Settles itself as closed if it is dropped.
+/// The part of a push for one app. It ends as closed if it is dropped.
 #[derive(Debug)]
 pub(super) struct Ticket {
     push: Arc<Push>,
@@ -144,7 +145,7 @@ impl Drop for Ticket {
     }
 }
 
-/// One report on its way to any number of apps.
+/// One report for any number of apps.
 #[derive(Debug, Default)]
 pub(super) struct Push {
     state: Mutex<PushState>,
@@ -167,17 +168,17 @@ impl Push {
         }
     }
 
-    /// Ready once every ticket is settled.
+    /// Ready when all tickets have ended.
     pub(super) fn poll(&self, cx: &mut Context<'_>) -> Poll<Vec<Acknowledgement>> {
         let mut state = self.lock();
         if state.open == 0 {
             return Poll::Ready(std::mem::take(&mut state.ended));
         }
-        state.waker = Some(cx.waker().clone());
+        register(&mut state.waker, cx);
         Poll::Pending
     }
 
     fn lock(&self) -> MutexGuard<'_, PushState> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }

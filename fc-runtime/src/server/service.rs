@@ -1,17 +1,19 @@
-//! The way of a request to its handler and back.
+//! The path of a request to its handler and back.
 
 use super::answer::{effect, name};
 use super::context::Context;
-use super::gate::{Pass, through};
+use super::gate::{Pass, process_frame};
 use super::handlers::{Answer, begin};
 use super::peer::Peer;
-use super::work::{Begun, outlives};
+use super::running_handler::{StartedHandler, outlives};
 use crate::clock;
 use crate::frame::{FrameId, PreparedResponse};
 use crate::json::{BodyError, Json, enveloped};
 use crate::message::{Empty, Message};
-use crate::protocol::{Command, DigestOf, Effect, Protocol, RequestEnvelope};
-use crate::raw::{RawAnswer, RawRequest, Refusal};
+use crate::operation::{Command, Effect};
+use crate::protocol::{DigestOf, Protocol, RequestEnvelope};
+use crate::raw::{RawAnswer, RawRequest};
+use crate::refusal::Refusal;
 use crate::session::after;
 use crate::trace::is_traced;
 use std::fmt;
@@ -21,10 +23,10 @@ use std::time::Instant;
 use tracing::Span;
 use tracing::instrument::{Instrument, Instrumented};
 
-/// What serves requests. `#[dispatch]` writes it for a trait of handlers; by hand it is one `match`
-/// on [`Request::code`].
+/// A handler of requests. `#[dispatch]` implements it for a trait of handlers. By hand it is a `match` on
+/// [`Request::code`].
 pub trait Service<P: Protocol>: Send + Sync + 'static {
-    /// Serves one request by one of its methods.
+    /// Handles one request with one of its methods.
     fn call(&self, request: Request<'_, P>) -> Handling;
 }
 
@@ -37,9 +39,9 @@ where
     }
 }
 
-/// What has become of a request: answered, or in the hands of a handler that waits.
+/// The result of a request: answered, or passed to a handler that waits.
 #[must_use = "the server has to be told"]
-pub struct Handling(pub(super) Option<Begun>);
+pub struct Handling(pub(super) Option<StartedHandler>);
 
 impl fmt::Debug for Handling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -51,39 +53,39 @@ impl fmt::Debug for Handling {
     }
 }
 
-/// A request that has arrived. Its body still lies in the receive buffer.
+/// A received request. Its body is still in the receive buffer.
 #[must_use = "every request deserves an answer"]
 pub struct Request<'a, P: Protocol> {
     pub(super) frame: FrameId,
     pub(super) body: &'a [u8],
     pub(super) peer: &'a Arc<Peer<P>>,
     pub(super) waker: &'a Waker,
-    /// Leave to read it, if it is large. Given back before the handler is polled.
+    /// Permission to read a large request. It is returned before the handler is polled.
     pub(super) pass: Option<Pass>,
-    /// When it arrived.
+    /// Time of arrival.
     pub(super) at: Instant,
 }
 
 impl<P: Protocol> Request<'_, P> {
-    /// Command code.
+    /// Returns the command code.
     #[must_use]
     pub fn code(&self) -> u16 {
         self.frame.code
     }
 
-    /// Message id.
+    /// Returns the message id.
     #[must_use]
     pub fn id(&self) -> u32 {
         self.frame.id
     }
 
-    /// The whole JSON text, envelope included; not yet known to be JSON.
+    /// Returns the whole text, envelope included. It may not be JSON.
     #[must_use]
     pub fn body(&self) -> &[u8] {
         self.body
     }
 
-    /// What a handler is told beside the request. The time is not known before the body is read.
+    /// Returns the context. The time of the request is unknown before the body has been read.
     #[must_use]
     pub fn context(&self) -> Context<P> {
         Context {
@@ -97,24 +99,22 @@ impl<P: Protocol> Request<'_, P> {
         }
     }
 
-    /// Reads the body as `C`, calls `handler` and answers with what it resolves to. A body that is
-    /// not such a request is answered without calling it. A response that breaks a constraint of the spec
-    /// is not sent: the app gets the protocol's own refusal, and the key is logged.
+    /// Reads the body as `C`, calls `handler` and sends its result. An invalid body is answered without a call. If a
+    /// response violates a constraint of the spec, the app gets the protocol's error result, and the key is logged.
     ///
-    /// A handler that panics is answered with the protocol's error result, counted and logged; nobody
-    /// else notices. What it shares with others it has to leave whole itself.
+    /// A panic of the handler is answered with the protocol's error result, counted and logged. It affects no other
+    /// request. Data that the handler shares must stay consistent.
     ///
-    /// The handler is polled once at once; one that is ready then costs no wake-up. An app that closes
-    /// its side, or sends bytes that are not a frame, ends nothing: its handlers finish and their
-    /// responses are sent before the robot closes the connection.
+    /// The handler is polled once at once, and costs no wake-up if it is ready. If the app closes its sending side or
+    /// sends invalid bytes, running handlers continue, and their responses are sent before the robot closes the
+    /// connection.
     ///
-    /// When a handler takes longer than the handler timeout, the app is answered with the result of
-    /// a timeout, and its connection may break before that. From then on nobody waits for the answer.
-    /// The handler of a command that sets something in motion, or of which nobody knows what it does,
-    /// runs to its end all the same, in a task of its own, unless [`Context::abandoned`] tells it to
-    /// stop; that of any other command is dropped. All are dropped when a shutdown's grace period is
-    /// over. See [`ServerConfig::abandoned_handlers`](super::ServerConfig::abandoned_handlers) for
-    /// how many may run on.
+    /// If a handler exceeds the handler timeout, the app is answered with the timeout result. The connection may also
+    /// break before. In both cases the app no longer waits for the response. A handler with [`Effect::Motion`] or
+    /// [`Effect::Unknown`] then runs to its end in its own task, unless it stops on [`Context::abandoned`]. Any other
+    /// handler is dropped. All are dropped after the grace period of a shutdown.
+    /// [`ServerConfig::abandoned_handlers`](super::ServerConfig::abandoned_handlers) limits the number of handlers that
+    /// run on.
     pub fn handle<C, F, Fut>(self, handler: F) -> Handling
     where
         C: Command,
@@ -127,11 +127,10 @@ impl<P: Protocol> Request<'_, P> {
         })
     }
 
-    /// The same for a response that many ask for, such as a map: it is encoded and digested once, by
-    /// [`PreparedResponse::new`], and copied into each answer.
+    /// Handles a request like [`handle`](Self::handle), for a response that many apps request, such as a map. It is
+    /// encoded and digested once by [`PreparedResponse::new`], and copied into each response.
     ///
-    /// A robot whose other commands are served by a trait puts a [`Service`] of one `match` in front
-    /// of that.
+    /// If the other commands are served by a trait, put a [`Service`] with one `match` in front of it.
     pub fn handle_prepared<C, F, Fut>(self, handler: F) -> Handling
     where
         C: Command,
@@ -146,7 +145,7 @@ impl<P: Protocol> Request<'_, P> {
         })
     }
 
-    /// Reads the body as `C`, calls `handler` and has `answer` send what it resolves to.
+    /// Reads the body as `C`, calls `handler` and sends its result with `answer`.
     fn typed<C, F, Fut>(self, handler: F, answer: Answer<P, Fut::Output>) -> Handling
     where
         C: Command,
@@ -157,7 +156,7 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
-        if self.peer.abandoned.is_full() && outlives(C::EFFECT) {
+        if self.peer.detached.is_full() && outlives(C::EFFECT) {
             return self.refuse_as_full();
         }
         let span = self.span(|| C::NAME);
@@ -165,8 +164,8 @@ impl<P: Protocol> Request<'_, P> {
         self.start(future.instrument(span), lists, |_| C::EFFECT, answer)
     }
 
-    /// Calls `handler` with the body as it is and answers with the keys it resolves to, among them
-    /// those of the envelope that it brings. A body that is not a JSON object is answered without calling it.
+    /// Calls `handler` with the unread body and sends the keys of its result, which may include keys of the envelope. A
+    /// body that is not a JSON object is answered without a call.
     pub fn handle_raw<F, Fut>(self, handler: F) -> Handling
     where
         F: FnOnce(Context<P>, RawRequest) -> Fut,
@@ -183,7 +182,7 @@ impl<P: Protocol> Request<'_, P> {
             Ok(read) => read,
             Err(refusal) => return self.refuse(&refusal),
         };
-        if self.peer.abandoned.is_full() && outlives(effect::<P>(self.frame.code)) {
+        if self.peer.detached.is_full() && outlives(effect::<P>(self.frame.code)) {
             return self.refuse_as_full();
         }
         let span = self.span(|| name::<P>(self.frame.code));
@@ -200,7 +199,7 @@ impl<P: Protocol> Request<'_, P> {
         )
     }
 
-    /// Answers that there is no such command.
+    /// Answers that the command is unknown.
     pub fn unknown(self) -> Handling {
         self.refuse(&Refusal::unknown::<P>())
     }
@@ -216,12 +215,11 @@ impl<P: Protocol> Request<'_, P> {
         Handling(None)
     }
 
-    /// Reads envelope and body in one pass, and looks at the time. Gives beside them what the lists of the
-    /// body take, in bytes.
+    /// Reads envelope and body in one pass and checks the time. Returns also the memory of the body's lists, in bytes.
     fn read<M: Message>(&self) -> Result<(Context<P>, M, usize), Refusal> {
         let settings = &self.peer.settings;
         let allowance = settings.limits.json();
-        let (read, lists) = through(self.pass.as_ref(), || {
+        let (read, lists) = process_frame(self.pass.as_ref(), || {
             enveloped::<P::Request, M>(self.body, allowance)
         })
         .map_err(Self::invalid)?;
@@ -271,8 +269,8 @@ impl<P: Protocol> Request<'_, P> {
     {
         drop(self.pass);
         let weight = self.body.len() + lists;
-        let begun = begin(self.peer, self.frame, future, answer, effect, self.waker);
-        Handling(begun.map(|work| Begun { work, weight }))
+        let started = begin(self.peer, self.frame, future, answer, effect, self.waker);
+        Handling(started.map(|handler| StartedHandler { handler, weight }))
     }
 }
 

@@ -1,12 +1,12 @@
-//! What a server's tasks share: who is connected, who may be, and when all of it ends.
+//! The state that all tasks of a server share: its connections, their limits, and the shutdown.
 
-use super::abandoned::Abandoned;
 use super::allow::Effects;
-use super::budget::{Account, Budget, Holder};
+use super::budget::{ConnectionMemory, MemoryBudget, MemoryHolder};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
-use super::counters::Counting;
-use super::data::{DataEntry, DataPeer, Inbox, Leave, Outgoing, Owner, QUEUE};
+use super::counters::Counters;
+use super::data::{DataEntry, DataPeer, Eviction, Inbox, Outgoing, Owner, QUEUE};
+use super::detached::DetachedHandlers;
 use super::driver::Driver;
 use super::gate::Gate;
 use super::handshake::shake;
@@ -16,8 +16,9 @@ use super::service::Service;
 use super::table::Table;
 use crate::frame::{FrameId, Prepared};
 use crate::link::Transport;
-use crate::metrics::Held;
+use crate::metrics::{Gauge, Held};
 use crate::protocol::Protocol;
+use crate::sync::lock;
 use std::cell::OnceCell;
 use std::collections::HashSet;
 use std::future::poll_fn;
@@ -25,52 +26,48 @@ use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::Instant;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::sleep_until;
 
-/// Where a server is in its life.
+/// The lifecycle of a server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Life {
     Running,
-    /// To be over by then.
+    /// Ends at this time at the latest.
     Stopping(Instant),
     Over,
 }
 
-/// Behind every handle and every task of a server.
+/// The state behind all handles and tasks of a server.
 pub(super) struct Shared<P: Protocol> {
     pub(super) settings: Arc<Settings>,
     service: Arc<dyn Service<P>>,
-    pub(super) counters: Arc<Counting>,
+    pub(super) counters: Arc<Counters>,
     pub(super) peers: Mutex<Table<Arc<Peer<P>>>>,
     data_peers: Mutex<Table<DataEntry>>,
     pub(super) inbox: Arc<Inbox>,
-    abandoned: Arc<Abandoned>,
+    detached: Arc<DetachedHandlers>,
     gate: Gate,
-    pub(super) budget: Budget,
+    pub(super) budget: MemoryBudget,
     tasks: Mutex<JoinSet<()>>,
     next_connection: AtomicU64,
     life: watch::Sender<Life>,
 }
 
-/// Why a silent connection has ended, for the log.
+/// The reason of a replaced connection, for the log.
 const DISPLACED: &str = "another has taken its place";
-
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 impl<P: Protocol> Shared<P> {
     pub(super) fn new(settings: Settings, service: Arc<dyn Service<P>>) -> Arc<Self> {
         Arc::new(Self {
-            abandoned: Arc::new(Abandoned::new(settings.abandoned_handlers)),
-            budget: Budget::new(settings.memory),
+            detached: Arc::new(DetachedHandlers::new(settings.abandoned_handlers)),
+            budget: MemoryBudget::new(settings.memory),
             settings: Arc::new(settings),
             service,
-            counters: Arc::new(Counting::of::<P>()),
+            counters: Arc::new(Counters::of::<P>()),
             peers: Mutex::default(),
             data_peers: Mutex::default(),
             inbox: Arc::default(),
@@ -81,12 +78,12 @@ impl<P: Protocol> Shared<P> {
         })
     }
 
-    /// What may be called from an address; `None`, counted and logged, if nobody may connect from there.
+    /// Returns the allowed effects for an address. If it may not connect, counts and logs that and returns `None`.
     fn allowed(&self, address: SocketAddr) -> Option<Effects> {
         let effects = self.settings.allowed.effects(address.ip());
         if effects.is_none() {
-            self.counters.connections_forbidden.one();
-            if let Some(held) = self.counters.lines.forbidden.line() {
+            self.counters.connections_forbidden.increment();
+            if let Some(held) = self.counters.limiters.forbidden.admit() {
                 let (protocol, peer, held) = (P::NAME, address.ip(), held.shown());
                 tracing::warn!(protocol, %peer, held, "refused: the address is not allowed");
             }
@@ -94,7 +91,7 @@ impl<P: Protocol> Shared<P> {
         effects
     }
 
-    /// Serves one more command connection, or closes it if it may not be or there are too many.
+    /// Serves a new command connection, or closes it if it is forbidden or there are too many.
     pub(super) fn serve<S: Transport>(
         self: &Arc<Self>,
         handshake: impl Future<Output = io::Result<S>> + Send + 'static,
@@ -103,10 +100,10 @@ impl<P: Protocol> Shared<P> {
         let effects = self.allowed(address)?;
         let id = self.next_id();
         let settings = Arc::clone(&self.settings);
-        let (counters, abandoned) = (Arc::clone(&self.counters), Arc::clone(&self.abandoned));
+        let (counters, detached) = (Arc::clone(&self.counters), Arc::clone(&self.detached));
         let peer = Arc::new_cyclic(|peer: &Weak<Peer<P>>| {
-            let account = self.budget.open(id, peer.clone());
-            Peer::new(id, address, effects, settings, counters, abandoned, account)
+            let memory = self.budget.open(id, peer.clone());
+            Peer::new(id, address, effects, settings, counters, detached, memory)
         });
         let silent = |_: IpAddr, peer: &Arc<Peer<P>>| !peer.is_heard();
         let admitted = self.admit(&self.peers, id, address, Arc::clone(&peer), silent);
@@ -114,15 +111,11 @@ impl<P: Protocol> Shared<P> {
             displaced.give_way(DISPLACED);
         }
         for data in lock(&self.data_peers).of_mut(address.ip()) {
-            data.owner.saw(id);
+            data.owner.note(id);
         }
-        self.counters.connections.one();
+        self.counters.connections.increment();
         let (service, gate) = (Arc::clone(&self.service), self.gate.clone());
-        let registered = Registered {
-            shared: Arc::clone(self),
-            id,
-            _open: self.counters.gauges.connections.hold(),
-        };
+        let registered = self.registered(id, &self.counters.gauges.connections);
         self.spawn(async move {
             let _registered = registered;
             let (limit, whose) = (peer.settings.header_timeout, (peer.id, peer.address));
@@ -135,7 +128,7 @@ impl<P: Protocol> Shared<P> {
         Some(id)
     }
 
-    /// Serves one more data connection, or closes it if it may not be or there are too many.
+    /// Serves a new data connection, or closes it if it is forbidden or there are too many.
     pub(super) fn serve_data<S: Transport>(
         self: &Arc<Self>,
         handshake: impl Future<Output = io::Result<S>> + Send + 'static,
@@ -146,12 +139,12 @@ impl<P: Protocol> Shared<P> {
         let (sender, outbox) = mpsc::channel(QUEUE);
         let (entered, left) = oneshot::channel();
         let heard = Arc::new(AtomicBool::new(false));
-        let leave = Arc::new(Leave::new(id, address, Arc::clone(&self.counters)));
-        let holder: Weak<dyn Holder> = Arc::<Leave<P>>::downgrade(&leave);
-        let account = Arc::new(self.budget.open(id, holder));
+        let eviction = Arc::new(Eviction::new(id, address, Arc::clone(&self.counters)));
+        let holder: Weak<dyn MemoryHolder> = Arc::<Eviction<P>>::downgrade(&eviction);
+        let memory = Arc::new(self.budget.open(id, holder));
         let peer = DataPeer {
-            account: Arc::clone(&account),
-            leave,
+            memory: Arc::clone(&memory),
+            eviction,
             heard: Arc::clone(&heard),
             id,
             address,
@@ -161,7 +154,8 @@ impl<P: Protocol> Shared<P> {
             answers: sender.downgrade(),
             gate: self.gate.clone(),
         };
-        // Whoever only receives is known by his commands. Looked up once, and only if there are too many.
+        // An app that only receives is known by its command connection. The list is created once, and only if there are
+        // too many connections.
         let speakers = OnceCell::new();
         let silent = |from: IpAddr, data: &DataEntry| {
             !data.heard.load(Ordering::Relaxed)
@@ -170,17 +164,17 @@ impl<P: Protocol> Shared<P> {
         let owner = Owner::Nobody;
         let entry = DataEntry {
             sender,
-            account,
+            memory,
             heard,
             owner,
             _entered: entered,
         };
-        // A displaced one ends when its entry is dropped.
+        // A replaced connection ends when its entry is dropped.
         drop(
             self.admit(&self.data_peers, id, address, entry, silent)
                 .ok()?,
         );
-        // After it has been entered: whoever comes from now on notes himself.
+        // Look only after the entry has been added: later connections note themselves in it.
         let apps: Vec<_> = lock(&self.peers)
             .iter()
             .filter(|(_, from, _)| *from == address.ip())
@@ -188,15 +182,11 @@ impl<P: Protocol> Shared<P> {
             .collect();
         if let Some(entry) = lock(&self.data_peers).get_mut(id) {
             for app in apps {
-                entry.owner.saw(app);
+                entry.owner.note(app);
             }
         }
-        self.counters.data_connections.one();
-        let registered = Registered {
-            shared: Arc::clone(self),
-            id,
-            _open: self.counters.gauges.data_connections.hold(),
-        };
+        self.counters.data_connections.increment();
+        let registered = self.registered(id, &self.counters.gauges.data_connections);
         self.spawn(async move {
             let _registered = registered;
             let gone = async {
@@ -211,7 +201,7 @@ impl<P: Protocol> Shared<P> {
         Some(id)
     }
 
-    /// Addresses from which something has come at the command port.
+    /// Returns the addresses from which data has arrived at the command port.
     fn speakers(&self) -> HashSet<IpAddr> {
         let peers = lock(&self.peers);
         let heard = peers.iter().filter(|(_, _, peer)| peer.is_heard());
@@ -222,8 +212,8 @@ impl<P: Protocol> Shared<P> {
         ConnectionId(self.next_connection.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Enters a connection into a table. If the table is full or holds too many of the same address,
-    /// one that is `silent` gives way and is handed back; if there is none, the new one is refused.
+    /// Adds a connection to a table. If the table is full or has too many connections of the address, a `silent` one is
+    /// replaced and returned. Without a silent one, the new connection is refused.
     fn admit<T>(
         &self,
         table: &Mutex<Table<T>>,
@@ -235,7 +225,7 @@ impl<P: Protocol> Shared<P> {
         let settings = &self.settings;
         let address = address.ip();
         let mut table = lock(table);
-        // Under the lock: whoever stops the server looks at the table afterwards.
+        // Check under the lock, because a shutdown looks at the table afterwards.
         if *self.life.borrow() != Life::Running {
             return Err(NotAdmitted);
         }
@@ -257,40 +247,48 @@ impl<P: Protocol> Shared<P> {
         drop(table);
         let protocol = P::NAME;
         let Some((gone, from, entry)) = displaced else {
-            self.counters.connections_refused.one();
-            if let Some(held) = self.counters.lines.refused.line() {
+            self.counters.connections_refused.increment();
+            if let Some(held) = self.counters.limiters.refused.admit() {
                 let held = held.shown();
                 tracing::warn!(protocol, peer = %address, limit, held, "refused: {why}");
             }
             return Err(NotAdmitted);
         };
-        if self.counters.connections_displaced.one_to_log() {
+        if self.counters.connections_displaced.increment_sampled() {
             let (peer, by, connection) = (from, address, gone.0);
             tracing::warn!(protocol, %peer, connection, %by, limit, "closed a silent connection: {why}");
         }
         Ok(Some(entry))
     }
 
+    fn registered(self: &Arc<Self>, id: ConnectionId, open: &Gauge) -> Registered<P> {
+        Registered {
+            shared: Arc::clone(self),
+            id,
+            _open: open.hold(),
+        }
+    }
+
     fn spawn(&self, task: impl Future<Output = ()> + Send + 'static) {
         let mut tasks = lock(&self.tasks);
-        // Under the lock: what is spawned after the end would never be cut off.
+        // Check under the lock, because a task spawned after the end would never be aborted.
         if *self.life.borrow() == Life::Over {
             return;
         }
-        // Those that have ended are of no interest, but they take room.
+        // Remove ended tasks, because they take memory.
         while tasks.try_join_next().is_some() {}
         tasks.spawn(task);
     }
 
-    /// Resolves once the server is to stop.
+    /// Resolves when the server is to stop.
     pub(super) async fn stop_requested(&self) {
         let mut life = self.life.subscribe();
-        // An error would mean that there is no server any more.
+        // An error would mean that the server no longer exists.
         let _ = life.wait_for(|life| *life != Life::Running).await;
     }
 
-    /// Takes no more connections and requests, and lets those there are end by themselves until
-    /// `deadline`. Of several deadlines the earliest counts.
+    /// Accepts no more connections and requests, and lets existing ones end until `deadline`. Of several deadlines the
+    /// earliest applies.
     pub(super) fn stop(&self, deadline: Instant) {
         self.life.send_if_modified(|life| {
             let sooner = match *life {
@@ -310,23 +308,23 @@ impl<P: Protocol> Shared<P> {
         for peer in peers {
             peer.drain();
         }
-        // Data connections end when what waits for them is sent.
+        // Data connections end when their queued frames are sent.
         lock(&self.data_peers).clear();
     }
 
-    /// Waits until all connections and handlers have ended, and cuts them off when it is time.
+    /// Waits until all connections and handlers have ended, and aborts them at the deadline.
     pub(super) async fn drain(&self) {
         let all = std::future::poll_fn(|cx| {
             let mut tasks = lock(&self.tasks);
             while std::task::ready!(tasks.poll_join_next(cx)).is_some() {}
             drop(tasks);
-            // Where there are no connections, no more handlers are left behind.
-            self.abandoned.poll_ended(cx)
+            // Without connections, no more handlers are detached.
+            self.detached.poll_ended(cx)
         });
         self.over(all).await;
     }
 
-    /// Waits for `all`, for the end of the server, or for the deadline, and ends it then.
+    /// Waits for `all`, for the end of the server, or for the deadline, at which it ends the server.
     pub(super) async fn over(&self, all: impl Future<Output = ()>) {
         let mut life = self.life.subscribe();
         let mut all = pin!(all);
@@ -354,7 +352,7 @@ impl<P: Protocol> Shared<P> {
         tasks.abort_all();
         self.life.send_replace(Life::Over);
         drop(tasks);
-        self.abandoned.abort();
+        self.detached.abort();
         *lock(&self.inbox) = None;
     }
 
@@ -371,7 +369,7 @@ impl<P: Protocol> Shared<P> {
 }
 
 impl<P: Protocol> Shared<P> {
-    /// The data connections of an audience.
+    /// Returns the data connections of an audience.
     pub(super) fn data_audience(&self, audience: Audience) -> Result<Vec<Outbox>, PushError> {
         let Audience::One(id) = audience else {
             let data_peers = lock(&self.data_peers);
@@ -399,32 +397,32 @@ impl<P: Protocol> Shared<P> {
     }
 }
 
-/// Where streams for one data connection go.
+/// The queue for streams to one data connection.
 pub(super) struct Outbox {
     sender: mpsc::Sender<Outgoing>,
-    account: Arc<Account>,
+    memory: Arc<ConnectionMemory>,
 }
 
 impl Outbox {
     fn of(data: &DataEntry) -> Self {
         Self {
             sender: data.sender.clone(),
-            account: Arc::clone(&data.account),
+            memory: Arc::clone(&data.memory),
         }
     }
 
-    /// Queues a frame as soon as there is room and memory for it; `false` if the connection has ended.
+    /// Queues a frame when there is room and memory for it. Returns `false` if the connection has ended.
     pub(super) async fn send(&self, id: FrameId, body: Prepared) -> bool {
-        let charge = poll_fn(|cx| self.account.poll_queue(cx, body.len())).await;
+        let charge = poll_fn(|cx| self.memory.poll_queue(cx, body.len())).await;
         let frame = Outgoing { id, body, charge };
         self.sender.send(frame).await.is_ok()
     }
 }
 
-/// There is no room for a connection, or no server any more.
+/// There is no room for a connection, or the server has ended.
 struct NotAdmitted;
 
-/// A connection's entry in the table; removes itself.
+/// Removes the table entry of a connection when it is dropped.
 struct Registered<P: Protocol> {
     shared: Arc<Shared<P>>,
     id: ConnectionId,

@@ -1,12 +1,11 @@
-//! The connections of one port, how many of them come from where, and who goes first when there are
-//! too many.
+//! The connections of one port by address, and the choice of a connection to be replaced.
 
 use super::connection_id::ConnectionId;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::net::IpAddr;
 
-/// What is known of each connection, by its id.
+/// The connections of one port by id.
 pub(super) struct Table<T> {
     connections: HashMap<ConnectionId, (IpAddr, T)>,
     addresses: HashMap<IpAddr, usize>,
@@ -26,13 +25,13 @@ impl<T> Table<T> {
         self.connections.len()
     }
 
-    /// How many connections come from `address`.
+    /// Returns the number of connections from `address`.
     pub(super) fn from(&self, address: IpAddr) -> usize {
         self.addresses.get(&address).copied().unwrap_or(0)
     }
 
-    /// Takes out, to make room for another, one of those that `goes` says may go: of the address that
-    /// most connections come from, the one that has been there for longest.
+    /// Removes a connection to make room, among those for which `goes` returns `true`: the oldest one of the address
+    /// with the most connections.
     pub(super) fn displace(
         &mut self,
         mut goes: impl FnMut(IpAddr, &T) -> bool,
@@ -82,7 +81,7 @@ impl<T> Table<T> {
         entry.map(|(_, connection)| connection)
     }
 
-    /// Those that come from `host`.
+    /// Returns the connections from `host`.
     pub(super) fn of_mut(&mut self, host: IpAddr) -> impl Iterator<Item = &mut T> {
         let connections = self.connections.values_mut();
         connections

@@ -1,147 +1,143 @@
-//! What has to come, or go, in time on a command connection.
+//! Time limits of a command connection.
 
 use super::config::Settings;
-use crate::rate::Flow;
+use crate::rate::RateMeter;
 use crate::session::after;
-use std::pin::Pin;
+use crate::sync::Alarm;
 use std::task::{Context, Poll};
-use std::time::{Duration, Instant};
-use tokio::time::{Sleep, sleep};
+use std::time::Instant;
 
-/// Why a connection has ended, for the log.
+/// The reason for the end of a connection, for the log.
 pub(super) type Reason = &'static str;
 
-/// What bytes a connection waits for.
+/// The bytes that a connection waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reading {
-    /// For none.
+pub(super) enum Expected {
+    /// No bytes.
     Nothing,
-    /// For a frame.
+    /// A frame.
     Frame,
-    /// For the rest of one.
+    /// The rest of a frame.
     Rest,
 }
 
-/// What a connection is at when it has done all it can for now.
+/// The activity of a connection after all possible work.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
-    pub(super) reading: Reading,
-    /// Something is to be sent that the app does not take.
+pub(super) struct Activity {
+    pub(super) expected: Expected,
+    /// `true` if the app does not take bytes that are to be sent.
     pub(super) unwritten: bool,
-    /// Nothing has come that is not answered.
+    /// `true` if no received request is unanswered.
     pub(super) idle: bool,
-    /// When it has to go on by itself.
+    /// Time at which the connection must continue.
     pub(super) due: Option<Instant>,
 }
 
-/// What did not come in time.
+/// An exceeded time limit.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Late {
-    /// The rest of a frame: nothing more can be read, but answered.
+pub(super) enum Overdue {
+    /// The rest of a frame is late. The connection cannot be read any more, but responses can be sent.
     Frame(Reason),
-    /// Anything else: the connection is of no more use.
+    /// Anything else. The connection cannot be used any more.
     All(Reason),
 }
 
-/// When something last happened on a connection, and the timer for what is next.
+/// Times of the last events of a connection, and the timer for the next limit.
 pub(super) struct Watchdog {
-    /// The first byte of a header that is not whole yet.
+    /// Arrival of the first byte of an incomplete header.
     header: Option<Instant>,
-    /// Of the frame that has begun to arrive, while it is read.
-    read: Flow,
+    /// Rate of the arriving frame while it is read.
+    read: RateMeter,
     reads: bool,
-    /// Of what is to be sent.
-    written: Flow,
+    /// Rate of the sent bytes.
+    written: RateMeter,
     frame: Instant,
-    timer: Pin<Box<Sleep>>,
-    /// What the timer is set to.
-    armed: Option<Instant>,
+    alarm: Alarm,
 }
 
 impl Watchdog {
     pub(super) fn new(now: Instant) -> Self {
         Self {
             header: None,
-            read: Flow::new(now),
+            read: RateMeter::new(now),
             reads: false,
-            written: Flow::new(now),
+            written: RateMeter::new(now),
             frame: now,
-            timer: Box::pin(sleep(Duration::ZERO)),
-            armed: None,
+            alarm: Alarm::new(),
         }
     }
 
-    /// The first bytes of a frame have come.
+    /// Notes the first bytes of a frame.
     pub(super) fn begins(&mut self, now: Instant) {
-        self.read = Flow::new(now);
+        self.read = RateMeter::new(now);
     }
 
-    /// More bytes of it have come.
+    /// Notes further bytes of a frame.
     pub(super) fn received(&mut self, bytes: usize, settings: &Settings, now: Instant) {
         self.read.add(bytes, settings.stall.bytes, now);
     }
 
-    /// All that has come has been looked at, and it ends `inside` a header, or not.
+    /// Notes that all received bytes have been read. They may end inside a header.
     pub(super) fn ends_inside_header(&mut self, inside: bool, now: Instant) {
         self.header = inside.then(|| self.header.unwrap_or(now));
     }
 
-    /// A whole frame has come.
+    /// Notes a complete frame.
     pub(super) fn frame(&mut self, now: Instant) {
         self.header = None;
-        self.read = Flow::new(now);
+        self.read = RateMeter::new(now);
         self.frame = now;
     }
 
-    /// Something new is to be sent.
+    /// Notes new bytes to be sent.
     pub(super) fn loads(&mut self, now: Instant) {
-        self.written = Flow::new(now);
+        self.written = RateMeter::new(now);
     }
 
-    /// So much of it has been taken.
+    /// Notes sent bytes.
     pub(super) fn wrote(&mut self, bytes: usize, settings: &Settings, now: Instant) {
         self.written.add(bytes, settings.stall.bytes, now);
     }
 
-    /// Says what is late, or has `cx` woken when the next thing is.
+    /// Returns an exceeded limit, or wakes the task of `cx` at the next one.
     pub(super) fn poll(
         &mut self,
         cx: &mut Context<'_>,
         now: Instant,
         settings: &Settings,
-        standing: Standing,
-    ) -> Poll<Late> {
-        let reads = standing.reading != Reading::Nothing;
+        activity: Activity,
+    ) -> Poll<Overdue> {
+        let reads = activity.expected != Expected::Nothing;
         if reads && !self.reads {
-            // What could not come meanwhile is not missed.
-            self.read = Flow::new(now);
+            // Bytes that were not read meanwhile are not late.
+            self.read = RateMeter::new(now);
         }
         self.reads = reads;
-        let stalled = |flow: &Flow| after(flow.since, settings.stall.within);
+        let stalled = |flow: &RateMeter| after(flow.since, settings.stall.within);
         let limits = [
             (
                 self.header
                     .filter(|_| reads)
                     .map(|at| after(at, settings.header_timeout)),
-                Late::Frame("a header did not come in time"),
+                Overdue::Frame("a header did not come in time"),
             ),
             (
-                (standing.reading == Reading::Rest).then(|| stalled(&self.read)),
-                Late::Frame("a frame stalled"),
+                (activity.expected == Expected::Rest).then(|| stalled(&self.read)),
+                Overdue::Frame("a frame stalled"),
             ),
             (
-                standing.unwritten.then(|| stalled(&self.written)),
-                Late::All("the app does not read"),
+                activity.unwritten.then(|| stalled(&self.written)),
+                Overdue::All("the app does not read"),
             ),
             (
                 settings
                     .idle_timeout
-                    .filter(|_| standing.idle)
+                    .filter(|_| activity.idle)
                     .map(|limit| after(self.frame, limit)),
-                Late::All("idle"),
+                Overdue::All("idle"),
             ),
         ];
-        let mut next = standing.due;
+        let mut next = activity.due;
         for (at, late) in limits {
             let Some(at) = at else { continue };
             if at <= now {
@@ -150,20 +146,8 @@ impl Watchdog {
             next = Some(next.map_or(at, |next| next.min(at)));
         }
         if let Some(next) = next {
-            self.arm(cx, next);
+            self.alarm.set(cx, next);
         }
         Poll::Pending
-    }
-
-    /// A timer that rings too early does no harm; most are moved on before they ring.
-    fn arm(&mut self, cx: &mut Context<'_>, next: Instant) {
-        if self.armed.is_none_or(|armed| next < armed) {
-            self.timer.as_mut().reset(next.into());
-            self.armed = Some(next);
-        }
-        if self.timer.as_mut().poll(cx).is_ready() {
-            self.armed = None;
-            cx.waker().wake_by_ref();
-        }
     }
 }

@@ -1,8 +1,7 @@
-//! The session: which answer belongs to which request, what is due, what has been seen before.
+//! The session: matches responses to requests, tracks deadlines and detects repetitions.
 //!
-//! **Architecture invariant:** no sockets and no clocks. The session is told what happened and what
-//! time it is, and says what that means; moving bytes is the caller's business. App and robot use
-//! the same machine: the one opens commands and receives reports, the other the reverse.
+//! **Architecture invariant:** no sockets and no clocks. The caller passes events and the time, and moves the bytes.
+//! App and robot use the same session: an app opens commands and receives reports, a robot does the reverse.
 
 mod deadline;
 mod outgoing;
@@ -13,34 +12,35 @@ pub(crate) use deadline::after;
 pub use outgoing::{Busy, Due};
 
 use crate::frame::FrameId;
-use crate::protocol::{AckPolicy, Header, Limits, Protocol};
+use crate::operation::AckPolicy;
+use crate::protocol::Protocol;
+use crate::wire::{Header, Limits};
 use outgoing::Outgoing;
 use seen::Seen;
 use std::marker::PhantomData;
 use std::time::Instant;
 
-/// What a frame that has arrived means.
+/// The meaning of a received frame.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Incoming<T> {
-    /// The answer to a request in flight, which has ended with it.
+    /// The response to a request in flight, which ends here.
     Answer(T),
-    /// An answer nobody waits for (any more): drop it.
+    /// A response to no request in flight. Drop it.
     Late,
-    /// A command: handle it and answer.
+    /// A command. Handle it and respond.
     Command,
-    /// A report: hand it on, then say so with [`Session::handed_on`], and acknowledge it.
+    /// A new report. Deliver it, call [`Session::handed_on`], and acknowledge it.
     Report,
-    /// A report that has been handed on already: acknowledge it again, nothing else.
+    /// A report that was delivered before. Only acknowledge it again.
     Repeated,
     /// Raw bytes.
     Stream,
 }
 
-/// The state of one peer's conversation with another.
+/// The state of a conversation between two peers.
 ///
-/// `T` is the caller's token for a request in flight. Every token given to [`open`](Self::open)
-/// comes back exactly once: with the answer, as expired, as cancelled or by
-/// [`end_if`](Self::end_if).
+/// `T` is the caller's token for a request in flight. Every token passed to [`open`](Self::open) is returned exactly
+/// once: with the response, as expired, as cancelled, or by [`end_if`](Self::end_if).
 #[derive(Debug)]
 pub struct Session<P, T> {
     outgoing: Outgoing<T>,
@@ -49,12 +49,11 @@ pub struct Session<P, T> {
 }
 
 impl<P: Protocol, T> Session<P, T> {
-    /// A session whose own ids count on from `first_id`, and from 0 behind the largest that the header has room for.
+    /// Creates a session. Its ids count up from `first_id`, and continue from 0 after the largest id of the header.
     ///
-    /// At most `limits.in_flight` requests are in flight, and no more than half of all ids: one that was in use
-    /// a moment ago is not the next. Reports handed on are remembered for twice
-    /// as long as `ack` says that they may be repeated, counted from the last time they came; as many
-    /// of them as a peer may have in flight or waiting.
+    /// At most `limits.in_flight` requests are in flight, and at most half of all ids, so that a recent id is not
+    /// reused at once. Delivered reports are remembered for twice the time in which `ack` allows repetitions, counted
+    /// from their last arrival. The session remembers as many reports as a peer may have in flight or queued.
     #[must_use]
     pub fn new(limits: &Limits, ack: AckPolicy, first_id: u32) -> Self {
         let repeated_for = ack.timeout.saturating_mul(ack.retries.saturating_add(1));
@@ -65,7 +64,7 @@ impl<P: Protocol, T> Session<P, T> {
                 first_id,
                 P::Header::ID_MAX,
             ),
-            // A peer repeats what is in flight, and as much of it as its own limit allows.
+            // A peer may repeat all its reports in flight, up to its own limit.
             seen: Seen::new(
                 limits
                     .queued_reports
@@ -78,11 +77,11 @@ impl<P: Protocol, T> Session<P, T> {
         }
     }
 
-    /// Puts a request in flight and gives the id to send it with.
+    /// Adds a request in flight and returns its id.
     ///
     /// # Errors
     ///
-    /// [`Busy`] if too many are in flight.
+    /// [`Busy`] if too many requests are in flight.
     pub fn open(
         &mut self,
         kind: u8,
@@ -94,13 +93,13 @@ impl<P: Protocol, T> Session<P, T> {
         self.outgoing.open(kind, code, policy, now, token)
     }
 
-    /// Says what a frame that has arrived means.
+    /// Returns the meaning of a received frame.
     pub fn receive(&mut self, frame: FrameId, now: Instant) -> Incoming<T> {
         self.receive_digested(frame, None, now)
     }
 
-    /// The same, with the digest of the frame's data. It tells reports apart that came over
-    /// different connections: a peer that restarts may use an id again for something else.
+    /// Returns the meaning of a received frame. The digest of its data distinguishes reports of different connections,
+    /// because a restarted peer may reuse an id.
     pub fn receive_digested(
         &mut self,
         frame: FrameId,
@@ -126,43 +125,43 @@ impl<P: Protocol, T> Session<P, T> {
         }
     }
 
-    /// Remembers that a report has been handed on.
+    /// Remembers a report as delivered.
     pub fn handed_on(&mut self, report: FrameId, now: Instant) {
         self.seen.insert(report, None, now);
     }
 
-    /// The same, with the digest of the report's data.
+    /// Remembers a report with this digest as delivered.
     pub fn handed_on_digested(&mut self, report: FrameId, digest: [u8; 16], now: Instant) {
         self.seen.insert(report, Some(digest), now);
     }
 
-    /// Notes that what comes from now on comes over another connection.
+    /// Notes that all further frames come over another connection.
     pub fn reconnected(&mut self) {
         self.seen.reconnected();
     }
 
-    /// Ends a request because nobody waits for its answer any more. A late answer will miss.
+    /// Ends a request whose caller has stopped waiting. A later response is [`Incoming::Late`].
     pub fn cancel(&mut self, request: FrameId) -> Option<T> {
         self.outgoing.end(request)
     }
 
-    /// What is due; call it until it gives `None`.
+    /// Returns a request that is due. Call it until it returns `None`.
     pub fn due(&mut self, now: Instant) -> Option<Due<'_, T>> {
         self.outgoing.due(now)
     }
 
-    /// Before this, nothing is due. May be earlier than the first deadline, never later.
+    /// Returns a time before which no request is due. It may be earlier than the first deadline, but never later.
     #[must_use]
     pub fn next_due(&self) -> Option<Instant> {
         self.outgoing.earliest()
     }
 
-    /// Ends every request in flight that `ends` says so of, as when the connection is lost.
+    /// Ends every request in flight for which `ends` returns `true`, such as after a loss of the connection.
     pub fn end_if(&mut self, ends: impl FnMut(FrameId, &mut T) -> bool) -> Vec<(FrameId, T)> {
         self.outgoing.end_if(ends)
     }
 
-    /// How many requests are in flight.
+    /// Returns the number of requests in flight.
     #[must_use]
     pub fn in_flight(&self) -> usize {
         self.outgoing.len()

@@ -2,12 +2,12 @@
 
 use super::deadline::after;
 use crate::frame::FrameId;
-use crate::protocol::AckPolicy;
+use crate::operation::AckPolicy;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Instant;
 
-/// Slots a table begins with.
+/// Initial number of slots.
 const FIRST_SLOTS: usize = 16;
 
 /// A request in flight.
@@ -20,7 +20,7 @@ struct Entry<T> {
     token: T,
 }
 
-/// As many requests are in flight as there may be.
+/// Too many requests are in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{limit} requests are in flight already; wait for one, or raise `in_flight`")]
 pub struct Busy {
@@ -28,29 +28,28 @@ pub struct Busy {
     pub limit: usize,
 }
 
-/// What time has brought about for a request in flight.
+/// A request in flight whose deadline has passed.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Due<'a, T> {
-    /// Send it again, with the same id.
+    /// Send it again with the same id.
     Again(FrameId, &'a mut T),
-    /// There is no answer, and no repetition is left: it has ended.
+    /// It has ended without a response; no repetition is left.
     Expired(FrameId, T),
 }
 
 /// The table of requests in flight.
 ///
-/// Ids count on, and an id's low bits are its slot: finding a request takes no hashing, and an id
-/// whose slot is still taken is passed over, so that no two in flight are the same, also after the
-/// count has wrapped around.
+/// Ids count up, and the low bits of an id are its slot. So a lookup needs no hashing. An id whose slot is taken is
+/// skipped, so that ids in flight are unique even after the counter has wrapped.
 #[derive(Debug)]
 pub(super) struct Outgoing<T> {
     slots: Vec<Option<Entry<T>>>,
     in_flight: usize,
     limit: usize,
     next_id: u32,
-    /// All bits of an id set.
+    /// Largest id; all bits of an id are set.
     id_max: u32,
-    /// When which id is due, earliest first; among them those of requests that have ended since.
+    /// Deadlines of ids, earliest first. Some belong to requests that have ended.
     deadlines: BinaryHeap<Reverse<(Instant, u32)>>,
 }
 
@@ -70,13 +69,14 @@ impl<T> Outgoing<T> {
         self.in_flight
     }
 
-    /// No request is due before this.
+    /// Returns a time before which no request is due.
     pub(super) fn earliest(&self) -> Option<Instant> {
         self.deadlines.peek().map(|Reverse((due, _))| *due)
     }
 
     fn add_deadline(&mut self, due: Instant, id: u32) {
-        // Most requests end before they are due: as many are forgotten as have gathered since the last time.
+        // Most requests end before their deadline. So outdated deadlines are removed when about as many have gathered
+        // as there are requests.
         if self.deadlines.len() >= 2 * self.in_flight + FIRST_SLOTS {
             let mut deadlines = std::mem::take(&mut self.deadlines);
             deadlines.retain(|Reverse((due, id))| self.is_due_at(*id, *due));
@@ -85,7 +85,7 @@ impl<T> Outgoing<T> {
         self.deadlines.push(Reverse((due, id)));
     }
 
-    /// Whether there is a request with this id in flight, and this is its deadline.
+    /// Returns `true` if a request with this id is in flight and has this deadline.
     fn is_due_at(&self, id: u32, due: Instant) -> bool {
         let entry = self.slots.get(self.slot(id)).and_then(Option::as_ref);
         entry.is_some_and(|entry| entry.frame.id == id && entry.due == due)
@@ -95,7 +95,7 @@ impl<T> Outgoing<T> {
         usize::try_from(id).unwrap_or(0) & self.slots.len().wrapping_sub(1)
     }
 
-    /// Makes room so that at most half of the slots are taken: a free one is never far away.
+    /// Grows the table so that at most half of the slots are taken and a free slot is near.
     fn grow(&mut self) {
         if (self.in_flight + 1) * 2 <= self.slots.len() {
             return;
@@ -104,7 +104,7 @@ impl<T> Outgoing<T> {
         let old = std::mem::take(&mut self.slots);
         self.slots.resize_with(wanted, || None);
         for entry in old.into_iter().flatten() {
-            // Ids that differ in few low bits differ in more of them.
+            // Ids with different low bits still differ with one more bit.
             let slot = self.slot(entry.frame.id);
             if let Some(place) = self.slots.get_mut(slot) {
                 *place = Some(entry);
@@ -189,7 +189,7 @@ impl<T> Outgoing<T> {
         Some(Due::Again(entry.frame, &mut entry.token))
     }
 
-    /// Ends every request that `ends` says so of.
+    /// Ends every request for which `ends` returns `true`.
     pub(super) fn end_if(
         &mut self,
         mut ends: impl FnMut(FrameId, &mut T) -> bool,

@@ -1,20 +1,19 @@
-//! Reports handed on not long ago, so that a repetition is not handed on again.
+//! Recently delivered reports, to detect repetitions.
 
 use crate::frame::FrameId;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// A window over the last reports handed on, bounded in number.
+/// The last delivered reports, bounded in number.
 ///
-/// What has the same id *and* the same data is the same report, whenever it comes: an app that was
-/// asleep finds repetitions of long ago in its socket. What has only the same id is the same report
-/// if it comes soon and over the same connection; later, or over another one, it is another report:
-/// a peer that restarts may use its ids again.
+/// A report with the same id *and* the same data is the same report at any time, because an app that was suspended
+/// finds old repetitions in its socket. A report with only the same id is the same report if it comes soon and over the
+/// same connection. Otherwise it is another report, because a restarted peer may reuse its ids.
 #[derive(Debug)]
 pub(super) struct Seen {
     /// Oldest first.
     window: VecDeque<Entry>,
-    /// Their ids side by side: nearly every report is new, and is seen to be so at a glance.
+    /// Ids of the entries in a separate list. Nearly every report is new, and a scan of this list shows that quickly.
     ids: VecDeque<u32>,
     length: usize,
     age: Duration,
@@ -26,7 +25,7 @@ struct Entry {
     frame: FrameId,
     digest: Option<[u8; 16]>,
     connection: u64,
-    /// When it last came.
+    /// Last arrival.
     at: Instant,
 }
 
@@ -45,8 +44,7 @@ impl Seen {
         self.connection += 1;
     }
 
-    /// Whether this report has been handed on. If so, it may come again for as long as ever: its age
-    /// counts from now.
+    /// Returns `true` if this report has been delivered before, and updates its last arrival.
     pub(super) fn contains(
         &mut self,
         frame: FrameId,

@@ -1,5 +1,4 @@
-//! Handlers that run on though nobody waits for their answer any more: what moves does not stop
-//! because an app is gone.
+//! Handlers that run on without a waiting app: a motion does not stop when its app is gone.
 
 use crate::common::net::{Raw, Robot, loopback, service};
 use crate::common::{Done, Echo, Go, LIMITS, Moved, Toy, answer_to, command, frame, until};
@@ -18,14 +17,14 @@ use tokio::time::Instant;
 
 const SECOND: Duration = Duration::from_secs(1);
 
-/// What has become of handlers.
+/// The fate of handlers.
 #[derive(Default)]
 struct Seen {
     begun: AtomicU64,
     ended: AtomicU64,
     /// Dropped before their end.
     dropped: AtomicU64,
-    /// Told from inside that nobody waits.
+    /// Handlers that learned that no app waits.
     told: AtomicU64,
 }
 
@@ -35,7 +34,7 @@ impl Seen {
     }
 }
 
-/// One handler, at work.
+/// One running handler.
 struct AtWork(Arc<Seen>);
 
 impl AtWork {
@@ -80,7 +79,7 @@ impl Slow {
     }
 }
 
-/// A command of which no spec knows anything.
+/// A command that the spec does not have.
 const UNKNOWN: u16 = 0x0999;
 
 impl Service<Toy> for Slow {
@@ -106,7 +105,7 @@ impl Service<Toy> for Slow {
 const GO: &[u8] = br#"{"metres":1}"#;
 const ECHO: &[u8] = br#"{"text":"x"}"#;
 
-/// Closes a connection such that the other side can neither read nor write any more.
+/// Closes a connection so that the other side can neither read nor write.
 fn reset(app: Raw<TcpStream>) {
     let socket = SockRef::from(&app.stream);
     socket.set_linger(Some(Duration::ZERO)).unwrap();
@@ -131,7 +130,7 @@ async fn a_motion_outlives_its_connection_and_a_read_does_not() {
         until(|| robot.handle.connections().is_empty()).await;
         if outlives {
             assert_eq!(seen.read(), [1, 0, 0], "0x{code:04X}");
-            // Its end does not lie with the connection: a report finds it gone.
+            // The handler ends independently of the connection. A report finds the connection gone.
             let pushed = robot.handle.push(Audience::One(id), &Moved { metres: 1 });
             assert_eq!(pushed.await.unwrap_err().name(), "no_connection");
             slow.permits.add_permits(1);
@@ -151,7 +150,7 @@ async fn a_motion_outlives_its_timeout_and_the_app_hears_of_that_alone() {
     for (code, body, outlives) in [(Go::CODE, GO, true), (Echo::CODE, ECHO, false)] {
         let slow = Slow::new();
         let seen = Arc::clone(&slow.seen);
-        // It does not take a place of those in flight for as long as it runs.
+        // A detached handler does not count as a call in flight.
         let limits = Limits {
             in_flight: 1,
             ..LIMITS
@@ -168,7 +167,7 @@ async fn a_motion_outlives_its_timeout_and_the_app_hears_of_that_alone() {
         app.send(&frame(command(Go::CODE, 2), GO)).await;
         until(|| seen.begun.load(Ordering::SeqCst) == 2).await;
         slow.permits.add_permits(2);
-        // Its own answer, and none to the first.
+        // Its own response, and none to the first call.
         assert_eq!(app.result().await, (answer_to(command(Go::CODE, 2)), 7));
         until(|| seen.ended.load(Ordering::SeqCst) == 1 + u64::from(outlives)).await;
         assert_eq!(seen.told.load(Ordering::SeqCst), u64::from(outlives));
@@ -180,7 +179,7 @@ async fn a_motion_outlives_its_timeout_and_the_app_hears_of_that_alone() {
     }
 }
 
-/// A robot whose motions stop when nobody waits for them, and say how.
+/// A robot whose motions stop when no app waits, and report how.
 async fn cancelling(seen: &Arc<Seen>) -> Robot {
     let seen = Arc::clone(seen);
     let serve = move |request: Request<'_, Toy>| {
@@ -259,7 +258,7 @@ async fn a_shutdown_waits_for_them_within_its_grace() {
     until(|| slow.seen.read() == [1, 0, 1]).await;
 }
 
-/// One that is at work when the shutdown begins, and whose timeout comes before the grace is over.
+/// A handler that runs when the shutdown begins, and whose timeout comes before the end of the grace period.
 #[fc_test::test(start_paused = true)]
 async fn a_shutdown_waits_for_those_that_are_left_behind_meanwhile() {
     let slow = Slow::new();
@@ -291,7 +290,7 @@ async fn no_more_are_begun_than_may_run_on() {
     }
     assert_eq!(slow.seen.read(), [2, 0, 0], "neither has begun");
     assert_eq!(robot.handle.counters().abandoned_reached, 2);
-    // Whatever cannot run on is served.
+    // Commands that cannot run on are served.
     raw.send(&frame(command(Echo::CODE, 2), ECHO)).await;
     assert_eq!(raw.result().await.1, 72);
     // And motions are again, once one of them has ended.
@@ -338,7 +337,7 @@ async fn a_panic_of_one_that_runs_on_is_counted_and_nothing_else() {
     assert_eq!(app.result().await, (answer_to(command(Echo::CODE, 2)), 7));
 }
 
-/// A report on its way to an app that leaves ends, though a handler still knows the connection.
+/// A report for an app that leaves ends, even if a handler still has the connection.
 #[fc_test::test]
 async fn reports_end_with_the_connection() {
     let slow = Slow::new();

@@ -1,4 +1,4 @@
-//! Who may connect, and who may call what.
+//! Access rules by network and effect.
 
 use crate::common::log::{Log, alone};
 use crate::common::net::{Raw, Robot, loopback, service};
@@ -17,7 +17,7 @@ fn network(text: &str) -> Network {
     text.parse().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What is written, and how it is shown.
+/// Written networks, and their displayed form.
 const NETWORKS: [(&str, &str); 8] = [
     ("10.0.0.0/8", "10.0.0.0/8"),
     ("192.0.2.7", "192.0.2.7/32"),
@@ -121,7 +121,7 @@ fn a_network_holds_its_addresses_however_they_are_written() {
     }
 }
 
-/// A robot that counts the handlers that have begun.
+/// A robot that counts started handlers.
 async fn robot(config: ServerConfig) -> (Robot, Arc<AtomicUsize>) {
     let begun = Arc::<AtomicUsize>::default();
     let count = Arc::clone(&begun);
@@ -217,7 +217,7 @@ async fn who_may_only_read_moves_nothing() {
     assert_eq!(call(&mut display, Echo::CODE, 1, ECHO).await, 7);
     assert_eq!(begun.load(Ordering::Relaxed), 1);
     assert_eq!(call(&mut display, Go::CODE, 2, GO).await, 71);
-    // Of a code that the spec does not have nobody knows what it does.
+    // The effect of a code that the spec does not have is unknown.
     assert_eq!(call(&mut display, 0x0999, 3, "{}").await, 71);
     assert_eq!(begun.load(Ordering::Relaxed), 1, "its handler has run");
     assert_eq!(call(&mut display, Echo::CODE, 4, ECHO).await, 7);

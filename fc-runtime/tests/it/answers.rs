@@ -1,4 +1,4 @@
-//! What has been carried out is answered, however the app ends.
+//! Executed requests are answered, however the app ends.
 
 use crate::common::net::{Raw, Robot, loopback, service};
 use crate::common::{Done, Echo, Go, Toy, command, frame, until};
@@ -28,7 +28,7 @@ async fn answered<S: AsyncRead + AsyncWrite + Unpin>(app: &mut Raw<S>) -> BTreeS
     ids
 }
 
-/// What an app sends behind its last request before it falls silent.
+/// Bytes that an app sends after its last request.
 const ENDS: [(&str, &[u8]); 4] = [
     ("nothing", b""),
     ("half a head", b"<"),
@@ -124,7 +124,7 @@ async fn a_handler_at_work_when_a_frame_stalls() {
 #[fc_test::test]
 async fn streams_that_wait_when_the_app_has_sent_its_last() {
     let robot = Robot::start(loopback(), service).await;
-    // Nothing, or more than the robot reads at once of what is no frame.
+    // No bytes, or more invalid bytes than the robot reads at once.
     for garbage in [0, 300_000] {
         let before = robot.handle.counters().data_connections;
         let mut app = Raw::new(TcpStream::connect(robot.data).await.unwrap());

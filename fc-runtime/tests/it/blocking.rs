@@ -7,14 +7,14 @@ use fc_runtime::{AckOutcome, Audience, CallError, ClientConfig, ConnectError, Fo
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 
-/// Long enough that only what hangs takes it.
+/// Only a hanging operation takes this long.
 const LONG: Duration = Duration::from_secs(60);
 
 fn echo(text: &str) -> Echo {
     Echo { text: text.into() }
 }
 
-/// A robot on threads of its own.
+/// A robot on its own threads.
 fn robot() -> (Runtime, Robot) {
     let runtime = Builder::new_multi_thread()
         .worker_threads(1)
@@ -32,7 +32,7 @@ async fn left(robot: &Robot) {
     }
 }
 
-/// What becomes of a report at each app.
+/// The outcome of a report at each app.
 fn push(runtime: &Runtime, robot: &Robot, metres: i32) -> Vec<AckOutcome> {
     let report = Moved { metres };
     let pushed = robot.handle.push(Audience::All, &report);

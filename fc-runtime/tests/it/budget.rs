@@ -1,4 +1,4 @@
-//! What apps make a robot hold in memory, and who goes when it does not suffice.
+//! The memory that apps make a robot hold, and the connections closed when it is short.
 
 use crate::common::log::{Log, alone};
 use crate::common::net::{Raw, Robot, loopback, service};
@@ -20,10 +20,10 @@ use tracing::Level;
 const KIB: usize = 1 << 10;
 const MIB: usize = 1 << 20;
 
-/// What apps may make the robots of these tests hold.
+/// Memory limit of the robots in these tests.
 const MEMORY: usize = 8 * MIB;
 
-/// Whatever a connection is made with.
+/// Any transport.
 const NEEDED: usize = 128 * KIB;
 
 fn config() -> ServerConfig {
@@ -42,7 +42,7 @@ enum Port {
 
 const PORTS: [Port; 2] = [Port::Command, Port::Data];
 
-/// A peer at one of the ports, at an address of its own.
+/// A peer at one of the ports, with its own address.
 fn connect(robot: &Robot, port: Port, address: u8) -> Raw<DuplexStream> {
     let (app, stream) = tokio::io::duplex(64 * KIB);
     let address = SocketAddr::from((Ipv4Addr::new(10, 0, 0, address), 9));
@@ -69,8 +69,8 @@ fn unfinished(port: Port, length: usize) -> Vec<u8> {
     bytes
 }
 
-/// Sends as much as is taken, and says whether that was all. A robot that takes nothing for a long
-/// time, and does not close, fails the test.
+/// Sends until the robot takes no more. Returns `true` if everything was sent. The test fails if the robot takes
+/// nothing for a long time without closing.
 async fn try_send(app: &mut Raw<DuplexStream>, bytes: &[u8]) -> bool {
     let mut sending = pin!(app.stream.write_all(bytes));
     for _ in 0..100_000 {
@@ -129,7 +129,7 @@ async fn who_holds_most_goes(port: Port) {
     let mut greatest = connect(&robot, port, 99);
     assert!(try_send(&mut greatest, &unfinished(port, MIB)).await);
     until(|| robot.handle.memory() > 5 * MIB + 700 * KIB).await;
-    // What is asked for now goes beyond the limit.
+    // The next request exceeds the limit.
     let mut next = connect(&robot, port, 100);
     assert!(try_send(&mut next, &unfinished(port, 700 * KIB)).await);
     let mut last = connect(&robot, port, 101);
@@ -157,8 +157,8 @@ async fn who_holds_most_at_the_data_port_goes_and_the_log_says_so() {
     who_holds_most_goes(Port::Data).await;
 }
 
-/// Whoever waits for an app that says nothing holds no memory for it: otherwise a crowd of them would use
-/// up the memory, and have each other give it back and ask for it again without end.
+/// A connection to a silent app holds no memory. Otherwise many of them would use up the memory, and free and request
+/// it again endlessly.
 #[fc_test::test]
 async fn a_crowd_that_says_nothing_holds_nothing() {
     let _alone = alone();
@@ -176,7 +176,7 @@ async fn a_crowd_that_says_nothing_holds_nothing() {
     app.close();
     until(|| robot.handle.connections().len() == 125).await;
     assert_eq!(robot.handle.memory(), 0);
-    // What has said something small holds little.
+    // A connection that sent little holds little.
     for (number, peer) in crowd.iter_mut().enumerate() {
         peer.speak(number % 2 == 1).await;
     }
@@ -185,7 +185,7 @@ async fn a_crowd_that_says_nothing_holds_nothing() {
     assert_eq!(robot.handle.counters().connections_evicted, 0);
 }
 
-/// The memory of what an app has had before is not held against it.
+/// Memory that an app has used before does not count against it.
 #[fc_test::test]
 async fn memory_that_nobody_needs_is_given_back_first() {
     let _alone = alone();
@@ -242,7 +242,7 @@ async fn requests_in_the_hands_of_handlers_count() {
     }
     assert_eq!(greedy.recv().await, None);
     assert_eq!(robot.handle.counters().connections_evicted, 1);
-    // What was read is gone with the connection, and the other app gets its answer.
+    // The request is gone with the connection, and the other app gets its response.
     until(|| robot.handle.memory() < MIB).await;
     permits.add_permits(1);
     assert_eq!(
@@ -309,7 +309,7 @@ async fn streams_count_until_they_are_taken() {
     let mut streams = robot.handle.streams();
     let mut bytes = unfinished(Port::Data, MIB);
     bytes.push(b' ');
-    // Nobody takes them, and one after the other is received all the same.
+    // There is no receiver, but all frames are received one after the other.
     let mut apps = Vec::new();
     for address in 0..6 {
         let mut app = connect(&robot, Port::Data, address);
@@ -336,8 +336,8 @@ async fn streams_count_until_they_are_taken() {
     until(|| robot.handle.memory() < 6 * NEEDED).await;
 }
 
-/// Of what the robot does not take, half of the memory at most is out of reach: the rest goes with
-/// the connections that brought it.
+/// At most half of the memory is held by streams that the robot does not take. The rest is freed with their
+/// connections.
 #[fc_test::test(start_paused = true)]
 async fn streams_that_nobody_takes_lock_nobody_out() {
     let _alone = alone();

@@ -138,7 +138,7 @@ async fn raw_calls_and_raw_handlers() {
     assert_eq!(app.call_raw(3, b"{}").await.unwrap().envelope.result, 5);
 }
 
-/// An answer that was made elsewhere may bring keys of the envelope: none is written twice.
+/// An answer from elsewhere may contain envelope keys; none is written twice.
 #[fc_test::test]
 async fn a_raw_answer_with_keys_of_the_envelope() {
     const ANSWERS: &[(&str, i32, &str)] = &[
@@ -157,7 +157,7 @@ async fn a_raw_answer_with_keys_of_the_envelope() {
             5,
             r#"{"at":9,"result":5,"why":"no"}"#,
         ),
-        // Nobody could read such an envelope.
+        // Such an envelope could not be read.
         (r#"{"result":"5"}"#, 71, r#","result":71,"why":"protocol"}"#),
     ];
     let service = |request: Request<'_, Toy>| {
@@ -197,7 +197,7 @@ struct Level {
     level: i32,
 }
 
-/// The spec binds both sides: what breaks it is no answer, and the app is not left without one.
+/// The spec binds both sides: a response that violates it is not sent, but the app gets an error.
 #[fc_test::test]
 async fn an_invalid_response_is_not_sent() {
     let service = |request: Request<'_, Toy>| {
@@ -404,7 +404,7 @@ async fn a_call_without_an_answer_times_out() {
     assert_eq!(start.elapsed().as_millis(), 3000);
     assert_eq!((app.in_flight(), app.counters().timeouts), (0, 2));
 
-    // The answers come late, and harm nobody.
+    // The responses are late and have no effect.
     for _ in 0..2 {
         let (id, _) = robot.recv().await.unwrap();
         robot.send_frame(answer_to(id), &result(7)).await;

@@ -1,5 +1,5 @@
-//! A connection under a robot that does anything, in any order: every call ends exactly once, with
-//! its own answer or with an error, and nothing is left behind.
+//! A connection to a robot with random behaviour: every call ends exactly once, with its response or an error, and no
+//! resources are left behind.
 
 use crate::common::net::{Raw, app_of_raw};
 use crate::common::{self, Echo, LIMITS, Moved, answer_to, frame, report, result};
@@ -118,7 +118,7 @@ struct Robot {
 }
 
 impl Robot {
-    /// Takes in all that has come.
+    /// Receives everything that has arrived.
     async fn listen(&mut self) {
         while let Ok(received) = timeout(Duration::from_millis(1), self.raw.recv()).await {
             let (id, body) = received.expect("the app does not close");
@@ -195,7 +195,7 @@ async fn play(steps: Vec<Step>, lose: bool) {
         "not_connected",
     ];
     assert!(ends.iter().all(|end| known.contains(end)), "{ends:?}");
-    // Nothing is left behind: as many calls as ever may be made.
+    // All resources are free: the full number of calls can be made again.
     if !lose {
         let again = Echo {
             text: "again".into(),

@@ -1,5 +1,4 @@
-//! More connections than there may be: whoever has said nothing goes first, and nobody is locked out
-//! by one address.
+//! Too many connections: silent ones are replaced first, and one address cannot lock others out.
 
 use crate::common::log::{Log, alone};
 use crate::common::net::{Raw, Robot, loopback, service};
@@ -84,7 +83,7 @@ async fn one_address_alone_cannot_take_all() {
     }
 }
 
-/// As an app meets it: the silent of its own address do not keep it out.
+/// From an app's view: silent connections of its own address do not lock it out.
 #[fc_test::test]
 async fn silent_connections_lock_nobody_out() {
     let _alone = alone();

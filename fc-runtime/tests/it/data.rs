@@ -1,4 +1,4 @@
-//! An app's data connection over losses: it comes back, and what was lost is told.
+//! Losses of an app's data connection: it is made again, and losses are reported.
 
 use crate::common::net::{Raw, Robot, app_of_raw, data_of_raw, data_over, loopback, service};
 use crate::common::{Echo, Toy, command, frame, until};
@@ -61,17 +61,17 @@ async fn it_comes_back_and_each_side_is_told_once() {
     robot.send(&frame(stream(2), b"two")).await;
     // In the order in which it happened.
     assert_eq!(&*data.recv().await.unwrap().data, b"one");
-    // Also if there is room meanwhile for what came after it.
+    // The same if there is room for later frames meanwhile.
     sleep(Duration::from_millis(1)).await;
     assert_eq!(data.recv().await, Err(DataError::Lost(why)));
     assert_eq!(&*data.recv().await.unwrap().data, b"two");
-    // What was sent before may not have arrived.
+    // Frames sent before may not have arrived.
     assert_eq!(data.send(1, 2, b"no").await, Err(DataError::Lost(why)));
     data.send(1, 3, b"yes").await.unwrap();
     assert_eq!(robot.recv().await.unwrap().0.id, 3);
 }
 
-/// Who has sent nothing has lost nothing.
+/// A sender without sent frames has lost nothing.
 #[fc_test::test(start_paused = true)]
 async fn a_frame_waits_for_the_next_connection() {
     let (app, _commands) = app_of_raw(ClientConfig::new());
@@ -261,7 +261,7 @@ async fn one_who_only_sends_hears_of_a_loss() {
     let (data, robot, _kept) = data_of_raw(10_000).await;
     data.send(1, 1, b"x").await.unwrap();
     drop(robot);
-    // Nobody receives.
+    // There is no receiver.
     let mut states = data.states();
     while states.recv().await.unwrap().connects() < 2 {}
     assert_eq!(
@@ -294,12 +294,11 @@ async fn dropping_it_ends_it() {
     assert_eq!(Raw::new(robot).recv().await, None);
 }
 
-/// What all this is for: after a restart of the command connection, the robot still knows whose the
-/// data connection is.
+/// The purpose of all this: after a new command connection, the robot can still assign the data connection to its app.
 #[fc_test::test]
 async fn the_robot_knows_whose_it_is_again() {
     let robot = Robot::start(loopback(), service).await;
-    // The ports of before may be somebody else's when the robot has started again.
+    // After a restart of the robot, another app may have the former ports.
     let ports = Arc::new(Mutex::new([robot.command, robot.data]));
     let dial = |port: usize| {
         let ports = Arc::clone(&ports);

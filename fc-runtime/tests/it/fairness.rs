@@ -1,5 +1,5 @@
-//! What one connection may take from the others: turns, large frames, floods; and how a burst is
-//! answered.
+//! Limits on the time that one connection may take from others: turns, large frames, floods; and the responses to a
+//! burst.
 
 use crate::common::net::{Raw, Robot, loopback, nowhere, service};
 use crate::common::{Done, Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
@@ -362,7 +362,7 @@ async fn a_long_answer_leaves_the_others_their_turns() {
     assert!(in_one_turn < 300_000, "{in_one_turn} bytes in one turn");
 }
 
-/// Both sides work at the same time, and no answer has a write of its own.
+/// Both sides work at the same time, and several responses share a write.
 #[fc_test::test]
 async fn answers_to_a_burst_leave_in_slices() {
     let robot = Robot::start(loopback(), service).await;

@@ -35,7 +35,7 @@ fn way(id: u32) -> fc_runtime::FrameId {
     report(UnderWay::CODE, FIRST + id)
 }
 
-/// What comes next. Only a test that fails waits for so long.
+/// Returns the next event. Only a failing test waits for so long.
 async fn next(
     following: &mut Following<Toy, Go, UnderWay>,
 ) -> Option<Result<Followed<UnderWay>, FollowError>> {
@@ -149,7 +149,7 @@ async fn a_lost_connection_is_told_and_the_process_goes_on_with_the_next() {
     send(&mut robot, 2, &text("rolling")).await;
     // As if its acknowledgement had been lost.
     send(&mut robot, 2, &text("rolling")).await;
-    // All of this has come before the app looks, and is told in its order all the same.
+    // All of this arrives before the app receives, and is delivered in order.
     assert_eq!(next_step(&mut following).await, Step::Ready);
     let lost = next(&mut following).await;
     assert!(
@@ -181,7 +181,7 @@ async fn a_failure_ends_it() {
     assert_eq!(next(&mut following).await, Some(Ok(failed)));
     assert_eq!(next(&mut following).await, None);
 
-    // Said beside the state, which stays what it was.
+    // Reported with an unchanged state.
     let (_app, mut robot, mut following) = followed(ClientConfig::new()).await;
     send(&mut robot, 1, r#"{"step":"rolling","trouble":0}"#).await;
     send(&mut robot, 2, r#"{"step":"rolling","trouble":1}"#).await;
@@ -199,7 +199,7 @@ async fn a_failure_ends_it() {
 #[fc_test::test]
 async fn what_comes_out_of_order_is_handed_on_and_counted() {
     let (app, mut robot, mut following) = followed(ClientConfig::new()).await;
-    // Not by the list: from ready to there, which ends it; before that, what is no change, what nobody knows.
+    // Not in the list: from ready to there, which ends the process. Before that: no change, and an unknown state.
     for (id, (said, counted)) in (1..).zip([
         ("rolling", 0),
         ("rolling", 0),
@@ -215,7 +215,7 @@ async fn what_comes_out_of_order_is_handed_on_and_counted() {
     assert_eq!(next(&mut following).await, None);
 }
 
-/// Who does not read misses what others take, and is told where.
+/// A follower that does not receive misses reports that others take, and gets their number.
 #[fc_test::test]
 async fn what_has_been_missed_is_told_in_its_place() {
     let limits = Limits {
@@ -236,7 +236,7 @@ async fn what_has_been_missed_is_told_in_its_place() {
     assert_eq!(app.counters().reports_missed, 3);
 }
 
-/// A queue of its own: full, it leaves reports to be repeated, and dropped, it takes no more.
+/// The queue of a follower: a full one leaves reports to be repeated, and a dropped one takes no more.
 #[fc_test::test]
 async fn nothing_is_acknowledged_that_nobody_follows() {
     let limits = Limits {
@@ -255,7 +255,7 @@ async fn nothing_is_acknowledged_that_nobody_follows() {
     // Of another code, which is not followed, although there is room.
     assert_eq!(next_step(&mut following).await, Step::Rolling);
     refused(&mut robot, report(Moved::CODE, 9), r#"{"metres":1}"#, 2).await;
-    // Nor what comes after the end, whether it is dropped or not.
+    // Reports after the end are not followed either, whether the follower is dropped or not.
     send(&mut robot, 3, &text("there")).await;
     assert_eq!(next_step(&mut following).await, Step::There);
     refused(&mut robot, way(4), &text("ready"), 3).await;
@@ -291,13 +291,13 @@ async fn a_connection_that_is_closed_ends_it_with_an_error() {
     assert_eq!(next(&mut following).await, Some(Err(closed)));
     assert_eq!(next(&mut following).await, None);
 
-    // And who waits is woken.
+    // A waiting follower is woken.
     let (_app, robot, following) = followed(ClientConfig::new()).await;
     let (all, ()) = tokio::join!(following.collect::<Vec<_>>(), async { drop(robot) });
     assert!(matches!(all[..], [Err(FollowError::Closed(_))]), "{all:?}");
 }
 
-/// What has not begun is not followed, and leaves no queue behind.
+/// A call that is never polled is not followed, and leaves no queue behind.
 #[fc_test::test]
 async fn a_call_that_is_refused_is_not_followed() {
     let robot = Robot::start(loopback(), service).await;
@@ -313,7 +313,7 @@ async fn a_call_that_is_refused_is_not_followed() {
     push.abort();
 }
 
-/// A report without states is followed until somebody stops.
+/// A report without states is followed until the follower is dropped.
 #[fc_test::test]
 async fn without_states_nothing_is_the_end() {
     let robot = Robot::start(loopback(), service).await;

@@ -8,7 +8,7 @@ use proptest::prelude::{Strategy, any, prop_oneof, proptest};
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-/// What is left of a frame when its decoder goes on.
+/// The rest of a frame after its decoder continues.
 type Owned = (FrameId, Vec<u8>);
 
 fn drain(decoder: &mut Decoder<Toy>, frames: &mut Vec<Result<Owned, FrameError>>) {
@@ -452,7 +452,7 @@ proptest! {
         let mut decoder = Decoder::<Toy>::new();
         decoder.push(&bytes);
         if let Ok(Some(frame)) = decoder.next() {
-            // What no digest covers may pass: the rest of the header.
+            // Bytes without a digest may be accepted: the rest of the header.
             assert!(at < ToyHeader::LEN);
             assert_eq!(frame.body(), body);
         }

@@ -1,4 +1,4 @@
-//! The guides state the runtime's own defaults as they are, and name every end that a call can have.
+//! The guides contain the defaults of the runtime, and the name of every end of a call.
 
 use fc_runtime::{Backoff, ClientConfig, ServerConfig};
 use std::fs;
@@ -34,7 +34,7 @@ fn stated(cell: &str) -> Option<String> {
         .unwrap_or(cell.len());
     let (number, rest) = cell.split_at(digits);
     let number = number.parse::<usize>().ok()?;
-    // Numbers above a thousand have a comma in them, and are what only a reader compares.
+    // Numbers above a thousand contain a comma, so only a reader compares them.
     let unit = rest.strip_prefix(' ').map_or("", |rest| {
         let end = rest.find(|c: char| !c.is_ascii_alphabetic() && c != '/');
         &rest[..end.unwrap_or(rest.len())]

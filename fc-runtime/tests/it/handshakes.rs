@@ -102,7 +102,7 @@ async fn one_that_fails_is_logged_with_the_reason() {
     assert_eq!(robot.handle.counters().handshakes_failed, 2);
 }
 
-/// Those who begin handshakes and end none keep nobody out, and nothing of them stays behind.
+/// Unfinished handshakes do not keep others out, and leave nothing behind.
 #[fc_test::test(start_paused = true)]
 async fn it_gives_way_to_others_at_once() {
     let _alone = alone();

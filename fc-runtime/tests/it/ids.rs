@@ -22,7 +22,7 @@ fn session(in_flight: usize, first_id: u32) -> Session<Short, u32> {
 #[fc_test::test]
 fn ids_begin_again_behind_the_largest_of_the_header() {
     let now = Instant::now();
-    // Of a first id that is larger, the low bits count.
+    // Only the low bits of a larger first id count.
     let mut session = session(4, 0x0001_FFFE);
     let ids = [0xFFFE, 0xFFFF, 0, 1];
     for (token, id) in (0..).zip(ids) {

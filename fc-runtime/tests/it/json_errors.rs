@@ -1,4 +1,4 @@
-//! Every fault has its name, and says where it is.
+//! Every error has its name and position.
 
 use fc_derive::{Message, OneOf, OpenEnum};
 use fc_runtime::json::{BodyErrorKind, MAX_DEPTH, decode};
@@ -256,7 +256,7 @@ const FAULTS: &[(&str, &str, &str, &str)] = &[
         r"\ud800",
     ),
     (r#"{"data":{"name":"\ud800"}"#, "bad_json", "data", ""),
-    // Whatever else is wrong, a text that is no JSON is that.
+    // A text that is not JSON has that error, whatever else is wrong.
     (r#"{"data":{"id":"1"}"#, "bad_json", "data", ""),
     (r#"{"data":{"id":256,}}"#, "bad_json", "data", "}}"),
     ("[1", "bad_json", "[0]", ""),

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-/// Unknown keys beside a known one.
+/// Unknown keys next to a known one.
 #[derive(Clone, Debug, PartialEq, fc_derive::Message)]
 struct Known {
     a: Option<Json>,
@@ -31,7 +31,7 @@ fn check(text: &str) -> Result<(), TestCaseError> {
         _ => prop_assert!(false, "{text:?}: {ours:?}, but serde_json: {theirs:?}"),
     }
 
-    // What nobody looks into.
+    // Values that are not read.
     let ours = Json::new(text);
     let theirs = serde_json::from_str::<&RawValue>(text);
     match (&ours, &theirs) {
@@ -127,7 +127,7 @@ fn unknown_keys_come_out_as_they_came() {
     assert_eq!(spelled, known);
 }
 
-/// What nobody reads is passed on as it came, whatever its readers would say.
+/// Unread values are passed on unchanged, even invalid ones.
 #[fc_test::test]
 fn what_nobody_reads_stays_as_it_is() {
     for text in [
@@ -170,7 +170,7 @@ const ACCEPTED: &[&str] = &[
     "1e-999",
     "123456789012345678901234567890",
 ];
-/// No JSON.
+/// Texts that are not JSON.
 const REFUSED: &[&str] = &[
     "",
     " ",
@@ -243,7 +243,7 @@ fn the_corners_of_the_grammar() {
         );
         assert_eq!(Json::new(text).unwrap_err().name(), "bad_json", "{text}");
     }
-    // Half a surrogate pair is no text, but may stand where nobody looks.
+    // Half of a surrogate pair is not text, but is allowed in unread values.
     for text in [
         "\"\\ud800\"",
         "\"\\udc00\\ud800\"",

@@ -286,7 +286,7 @@ fn an_integer_may_be_written_with_a_fraction_or_an_exponent() {
     judged_by_all(&format!("0.{zeros}7e70001"), Some(7));
     judged_by_all(&format!("7{zeros}.5"), None);
     judged_by_all(&format!("7{zeros}e0"), Some(i128::MAX));
-    // What is no JSON is that first.
+    // A text that is not JSON has that error first.
     for number in ["1.", "1.e2", "1e", "1e+", ".0", "01.0", "1.0.0"] {
         assert_eq!(name::<i64>(number), "bad_json", "{number}");
     }

@@ -10,7 +10,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 
-/// How long `from` has yet to hear nothing of `to` before its kernel asks; `None` if it does not.
+/// Returns the silence of `to` after which the kernel of `from` probes, or `None` if it does not.
 fn asks_within(from: SocketAddr, to: SocketAddr) -> Option<Duration> {
     const KEEPALIVE: &str = "02";
     const HUNDREDTHS: u64 = 10;
@@ -29,7 +29,7 @@ fn asks_within(from: SocketAddr, to: SocketAddr) -> Option<Duration> {
 const THIRTY: Duration = Duration::from_secs(30);
 const HOUR: Duration = Duration::from_secs(60 * 60);
 
-/// What the kernel has to do by default, with an hour, and with nothing set.
+/// Keepalive by default, with an hour, and off.
 const WANTED: [Option<Duration>; 3] = [Some(THIRTY), Some(HOUR), None];
 
 fn check(asks: Option<Duration>, wanted: Option<Duration>) {

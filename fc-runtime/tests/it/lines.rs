@@ -1,5 +1,4 @@
-//! What a person finds in the log at the level INFO: one line for each thing that happens to a
-//! connection, and no flood.
+//! Log lines at level INFO: one line for each event of a connection, and no flood.
 
 use crate::common::log::Log;
 use crate::common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
@@ -158,7 +157,7 @@ fn damaged(id: fc_runtime::FrameId) -> Vec<u8> {
     bytes
 }
 
-/// Says how often what came too often to be logged.
+/// Contains the number of suppressed lines.
 fn held(lines: &[String], times: usize) {
     assert_eq!(lines.len(), LINES + 1, "{lines:#?}");
     has(&lines[LINES], &[&format!("held={}", times - LINES)]);
@@ -252,7 +251,7 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
     until(|| robot.handle.counters().bad_frames >= 100).await;
     assert_eq!(log.with("bad_digest").len(), LINES);
     assert_eq!(log.with("refused").len(), LINES);
-    // Another connection has lines of its own.
+    // Another connection has its own limit.
     other.send(&damaged(command(Echo::CODE, 1))).await;
     until(|| robot.handle.counters().bad_frames >= 101).await;
     assert_eq!(log.with("bad_digest").len(), LINES + 1);
@@ -292,7 +291,7 @@ async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
     held(&log.with("ended"), 50);
 }
 
-/// A robot that goes to and fro is no flood, and the line says how many it stands for.
+/// Frequent state changes do not flood the log, and the line contains their number.
 #[fc_test::test(start_paused = true)]
 async fn reports_out_of_order_are_thinned() {
     let log = Log::listen(Level::INFO);

@@ -1,4 +1,4 @@
-//! What is logged, and what never is.
+//! Log contents, and data that must never be logged.
 
 use crate::common::net::{Robot, app_of_raw, loopback, service};
 use crate::common::{Echo, Go, Moved, answer_to, report};

@@ -1,4 +1,4 @@
-//! A caller that is alone writes to the socket itself, and nobody notices but by the time it takes.
+//! A single caller writes to the socket itself, which is noticeable only by its speed.
 
 use crate::common::net::{Raw, app_of_raw};
 use crate::common::{Echo, Moved, Toy, answer_to, report, until};
@@ -92,8 +92,8 @@ async fn the_first_of_many_with_answers_is_left_to_the_driver() {
     assert!(robot.recv().await.is_some());
 }
 
-/// What the socket does not take at once, the driver sends: the bytes stay in order, and so do those of
-/// a call that comes meanwhile.
+/// The driver sends the bytes that the socket does not take at once. They stay in order, also with those of a later
+/// call.
 #[fc_test::test]
 async fn a_request_that_the_socket_takes_in_part_arrives_whole() {
     let (app, robot) = answering(16);
@@ -108,8 +108,7 @@ async fn a_request_that_the_socket_takes_in_part_arrives_whole() {
     robot.await.unwrap();
 }
 
-/// Caller and driver both have something to write, on threads of their own, and the socket takes little at
-/// a time.
+/// Caller and driver write from their own threads, and the socket takes little at a time.
 #[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
 async fn callers_and_the_driver_write_in_turns() {
     let (app, robot) = answering(40);
@@ -192,7 +191,7 @@ impl AsyncWrite for Liar {
     }
 }
 
-/// A motion that has left is not sent once more because its caller could not be told so.
+/// A sent motion is not sent again because its caller could not be told.
 #[fc_test::test]
 async fn after_an_error_nothing_is_written_again() {
     for is_closed in [false, true] {
@@ -233,7 +232,7 @@ async fn a_lone_call_ends_at_its_own_deadline() {
         let error = app.call_with(&request, timeout(seconds)).await.unwrap_err();
         assert_eq!(error, CallError::Timeout);
         assert_eq!(at.elapsed().as_secs(), seconds);
-        // The one that nobody has answered.
+        // The unanswered call.
         robot.recv().await.unwrap();
         answered(&app, &mut robot, "between").await;
         sleep(Duration::from_secs(7)).await;

@@ -4,7 +4,7 @@
 use crate::common::{Toy, ToyHeader, command, frame};
 use fc_runtime::{Decoder, FrameError, FrameId, Header};
 
-/// What a stream comes to when it arrives in pieces of this length.
+/// The result of a stream that arrives in pieces of this length.
 fn outcomes(
     decoder: &mut Decoder<Toy>,
     stream: &[u8],
@@ -20,7 +20,7 @@ fn outcomes(
     outcomes
 }
 
-/// Bodies of which no two pieces are alike, and no two bodies.
+/// Bodies without equal pieces, all different.
 fn body(id: u32, length: usize) -> Vec<u8> {
     (id << 24..)
         .flat_map(u32::to_le_bytes)
@@ -66,7 +66,7 @@ fn frame_after_frame_is_read() {
     }
 }
 
-/// What is refused without its digest being looked at leaves nothing behind for the next.
+/// A frame refused without a digest check leaves no state behind for the next one.
 #[fc_test::test]
 fn a_refused_frame_leaves_no_digest_behind() {
     for piece in PIECES {
@@ -85,7 +85,7 @@ fn a_refused_frame_leaves_no_digest_behind() {
     }
 }
 
-/// A search takes up a place that was begun with once more.
+/// A search may return to an earlier position.
 #[fc_test::test]
 fn a_search_digests_each_candidate_for_itself() {
     for piece in PIECES {

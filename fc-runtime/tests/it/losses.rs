@@ -17,7 +17,7 @@ const AT_ONCE: Backoff = Backoff {
     attempts: Some(3),
 };
 
-/// Nobody knows what it does.
+/// Its effect is unknown.
 #[derive(Clone, Debug, PartialEq, Message, Command)]
 #[fc(code = 0x0301, name = "probe", effect = "unknown", response = Done)]
 struct Probe {}
@@ -144,7 +144,7 @@ async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
     drop(robot);
     let mut robot = accept(&listener).await;
     push(&mut robot, 1).await;
-    // The same id for another report: the robot has started anew.
+    // The same id for another report after a restart of the robot.
     drop(robot);
     let mut robot = accept(&listener).await;
     push(&mut robot, 2).await;
@@ -167,8 +167,8 @@ async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
         repeat: Some(false),
         timeout: None,
     };
-    // The robot does not read: the first request fills the way to it, and the others stay with the
-    // app, where they are waiting to be sent when the connection is lost.
+    // The robot does not read: the first request fills the connection, and the others wait in the app until the
+    // connection is lost.
     let (first, second, go) = (large(), large(), Go { metres: 1 });
     let turns = async {
         for _ in 0..100 {

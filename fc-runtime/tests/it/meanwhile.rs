@@ -1,4 +1,4 @@
-//! While one encodes what is large, nobody else waits for the connection.
+//! While one caller encodes a large body, no other waits for the connection.
 
 use crate::common::net::{Robot, app_of_raw, loopback};
 use crate::common::{Done, Moved, Toy};
@@ -14,11 +14,11 @@ use std::task::{Context, Waker};
 use std::time::Duration;
 
 thread_local! {
-    /// What is tried while a text of this thread is being encoded.
+    /// The attempt made while a text of this thread is being encoded.
     static MEANWHILE: RefCell<Option<Box<dyn FnOnce() + Send>>> = RefCell::default();
 }
 
-/// A value whose encoding goes on once somebody else has had his turn.
+/// A value whose encoding continues after another caller has run.
 #[derive(Clone, Debug, PartialEq)]
 struct Slow;
 
@@ -71,7 +71,7 @@ async fn callers_do_not_wait_for_a_callers_encoding() {
         let mut cx = Context::from_waker(Waker::noop());
         assert!(call.as_mut().poll(&mut cx).is_pending());
         assert_eq!(other.in_flight(), 1);
-        // It is on its way; nobody waits for its answer.
+        // It has been sent; no caller waits for its response.
     })));
     let call = app.call(&SlowCall { value: Slow });
     let calling = async {

@@ -1,4 +1,4 @@
-//! What a recorder of metrics is told is what the counters say.
+//! A recorder of metrics gets the values of the counters.
 
 use crate::common::net::{Raw, Robot, app_of_raw, loopback, service};
 use crate::common::{Echo, EchoReply, Go, Moved, Toy, command, until};
@@ -27,7 +27,7 @@ impl Recorder {
         }
     }
 
-    /// The value of a series, written as it is shown: `name{label="value"}`.
+    /// Returns the value of a series, named as displayed: `name{label="value"}`.
     fn value(&self, series: &str) -> f64 {
         let shown = self.handle.render();
         let value = shown
@@ -139,7 +139,7 @@ async fn metrics_are_the_counters() {
     let handled = "fc_server_handler_duration_seconds_count{operation=\"echo\"}";
     assert_eq!(recorder.value(handled), 4.0);
 
-    // An app's driver tells what has been counted when it is woken next.
+    // An app's driver records the counters when it is woken next.
     until(|| recorder.value("fc_client_reports_total") > 0.0).await;
     assert_eq!(recorder.value("fc_client_connects_total"), 1.0);
     for (name, value) in fields(&app.counters()) {

@@ -1,4 +1,4 @@
-//! What a user's own subscriber and the counters tell, and what they never tell.
+//! Contents of a user's subscriber and of the counters, and data that they must never contain.
 
 use crate::common::net::{Robot, loopback, service};
 use crate::common::{Echo, EchoReply, Go, Moved, Toy, command, frame, report, until};
@@ -14,8 +14,8 @@ use tracing::{Event, Metadata, Subscriber};
 
 const SECRET: &str = "hunter2";
 
-/// One test at a time: a span that is first met where nobody listens, while another test begins to,
-/// may stay off for both.
+/// One test at a time: a span that is first created without a subscriber, while another test starts to listen, may stay
+/// disabled for both.
 static ALONE: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
 
 /// Writes down all it is told.
@@ -71,7 +71,7 @@ enum Closed {
     Open,
 }
 
-/// Takes what must not be told.
+/// Collects data that must not be logged.
 #[derive(Clone, PartialEq, Message, Command, RedactedDebug)]
 #[fc(code = 0x0301, name = "log_in", effect = "config", response = EchoReply)]
 struct LogIn {
@@ -270,7 +270,7 @@ async fn counters_agree_on_both_sides() {
     assert_eq!((none.name(), app.counters()), ("invalid_request", client));
 }
 
-/// What the promise says of `{:?}`: a message shows its values, except what is marked.
+/// The promise about `{:?}`: a message shows its values except sensitive ones.
 #[fc_test::test]
 fn a_message_shows_all_but_what_is_sensitive() {
     let shown = format!("{:?}", log_in(SECRET));

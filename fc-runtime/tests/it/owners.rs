@@ -49,7 +49,7 @@ async fn text(data: &mut App) -> String {
     data.1.recv().await.unwrap().1
 }
 
-/// Nothing but this has come, on any of these connections.
+/// Only this has arrived on any of these connections.
 async fn only(robot: &Robot, connections: &mut [&mut App]) {
     let sent = robot.handle.send_stream(Audience::All, 1, 2, b"all").await;
     assert_eq!(sent, Ok(connections.len()));
@@ -99,7 +99,7 @@ async fn what_an_app_has_left_behind_gets_nothing_that_is_for_the_next() {
 #[fc_test::test]
 async fn an_app_alone_at_its_address_gets_its_own_on_all_its_connections() {
     let robot = Robot::start(loopback(), service).await;
-    // The order does not matter as long as it is alone.
+    // The order does not matter while the app is alone.
     let mut early = data(&robot, 1);
     let one = app(&robot, 1);
     let mut late = data(&robot, 1);
@@ -117,7 +117,7 @@ async fn an_app_alone_at_its_address_gets_its_own_on_all_its_connections() {
     only(&robot, &mut [&mut early, &mut late, &mut others]).await;
 }
 
-/// How apps that share an address are answered all the same: on the connection that asked.
+/// Apps that share an address are answered on the connection of the request.
 #[fc_test::test]
 async fn a_frame_names_the_connection_to_answer_on() {
     let robot = Robot::start(loopback(), service).await;
@@ -136,7 +136,7 @@ async fn a_frame_names_the_connection_to_answer_on() {
     only(&robot, &mut [&mut asks, &mut other]).await;
 }
 
-/// Over sockets, where the robot accepts in any order what has connected meanwhile.
+/// Over sockets, where the robot accepts waiting connections in any order.
 #[fc_test::test]
 async fn over_sockets_a_data_connection_does_not_overtake_its_command_connection() {
     for _ in 0..20 {
@@ -151,7 +151,7 @@ async fn over_sockets_a_data_connection_does_not_overtake_its_command_connection
             .unwrap();
         let _data = second.data();
         while robot.handle.counters().data_connections == 0 {
-            // Never is the other's connection taken for that of the first.
+            // The connection of one app is never taken for that of another.
             let sent = send(&robot, id, "?").await;
             assert!(matches!(
                 sent,

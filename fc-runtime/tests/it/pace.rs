@@ -1,4 +1,4 @@
-//! Work that is of no use to anybody is paid for by waiting; nobody else waits.
+//! Useless work is paid for by waiting, and other connections do not wait.
 
 use crate::common::net::{Raw, Robot, loopback, service};
 use crate::common::{Echo, Toy, answer_to, command, frame};
@@ -42,7 +42,7 @@ fn unusable() -> [(&'static str, Vec<u8>, bool); 5] {
     ]
 }
 
-/// How many milliseconds it takes until the last of so many frames is handled.
+/// Returns the milliseconds until the last of these frames is handled.
 async fn handled(app: &mut Raw<DuplexStream>, bad: &[u8], count: usize, answered: bool) -> u128 {
     let start = Instant::now();
     for _ in 0..count {
@@ -76,7 +76,7 @@ async fn a_frame_that_cannot_be_used_costs_a_millisecond_after_the_first_256() {
             let start = Instant::now();
             assert!(other.call(&echo()).await.is_ok());
             assert_eq!(start.elapsed().as_millis(), 0);
-            // What has been paid for is free again.
+            // Paid penalties are free again.
             advance(Duration::from_millis(100)).await;
             assert_eq!(handled(&mut app, &bad, 90, answered).await, 0, "{what}");
         }
@@ -135,7 +135,7 @@ async fn what_was_not_sent_but_decompressed_is_paid_for_by_waiting() {
     for _ in 0..3 {
         assert_eq!(app.result().await.1, 73);
     }
-    // 8 MiB of a pace of 128 MiB each second, twice; the others are not kept waiting.
+    // Twice 8 MiB at a rate of 128 MiB per second. Other connections do not wait.
     let waited = start.elapsed().as_millis();
     assert!((120..=130).contains(&waited), "{waited}");
     let other = robot.pipe(ClientConfig::new());

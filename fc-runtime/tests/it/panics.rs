@@ -1,4 +1,4 @@
-//! A handler's panic is answered, counted and logged, and costs nobody else anything.
+//! A panic of a handler is answered, counted and logged, and affects no other request.
 
 use crate::common::log::{Log, alone};
 use crate::common::net::{Robot, loopback, service};
@@ -111,7 +111,7 @@ async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
         };
         assert_eq!(refusal.code, 71, "{place}");
         assert!(!refusal.text.contains(SECRET), "{place}: {refusal}");
-        // What is answered is not sent again, though it only reads.
+        // An answered request is not sent again, even if it only reads.
         assert_eq!(begun.load(Ordering::Relaxed), 1, "{place}");
 
         permits.add_permits(1);

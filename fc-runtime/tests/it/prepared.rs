@@ -112,7 +112,7 @@ async fn one_that_fits_into_no_frame_is_refused() {
     let app = robot.connect().await;
     let error = app.call(&asking()).await.unwrap_err();
     assert!(matches!(error, CallError::Refused(refusal) if refusal.code == 71));
-    // And nothing of it has been sent.
+    // No byte of it was sent.
     let done = app.call(&Go { metres: 1 }).await.unwrap();
     assert_eq!(done, Done {});
 }

@@ -22,7 +22,7 @@ fn read(raw: &RawReport) -> i32 {
     raw.read::<Toy, Moved>().unwrap().metres
 }
 
-/// Whether no report waits.
+/// Returns `true` if no report waits.
 async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
     timeout(Duration::from_millis(1), reports.recv())
         .await
@@ -209,8 +209,8 @@ async fn a_burst_is_acknowledged_to_its_last() {
     }
 }
 
-/// Neither before the first receiver nor after the last one: the robot is not told that a report has
-/// arrived which nobody can get.
+/// Without a receiver, reports are not acknowledged: the robot must not be told that an undeliverable report has
+/// arrived.
 #[fc_test::test(start_paused = true)]
 async fn what_nobody_takes_is_not_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
@@ -460,7 +460,7 @@ async fn what_is_no_report_is_refused() {
         let expected = if body.contains("metres") { 7 } else { 73 };
         assert_eq!(robot.result().await, (answer_to(id), expected), "{body}");
     }
-    // What nobody knows may be anything.
+    // Reports with unknown codes may have any content.
     robot.send_frame(report(0x0B99, 9), "{}").await;
     assert_eq!(robot.result().await.1, 7);
     assert_eq!(
@@ -475,7 +475,7 @@ fn read_metres(raw: &RawReport) -> i32 {
     raw.read::<Toy, Moved>().unwrap().metres
 }
 
-/// What is nested as deep as this app allows is readable, also beyond the protocol's default.
+/// Nesting that this app allows is readable, also beyond the protocol's default.
 #[fc_test::test]
 async fn a_report_that_is_acknowledged_reads() {
     for (depth, expected) in [(LIMITS.json_depth, 73), (LIMITS.json_depth + 9, 7)] {
@@ -498,7 +498,7 @@ async fn a_report_that_is_acknowledged_reads() {
     }
 }
 
-/// Found by the schedules of `network`: whoever took reports had seen the end already.
+/// Found by the schedules of `network`: the receivers had seen the end already.
 #[fc_test::test]
 async fn what_comes_after_the_end_is_not_acknowledged() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());

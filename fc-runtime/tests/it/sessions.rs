@@ -1,5 +1,4 @@
-//! Requests in flight, whatever happens to them in whatever order. What a session must do in which situation is in
-//! `conformance/sessions`.
+//! Random events for requests in flight. `conformance/sessions` defines the required behaviour in each situation.
 
 use crate::common::{LIMITS, Toy, answer_to};
 use fc_runtime::{AckPolicy, Busy, Due, FrameId, Incoming, Limits, Protocol, Session};
@@ -42,7 +41,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     vec(step, 0..400)
 }
 
-/// What is known of every request ever opened.
+/// The history of every request.
 struct Model {
     opened: Vec<FrameId>,
     open: HashMap<u32, (FrameId, Instant, u32, Duration)>,

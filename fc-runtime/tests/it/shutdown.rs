@@ -1,5 +1,5 @@
-//! The end of a server: within the grace, whatever apps and handlers do meanwhile, and every call
-//! and every report ends with it.
+//! The shutdown of a server: it ends within the grace period, whatever apps and handlers do, and every call and report
+//! ends with it.
 
 use crate::common::net::{Robot, loopback, nowhere, service};
 use crate::common::{Done, Echo, EchoReply, Go, LIMITS, Moved, Toy, command, frame, until};
@@ -22,7 +22,7 @@ use tokio::time::{Instant, timeout};
 const SECOND: Duration = Duration::from_secs(1);
 const LONG: Duration = Duration::from_secs(1000);
 
-/// So long that an app that does not read blocks the robot's side.
+/// A body that blocks the robot if the app does not read.
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(code = 0x0B03, name = "picture")]
 struct Picture {
@@ -68,7 +68,7 @@ fn call(app: &Connection<Toy>) -> JoinHandle<Result<Done, CallError>> {
     tokio::spawn(async move { app.call(&Go { metres: 1 }).await })
 }
 
-/// What is going on when a server is ended: held, and neither polled nor dropped.
+/// Activity during the shutdown of a server. It is held, and neither polled nor dropped.
 #[derive(Default)]
 struct Scene {
     held: Vec<Box<dyn Any>>,
@@ -76,7 +76,7 @@ struct Scene {
     calls: Vec<JoinHandle<Result<Done, CallError>>>,
 }
 
-/// A robot whose handler of [`Go`] never ends, and what it has been told.
+/// A robot whose handler of [`Go`] never ends, and the events it has seen.
 async fn stubborn() -> Robot {
     let config = loopback()
         .handler_timeout(LONG * 1000)
@@ -98,7 +98,7 @@ fn patient() -> ClientConfig {
     ClientConfig::new().call_timeout(LONG * 1000)
 }
 
-/// Streams of reports that nobody polls, more reports than fit into them, and an app that stays.
+/// Unpolled report streams, more reports than fit into them, and an app that stays.
 async fn streams_unpolled(robot: &Robot, scene: &mut Scene) {
     let limits = Limits {
         queued_reports: 2,
@@ -150,7 +150,7 @@ async fn half_a_frame(robot: &Robot, scene: &mut Scene) {
     scene.held.push(Box::new(app));
 }
 
-/// Data connections: one idle, one that does not read, one whose frames nobody takes.
+/// Data connections: one idle, one that does not read, one whose frames are not taken.
 async fn data(robot: &Robot, scene: &mut Scene) {
     let idle = robot.raw_data();
     let streams = robot.handle.streams();
@@ -277,7 +277,7 @@ async fn what_is_being_handled_is_answered() {
         let mut shutdown = pin!(robot.handle.shutdown(LONG));
         begin(shutdown.as_mut()).await;
         settle().await;
-        // Whoever comes now is let in by the system, and by nobody else.
+        // The system accepts new connections, but the server does not.
         let late = Connection::<Toy>::connect(robot.config.clone().reconnect(None));
         let late = late.await.unwrap();
         let lost = tokio::spawn(async move { late.call(&echo()).await });

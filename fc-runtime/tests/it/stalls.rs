@@ -1,4 +1,4 @@
-//! Robots that claim what they do not send, or do not read, and what the app hears of it.
+//! Robots that announce more than they send, or do not read, and the errors of the app.
 
 use crate::common::net::{Raw, app_of_raw, data_of_raw};
 use crate::common::{self, Echo, Moved, Toy, ToyHeader, answer_to, command, frame, report, until};
@@ -91,7 +91,7 @@ async fn a_frame_that_goes_on_is_waited_for() {
     assert_eq!(end.unwrap().text.len(), 400_000);
 }
 
-/// A length that is wrong swallows what follows; that must not pass for progress.
+/// A wrong length swallows the following responses, which must not count as progress.
 #[fc_test::test(start_paused = true)]
 async fn answers_that_a_wrong_length_swallows_are_no_progress() {
     let config = ClientConfig::new().call_timeout(Duration::from_secs(1));
@@ -149,7 +149,7 @@ async fn a_robot_that_reads_slowly_is_waited_for() {
     }
 }
 
-/// What ends a connection, and what the call that waited is told.
+/// The end of a connection, and the error of the waiting call.
 #[fc_test::test(start_paused = true)]
 async fn the_cause_is_in_the_error() {
     let long = frame(command(1, 1), &[b'x'; 100]);
@@ -185,7 +185,7 @@ async fn the_cause_is_in_the_error() {
     assert_eq!(lost(&heard).await, CallError::Lost(Loss::Closed));
 }
 
-/// What a call ends with when the robot answers it with these bytes and closes.
+/// The result of a call when the robot responds with these bytes and closes.
 async fn lost(bytes: &[u8]) -> CallError {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let request = echo();
@@ -241,7 +241,7 @@ async fn a_data_connection_stalls_too() {
         let mut robot = Raw::new(end);
         robot.send(&bytes[..1000]).await;
         let start = Instant::now();
-        // One who asks again and again does not wait for longer.
+        // A caller that waits again and again does not wait longer.
         let patience = if impatient { STALL / 7 } else { LONG };
         let error = loop {
             if let Ok(received) = timeout(patience, app.recv()).await {

@@ -1,4 +1,4 @@
-//! Whether an app is connected: as a value, as a stream of changes, and before the first connection.
+//! The state of an app's connection: as a value, as a stream of changes, and before the first connection.
 
 use crate::common::log::{Log, alone};
 use crate::common::net::{Raw, app_of_raw};
@@ -83,7 +83,7 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
     assert_eq!(states.recv().await, Some(closed));
     assert_eq!(states.recv().await, None);
     assert_eq!(states.recv().await, None);
-    // There is the second robot, and after it nobody dials any more.
+    // The second robot exists, and then no more attempts are made.
     assert!(dialled.recv().await.is_some());
     assert!(dialled.recv().await.is_none());
     assert_eq!(app.state(), closed);
@@ -91,7 +91,7 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
     let mut late = app.states();
     assert_eq!(late.recv().await, Some(closed));
     assert_eq!(late.recv().await, None);
-    // A `Stream` says the same.
+    // A `Stream` returns the same.
     assert_eq!(app.states().collect::<Vec<_>>().await, [closed]);
 }
 
@@ -303,7 +303,7 @@ async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
     has(&lines[3], &["INFO connected", "connects=1", "failed=7"]);
 }
 
-/// What nobody waits for any more ends, also while it is being made.
+/// A connection without handles ends, even while it is being made.
 #[fc_test::test(start_paused = true)]
 async fn the_last_handle_ends_the_attempts() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! Streams by their code: each receiver has a queue of its own, and what it carries is read as its type.
+//! Streams by code: each receiver has its own queue, and the content is read as its type.
 
 use crate::common::net::{Robot, loopback, service};
 use crate::common::{self, Echo, until};
@@ -25,7 +25,7 @@ fn echo(text: &str) -> Echo {
     Echo { text: text.into() }
 }
 
-/// Bytes come as they are, JSON without an envelope as its type, and each has the id of what it belongs to.
+/// Bytes are received unchanged, JSON without an envelope as its type, and each frame has the id of its request.
 #[fc_test::test]
 async fn each_stream_is_read_as_its_type() {
     let robot = Robot::start(loopback(), service).await;
@@ -52,7 +52,7 @@ async fn each_stream_is_read_as_its_type() {
     assert_eq!(curve.recv().await.unwrap().content, echo("b"));
 }
 
-/// What an app sends is read by the robot as its type.
+/// The robot reads the content of an app's stream as its type.
 #[fc_test::test]
 async fn a_robot_reads_what_an_app_sends() {
     let robot = Robot::start(loopback(), service).await;
@@ -67,7 +67,7 @@ async fn a_robot_reads_what_an_app_sends() {
     assert_eq!(frame.read::<Echo>(allowance), Ok(echo("up")));
 }
 
-/// A receiver that is slow has the last frames, knows how many it has not, and keeps nobody waiting.
+/// A slow receiver gets the last frames and the number of missed ones, and delays no other receiver.
 #[fc_test::test]
 async fn the_oldest_makes_way() {
     let robot = Robot::start(loopback(), service).await;
@@ -90,7 +90,8 @@ async fn the_oldest_makes_way() {
     assert_eq!(last.missed(), 0);
 }
 
-/// Frames of other streams keep no subscriber waiting, and are counted; without subscribers the robot waits for them.
+/// Frames of other streams do not delay subscribers and are counted. Without subscribers the robot waits for the
+/// receiver.
 #[fc_test::test]
 async fn what_nobody_asks_for_keeps_nobody_waiting() {
     let robot = Robot::start(loopback(), service).await;

@@ -65,7 +65,7 @@ impl ToJson for Tree {
     }
 }
 
-/// Whether `serde_json` understands the same, floats to the last bit.
+/// Returns `true` if `serde_json` reads the same value, floats to the last bit.
 pub fn same(tree: &Tree, value: &serde_json::Value) -> bool {
     use serde_json::Value;
     match (tree, value) {

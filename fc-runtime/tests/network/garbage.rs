@@ -1,17 +1,17 @@
-//! Bytes that are no frame, or claim what is not true.
+//! Bytes that are not frames, or frames with false claims.
 
 use super::common::{LIMITS, Toy, ToyHeader, command, frame, report};
 use super::random::Random;
 use fc_runtime::{FrameId, Header, Protocol};
 
-/// A code that nobody has.
+/// An unused code.
 const CODE: u16 = 0x0EEE;
 
-/// What is put between two frames.
+/// Garbage between two frames.
 pub struct Garbage {
     pub what: &'static str,
     pub bytes: Vec<u8>,
-    /// Where the next frame begins is still known.
+    /// The position of the next frame is still known.
     pub in_sync: bool,
 }
 

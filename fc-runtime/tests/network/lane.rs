@@ -11,18 +11,18 @@ use std::task::Waker;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// What one direction takes before it is read, in bytes.
+/// Capacity of one direction, in bytes.
 pub const WINDOW: usize = 16 * 1024;
 
 /// Codes of commands and reports that answers are forged for.
 const CODES: [u16; 3] = [Look::CODE, Drive::CODE, Tick::CODE];
 
-/// What may go wrong on a wire.
+/// Faults of a wire.
 #[derive(Clone, Copy, Debug)]
 pub struct Weather {
     /// Longest delay of a segment, in milliseconds.
     pub delay: u64,
-    /// One in so many frames that may be said twice is; 0 for none.
+    /// Repeats one in this many repeatable frames; 0 for none.
     pub twice: usize,
     /// One in so many answers and reports is held back behind later ones; 0 for none.
     pub swap: usize,
@@ -44,17 +44,16 @@ pub type Old = Arc<Mutex<Vec<Vec<u8>>>>;
 pub struct Lane {
     pub random: Random,
     pub weather: Weather,
-    /// What has been written and is no whole frame yet.
+    /// Written bytes that are not a complete frame yet.
     pub partial: Vec<u8>,
     pub held: Vec<(Option<u32>, Vec<u8>)>,
     pub segments: VecDeque<(Instant, Vec<u8>)>,
     pub bytes: usize,
-    /// How many bytes have been sent and read in all, and after how many of them which answers are
-    /// whole.
+    /// Bytes sent and read in total, and the offsets at which responses are complete.
     pub sent: u64,
     pub read: u64,
     pub answers: VecDeque<(u64, u32)>,
-    /// How much it takes before it is read.
+    /// Capacity before it is read.
     pub window: usize,
     pub last: Instant,
     /// Bytes until it breaks.

@@ -1,5 +1,5 @@
-//! What is owed over one wire: whatever a robot begins to carry out it has to answer, unless something
-//! that it cannot help keeps it from that; and an app must not lose an answer that has come.
+//! Obligations over one wire: a robot must answer every request that it starts, unless the wire prevents it, and an app
+//! must not lose an arrived response.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex};
@@ -13,13 +13,13 @@ pub struct Ledger {
     arrived: HashSet<u32>,
     /// The robot is cut off by then.
     pub cut_off: Option<Instant>,
-    /// What has been done to the app's direction that ends it, if something has.
+    /// The fault that ends the app's direction, if any.
     pub deafened: Option<&'static str>,
-    /// How many were answered after that.
+    /// Number of responses after that.
     pub answered_deaf: u64,
-    /// The same of the robot's direction: what comes after it cannot be told into frames.
+    /// The fault in the robot's direction after which bytes cannot be split into frames.
     pub garbled: bool,
-    /// What must not be.
+    /// Violations.
     pub faults: Vec<String>,
 }
 

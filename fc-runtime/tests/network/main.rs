@@ -1,19 +1,18 @@
-//! Schedules of everything that can go wrong between apps and a robot, each from one seed, over a
-//! simulated network on simulated time; the real client and server at both ends.
+//! Random schedules of faults between apps and a robot, each from one seed. The network and the time are simulated;
+//! client and server are the real ones.
 //!
 //! `CHAOS_SCHEDULES=10000 cargo test -p fc-runtime --release --test network -- --nocapture` runs more
 //! of them; `CHAOS_SEED=…` runs one again and prints what happened. With `--ignored`, the same over
 //! real sockets and in real time.
 //!
-//! That it notices was tried by breaking the engine: acknowledging without remembering, queueing a
-//! report twice, acknowledging what does not fit, knowing reports by their ids alone, taking what is
-//! not acknowledged in time for acknowledged, repeating every command after a loss, carrying out twice,
-//! matching answers without id, code or kind, swapping answers, never timing out, losing calls in
-//! silence, no limit to calls or reports, no cut at the end of the grace; at the robot: dropping what is
-//! unsent when the app ends its direction, after a wrong head or when a frame stalls, forgetting handlers
-//! then, waiting for ever for the rest of a frame, not catching, not answering or not counting a panic;
-//! at the app: dropping answers that came before garbage or before the end, waiting for ever for the rest
-//! of a frame, or for a robot that does not read. Each made it fail.
+//! The test was verified by breaking the engine in each of these ways: acknowledging without remembering, queueing a
+//! report twice, acknowledging invalid reports, identifying reports by id alone, treating missing acknowledgements as
+//! received. Further: repeating every command after a loss, executing twice, matching responses without id, code or
+//! kind, swapping responses, never timing out, losing calls, no limit to calls or reports, no abort after the grace
+//! period. At the robot: dropping unsent data at the end of the app's direction, after a wrong head or a stalled frame,
+//! forgetting handlers then, waiting for ever for the rest of a frame, not catching, answering or counting a panic. At
+//! the app: dropping responses before garbage or before the end, waiting for ever for the rest of a frame or for a
+//! robot that does not read. The test failed for each.
 
 #![allow(
     clippy::unwrap_used,
@@ -110,7 +109,7 @@ struct World {
     slot: Slot,
     sockets: bool,
     robot_ids: Option<u32>,
-    /// Nothing goes wrong any more.
+    /// No more faults.
     calm: Arc<AtomicBool>,
     apps: Vec<Connection<Toy>>,
     /// Apps that have been closed.
@@ -201,7 +200,7 @@ impl World {
         self.apps.push(app);
     }
 
-    /// The robot of the moment.
+    /// The current robot.
     fn handle(&self) -> Option<ServerHandle<Toy>> {
         let slot = self.slot.lock().unwrap();
         slot.as_ref().map(|robot| robot.handle.clone())
@@ -252,7 +251,7 @@ impl World {
         }
     }
 
-    /// Ends the robot while apps go on. Whatever they do, it is over in time.
+    /// Ends the robot while apps continue. It must end in time.
     async fn shut_down(&mut self) {
         let grace = self.random.pick(&[0, 300, 2000]);
         let grace = Duration::from_millis(grace);
@@ -282,7 +281,7 @@ impl World {
         self.start_app(weather, breaks).await;
     }
 
-    /// Nothing more goes wrong: whatever has happened to an app, it gets an answer again.
+    /// Without further faults, every app gets responses again.
     async fn find_calm(&mut self) {
         self.log("all is calm");
         self.calm.store(true, Ordering::Relaxed);
@@ -297,7 +296,7 @@ impl World {
         }
     }
 
-    /// The last of it: every call and every report has to end by itself.
+    /// The end: every call and every report must have ended.
     async fn end(mut self) {
         let ending = async {
             while let Some(ended) = self.calls.join_next().await {
@@ -324,19 +323,19 @@ impl World {
             .await
             .expect("reports end with the connection");
         if !self.sockets {
-            // Whatever is at work still is answered as far as it can be.
+            // Running requests are answered if possible.
             sleep(2 * HANDLER_TIMEOUT).await;
         }
         *self.slot.lock().unwrap() = None;
     }
 }
 
-/// How many schedules to run.
+/// Number of schedules.
 fn schedules() -> u64 {
     number("CHAOS_SCHEDULES").unwrap_or(SCHEDULES)
 }
 
-/// Many times what they take.
+/// Many times their usual duration.
 fn within() -> Duration {
     Duration::from_secs(120)
         + Duration::from_millis(200).saturating_mul(schedules().try_into().unwrap_or(u32::MAX))
@@ -361,7 +360,7 @@ fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
     for (what, count) in &tally {
         println!("{count:>9} {what}");
     }
-    // A network in which nothing goes wrong proves nothing.
+    // A network without faults proves nothing.
     for wanted in [
         "calls answered",
         "calls lost",

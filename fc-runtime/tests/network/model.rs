@@ -1,4 +1,4 @@
-//! What is known of every call and report, and what must hold of it.
+//! The history of every call and report, and the properties that must hold.
 
 use super::wire::Wire;
 use super::world::Course;
@@ -8,32 +8,32 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// What a call was and how it ended.
+/// A call and its end.
 #[derive(Debug, Default)]
 pub struct Call {
     pub effect: &'static str,
     pub repeat: Option<bool>,
-    /// How often the robot has begun to carry it out.
+    /// Number of times the robot started it.
     pub carried_out: u32,
     pub ends: Vec<&'static str>,
 }
 
-/// What is known of everything that happened.
+/// The history of a run.
 #[derive(Default)]
 pub struct Model {
     pub calls: HashMap<u32, Call>,
-    /// How often each report was handed on.
+    /// Number of deliveries of each report.
     pub handed_on: HashMap<u32, u32>,
     pub outcomes: HashMap<u32, &'static str>,
     pub wires: Vec<Wire>,
     pub connects: u64,
-    /// What the weather has done.
+    /// Injected faults.
     pub events: BTreeMap<&'static str, u64>,
-    /// Why apps have lost connections.
+    /// Reasons of losses.
     pub losses: BTreeMap<&'static str, u64>,
-    /// How long apps have waited for an answer once nothing went wrong any more.
+    /// Waiting times of apps after the last fault.
     pub waits: Vec<Option<Duration>>,
-    /// What must not be.
+    /// Violations.
     pub faults: Vec<String>,
     /// All that happened, in order.
     pub log: Vec<String>,
@@ -45,15 +45,15 @@ pub fn lock(model: &Shared) -> MutexGuard<'_, Model> {
     model.lock().unwrap()
 }
 
-/// No app waits longer for an answer once nothing goes wrong any more. TCP needs a minute to notice
-/// what swallows; a robot half a minute for a frame that does not go on, and so does nothing else.
+/// Longest wait of an app after the last fault. TCP needs a minute to detect a swallowing wire. A robot waits half a
+/// minute for a stalled frame, and reads nothing else meanwhile.
 const PATIENCE: Duration = Duration::from_secs(75);
 
-/// What came of a run, in numbers.
+/// Statistics of a run.
 pub type Tally = BTreeMap<&'static str, u64>;
 
 impl Model {
-    /// Where the app of the next wire is said to be: that tells a handler its wire.
+    /// Address of the app of the next wire, by which a handler knows its wire.
     pub fn address_of_next(&self) -> SocketAddr {
         let port = u16::try_from(self.wires.len()).expect("not so many wires");
         SocketAddr::from((Ipv4Addr::LOCALHOST, port))
@@ -77,7 +77,7 @@ impl Model {
         }
     }
 
-    /// Notes what the weather does.
+    /// Notes an injected fault.
     pub fn event(&mut self, what: &'static str) {
         *self.events.entry(what).or_default() += 1;
         self.log.push(what.into());
@@ -214,7 +214,7 @@ impl Model {
     }
 }
 
-/// What a loss is called in the tally.
+/// Returns the name of a loss in the statistics.
 fn lost(why: &'static str) -> &'static str {
     match why {
         "closed_by_robot" | "closed_unheard" => "connections lost: closed by the robot",

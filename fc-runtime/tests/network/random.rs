@@ -19,7 +19,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A source of its own, so that what one part draws does not depend on another's timing.
+    /// Returns another source, so that its numbers do not depend on the timing of other parts.
     pub fn fork(&mut self) -> Self {
         Self(self.next())
     }

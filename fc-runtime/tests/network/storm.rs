@@ -1,4 +1,4 @@
-//! What happens to a wire all at once.
+//! Sudden faults of a wire.
 
 use super::model::{Shared, lock};
 use super::random::Random;

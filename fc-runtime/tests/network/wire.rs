@@ -1,7 +1,6 @@
-//! A TCP connection that does all that one may: it splits and joins, delays, breaks off inside a
-//! frame, ends in one direction alone, or swallows what it is given. Besides, it does what an odd peer
-//! may do: say frames twice, hold them back and swap them, repeat answers of long ago, answer with one
-//! thing wrong, send what is no frame, stop inside one, fall silent, and read nothing.
+//! A simulated TCP connection with all possible faults: it splits and joins, delays, breaks inside a frame, ends in one
+//! direction alone, or swallows bytes. It also simulates odd peers: they repeat, hold back and swap frames, repeat old
+//! responses, change one field of a response, send garbage, stop inside a frame, fall silent, and read nothing.
 
 use super::garbage::{self, Garbage};
 use super::lane::{Lane, Old, WINDOW, Weather};
@@ -16,10 +15,10 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// After how long both ends are told that a direction swallows what they send, as by TCP's keepalive.
+/// Time after which both ends learn that a direction swallows bytes, like keepalive of TCP.
 const KEEPALIVE: Duration = Duration::from_secs(60);
 
-/// Both directions, for whoever makes the weather.
+/// Both directions, for fault injection.
 #[derive(Clone)]
 pub struct Wire {
     /// The app's, the robot's.
@@ -87,7 +86,7 @@ impl Wire {
         }
     }
 
-    /// Swallows what is sent upwards, downwards or both, until TCP notices.
+    /// Swallows bytes upwards, downwards or both ways, until TCP notices.
     pub fn swallow(&self, which: usize) {
         for (index, mut lane) in self.lanes().enumerate() {
             if which == index || which == 2 {
@@ -101,7 +100,7 @@ impl Wire {
         });
     }
 
-    /// Whether both ends are there, and nothing has been done to it that lasts.
+    /// Returns `true` if both ends exist and no permanent fault was injected.
     pub fn is_sound(&self) -> bool {
         self.lanes().all(|lane| {
             let gone = lane.reset || lane.end || lane.reader_gone;
@@ -132,7 +131,7 @@ impl Wire {
         lane.wake();
     }
 
-    /// Puts what is no frame in between two.
+    /// Inserts garbage between two frames.
     pub fn garble(&self, up: bool, random: &mut Random) -> &'static str {
         let Garbage {
             what,
@@ -148,18 +147,18 @@ impl Wire {
         what
     }
 
-    /// Whoever sends in this direction stops inside the next frame and never goes on.
+    /// The sender in this direction stops inside the next frame for ever.
     pub fn stop_inside(&self, up: bool) {
         self.lane(up).stops = true;
     }
 
-    /// Whoever sends in this direction says nothing for so long.
+    /// The sender in this direction is silent for this time.
     pub fn pause(&self, up: bool, time: Duration) {
         let mut lane = self.lane(up);
         lane.last = lane.last.max(Instant::now() + time);
     }
 
-    /// Whoever receives in this direction takes nothing more.
+    /// The receiver in this direction stops reading.
     pub fn fill(&self, up: bool) {
         self.lane(up).window = 0;
     }
@@ -225,7 +224,7 @@ impl AsyncRead for End {
             }
             lane = this.incoming.lock().unwrap();
         }
-        // What has arrived is joined, or given out in bits.
+        // Arrived bytes are joined or split.
         let lane = &mut *lane;
         let mut most = if lane.random.one_in(4) {
             1 + lane.random.below(64)

@@ -1,4 +1,4 @@
-//! Robots and apps, and what they do.
+//! Robots and apps with their behaviour.
 
 use super::common::net::loopback;
 use super::common::{LIMITS, Toy};
@@ -56,7 +56,7 @@ pub struct Tick {
     pub number: u32,
 }
 
-/// What a handler may take.
+/// The course of a handler.
 pub const HANDLER_TIMEOUT: Duration = Duration::from_millis(900);
 
 /// A robot that serves until it is dropped.
@@ -84,7 +84,7 @@ impl Drop for Present {
     }
 }
 
-/// How the handler of a call ends.
+/// The end of a handler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
     Never,
@@ -177,7 +177,7 @@ pub struct Line {
     pub random: Random,
     pub weather: Weather,
     pub breaks: bool,
-    /// Nothing goes wrong any more.
+    /// No more faults.
     pub calm: Arc<AtomicBool>,
     /// Over TCP, and not over a simulated wire.
     pub sockets: bool,
@@ -287,8 +287,7 @@ pub async fn call(app: Connection<Toy>, model: Shared, number: u32, mut random: 
     model.calls.get_mut(&number).expect("a call").ends.push(end);
 }
 
-/// Calls until there is an answer, as somebody does who needs one, and gives the time that it took;
-/// `None` if there is none.
+/// Calls until there is a response, and returns the time it took, or `None` without a response.
 pub async fn insist(
     app: Connection<Toy>,
     model: Shared,
@@ -331,7 +330,7 @@ pub async fn watch(app: Connection<Toy>, model: Shared) {
     }
 }
 
-/// Pushes one report to one app and notes what became of it.
+/// Pushes one report to one app and notes the outcome.
 pub async fn push(handle: ServerHandle<Toy>, to: ConnectionId, model: Shared, number: u32) {
     let outcome = match handle.push(Audience::One(to), &Tick { number }).await {
         Err(error) => error.name(),

@@ -1,5 +1,5 @@
-//! The network between an app and a robot: it can go away for a while, or a robot's end can, without a
-//! word; as TCP has it, those who wait for what does not come are told after a minute.
+//! The network between an app and a robot. It or an end of the robot can vanish silently. As with TCP, both ends learn
+//! after a minute that no data arrives.
 
 use std::io::{Error, ErrorKind, Result};
 use std::pin::Pin;
@@ -9,15 +9,15 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, DuplexStream, ReadBuf, duplex};
 use tokio::time::sleep;
 
-/// How much is on its way in one direction at most, in bytes.
+/// Capacity of one direction, in bytes.
 const WINDOW: usize = 64 * 1024;
-/// After how long of silence both ends are told, as by keepalive at its default.
+/// Silence after which both ends are told, like the default of keepalive.
 const KEEPALIVE: Duration = Duration::from_secs(60);
 
 #[derive(Default)]
 struct State {
     silent: bool,
-    /// How often it has fallen silent.
+    /// Number of outages.
     silences: u32,
     /// The robot's machine knows nothing of the connection any more.
     forgotten: bool,
@@ -59,7 +59,7 @@ impl Cable {
         change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Nothing gets through from now on.
+    /// Blocks all data from now on.
     pub fn fall_silent(&self) {
         let silence = self.change(|state| {
             state.silent = true;
@@ -77,7 +77,7 @@ impl Cable {
         });
     }
 
-    /// What has been sent meanwhile gets through, and all that follows.
+    /// Delivers the held data, and all later data.
     pub fn go_on(&self) {
         self.change(|state| {
             state.silent = false;

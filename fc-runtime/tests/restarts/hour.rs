@@ -23,7 +23,7 @@ use tokio::task::{AbortHandle, JoinSet, yield_now};
 use tokio::time::{Instant, sleep, sleep_until};
 use tracing::Level;
 
-/// What meets who connects.
+/// The state of the machine at the robot's address.
 enum Answering {
     /// The machine is there, and no program.
     Refuses,
@@ -35,9 +35,9 @@ enum Answering {
 
 struct Network {
     answering: Answering,
-    /// Of the app's present connection.
+    /// The app's current connection.
     cable: Option<Cable>,
-    /// What is there again once the network is.
+    /// The state after the network is back.
     away: Option<Answering>,
 }
 
@@ -64,7 +64,7 @@ pub struct Hour {
     log: Log,
     lines: Vec<Line>,
     events: usize,
-    /// How often robot and app have been started.
+    /// Number of starts of robot and app.
     starts: u32,
     network: Arc<Mutex<Network>>,
     known: Shared,
@@ -103,7 +103,7 @@ async fn dial(network: Arc<Mutex<Network>>) -> io::Result<End> {
     Ok(app)
 }
 
-/// What happens.
+/// An event.
 impl Hour {
     pub fn begin() -> Self {
         Self {
@@ -124,7 +124,7 @@ impl Hour {
         }
     }
 
-    /// Says in the log what happens now.
+    /// Writes the current event to the log.
     pub fn event(&mut self, what: &str) {
         self.take_lines();
         self.events += 1;
@@ -258,12 +258,12 @@ impl Hour {
         connections
     }
 
-    /// The robot has nothing more to tell by itself.
+    /// The robot sends no further reports.
     pub fn hush(&self) {
         self.robot.as_ref().expect("a robot").pushing.abort();
     }
 
-    /// Pushes a report, and waits for what becomes of it.
+    /// Pushes a report and waits for its outcome.
     pub async fn push(&self, report: &impl Report) -> AckOutcome {
         let robot = self.robot.as_ref().expect("a robot");
         let mut pushed = robot.handle.push(Audience::All, report).await.unwrap();
@@ -302,13 +302,13 @@ impl Hour {
         app.tasks.abort_all();
     }
 
-    /// Whether the app takes no reports.
+    /// `true` if the app takes no reports.
     pub fn be_slow(&self, slow: bool) {
         self.slow.store(slow, Ordering::Relaxed);
     }
 }
 
-/// What is seen.
+/// Observations.
 impl Hour {
     /// The app has an answer again within so many seconds.
     pub async fn is_served(&self, within: u32) {
@@ -341,7 +341,7 @@ impl Hour {
         (robot.handle.connections().len(), app.connection.in_flight())
     }
 
-    /// What is held in memory, but for what the test itself has written down, in bytes.
+    /// Memory held in bytes, without the notes of the test.
     pub fn held(&mut self) -> usize {
         self.take_lines();
         let texts: usize = self.lines.iter().map(|line| line.text.capacity()).sum();
@@ -349,14 +349,15 @@ impl Hour {
         ALLOCATOR.current_usage() - own
     }
 
-    /// How calls and reports have ended.
+    /// Results of calls and reports.
     pub fn counts(&self) -> String {
         let known = self.known.lock().unwrap();
         let (calls, reports) = (&known.ends, &known.outcomes);
         format!("calls: {calls:?}; reports: {reports:?}")
     }
 
-    /// Nothing was carried out or handed on twice; how many events there were, and all lines.
+    /// Checks that no command was executed twice and no report delivered twice. Returns the number of events and all
+    /// lines.
     pub fn end(mut self) -> (usize, Vec<Line>) {
         self.take_lines();
         let known = self.known.lock().unwrap();

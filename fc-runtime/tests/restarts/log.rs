@@ -1,4 +1,4 @@
-//! The log of the hour, as it is printed and as it is compared.
+//! The log of the hour in printed and in compared form.
 
 use std::fmt;
 use std::time::Duration;

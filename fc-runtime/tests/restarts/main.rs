@@ -2,15 +2,13 @@
 //! it, a network that goes away, wrong versions, a slow app, no room, and a robot that does not come
 //! back.
 //!
-//! Each time the app has to be served again soon, its states have to say what happened, nothing may be
-//! carried out or handed on twice, and in the end nothing may be left. What both log at INFO and above is
-//! compared with `log.txt`: whoever reads it has to understand the hour by it. `cargo test -p fc-runtime
-//! --test restarts -- --nocapture` prints it with the time of each line; `FC_WRITE_LOG=1` writes the file
-//! anew.
+//! After each event the app must be served again soon, and its states must show the event. No command may be executed
+//! twice, no report delivered twice, and at the end no resources may be left. The log of both at INFO and above is
+//! compared with `log.txt`; a reader must understand the hour from it. `cargo test -p fc-runtime --test restarts --
+//! --nocapture` prints it with the time of each line; `FC_WRITE_LOG=1` writes the file again.
 //!
-//! Seen to fail with the engine broken: no line held back, each failed attempt told, motions sent again
-//! after a loss, waits of three times the length, states left out, connections that stay in the robot's
-//! table.
+//! The test failed with each of these changes: no line suppressed, each failed attempt logged, motions repeated after a
+//! loss, waits of three times the length, missing states, connections that stay in the robot's table.
 
 #![allow(
     clippy::unwrap_used,
@@ -49,12 +47,12 @@ use tokio::time::sleep;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// What may be held in memory after all that has happened beyond what was held before, in bytes.
+/// Memory that may remain after all events, in bytes.
 const SLACK: usize = 16 * 1024;
-/// Lines that one event may bring, with all that is repeated in it, both sides together.
+/// Maximum number of lines for one event, with all its repetitions, of both sides.
 const LINES: usize = 10;
 
-/// What another version says in place of [`Moved`](common::Moved).
+/// Another version of [`Moved`](common::Moved).
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(code = 0x0B01, name = "moved")]
 struct Other {

@@ -1,4 +1,4 @@
-//! What the app and the robot say to each other each second, and what is known of it.
+//! The traffic between app and robot, and its history.
 
 use super::common::{Moved, Toy};
 use fc_derive::{Command, Message};
@@ -14,9 +14,9 @@ use tokio::task::JoinSet;
 use tokio::time::{Instant, interval, sleep};
 
 pub const SECOND: Duration = Duration::from_secs(1);
-/// How many calls, or reports, an hour has at most.
+/// Maximum number of calls or reports in an hour.
 const MOST: usize = 5000;
-/// How long the robot moves.
+/// Duration of a motion.
 const MOVING: Duration = Duration::from_millis(400);
 
 /// Asks for something.
@@ -38,7 +38,7 @@ pub struct Seen {
     pub number: u32,
 }
 
-/// What is known of calls and reports, by number. Takes all its memory at once.
+/// The history of calls and reports by number. Reserves all its memory at once.
 pub struct Known {
     pub carried_out: Vec<u8>,
     pub handed_on: Vec<u8>,
@@ -46,7 +46,7 @@ pub struct Known {
     pub reports: i32,
     /// The robot is at work on a motion.
     pub is_moving: bool,
-    /// When the app last had an answer.
+    /// Time of the last response.
     pub answered: Option<Instant>,
     pub ends: BTreeMap<&'static str, u32>,
     pub outcomes: BTreeMap<&'static str, u32>,

@@ -1,16 +1,17 @@
-//! The one task of a data connection: it connects, reads and writes.
+//! The task of a data connection: it connects, reads and writes.
 
 use super::error::DataError;
 use super::shared::Shared;
 use crate::client::config::ClientConfig;
-use crate::client::connecting::{Dial, Tries};
-use crate::client::diary::Diary;
-use crate::client::life::{ConnectionState, closed};
+use crate::client::connecting::{Dial, Reconnect};
+use crate::client::connection_log::ConnectionLog;
 use crate::client::loss::Loss;
+use crate::client::state_watch::{ConnectionState, closed};
 use crate::link::{CLOSING, Transport};
-use crate::protocol::{Header, Protocol};
-use crate::rate::Least;
+use crate::protocol::Protocol;
+use crate::rate::MinimumRate;
 use crate::stream::{Patience, Receiver, Sender, StreamError};
+use crate::wire::Header;
 use std::sync::Arc;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::watch;
@@ -22,33 +23,32 @@ pub(super) struct Driver<P, D> {
     pub(super) commands: watch::Receiver<ConnectionState>,
     pub(super) config: ClientConfig,
     pub(super) dial: D,
-    pub(super) diary: Diary,
-    /// Why there is no connection.
+    pub(super) log: ConnectionLog,
+    /// Reason why there is no connection.
     pub(super) why: Loss,
     pub(super) protocol: std::marker::PhantomData<fn() -> P>,
 }
 
 impl<P: Protocol, D: Dial> Driver<P, D> {
-    /// Keeps up a connection as long as it may.
+    /// Keeps a connection up until it is closed.
     pub(super) async fn run(mut self) {
-        let mut tries = Tries::new(self.config.backoff());
-        while let Some((stream, commands)) = self.connect(&mut tries).await {
+        let mut reconnect = Reconnect::new(self.config.reconnect);
+        while let Some((stream, commands)) = self.connect(&mut reconnect).await {
             self.serve(stream, commands).await;
-            if self.shared.lock().life.now().is_closed() {
+            if self.shared.lock().connection.now().is_closed() {
                 return;
             }
-            // A robot may have nothing to send.
-            tries.connected(self.shared.is_used() || self.why == Loss::Renewed);
+            // A sent frame counts as well, because a robot may have nothing to send.
+            reconnect.connected(self.shared.is_used() || self.why == Loss::Renewed);
             self.shared.lost(self.why);
         }
     }
 
-    /// A connection, and the number of the command connection that it belongs to; `None` once there
-    /// will be none.
-    async fn connect(&mut self, tries: &mut Tries) -> Option<(D::Transport, u64)> {
+    /// Returns a connection and the number of its command connection, or `None` if there will be none.
+    async fn connect(&mut self, reconnect: &mut Reconnect) -> Option<(D::Transport, u64)> {
         loop {
-            let Some(wait) = tries.next() else {
-                self.diary.given_up(self.why);
+            let Some(wait) = reconnect.next() else {
+                self.log.given_up(self.why);
                 return None;
             };
             let mut commands = self.commands.clone();
@@ -60,7 +60,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
             };
             let (dialled, commands) = tokio::select! {
                 biased;
-                () = self.shared.end.notified() => return None,
+                () = self.shared.closing.notified() => return None,
                 why = closed(self.commands.clone()) => {
                     self.why = why;
                     return None;
@@ -71,9 +71,9 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
                 Ok(stream) => return Some((stream, commands)),
                 Err(error) => {
                     self.why = Loss::from(&error);
-                    tries.failed();
+                    reconnect.failed();
                     self.shared.not_connected(self.why);
-                    self.diary.not_connected(self.why);
+                    self.log.not_connected(self.why);
                 }
             }
         }
@@ -81,21 +81,21 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
 
     /// Serves a connection until it ends.
     async fn serve<S: Transport>(&mut self, stream: S, commands: u64) {
-        // Should the task end before the connection does.
+        // The reason if the task ends before the connection.
         self.why = Loss::Ended;
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: None,
-            stall: Some(Least::new(0, self.config.stall_timeout_value())),
+            stall: Some(MinimumRate::new(0, self.config.connection.stall_timeout)),
         };
         let mut receiver = Receiver::new(read, self.config.decoder::<P>(), patience);
         let mut sender = Sender::new(write, patience);
-        self.diary.connected(self.shared.connected());
+        self.log.connected(self.shared.connected());
         let shared = &*self.shared;
         let mut for_good = false;
         self.why = tokio::select! {
             biased;
-            () = shared.end.notified() => {
+            () = shared.closing.notified() => {
                 for_good = true;
                 Loss::Here
             }
@@ -106,7 +106,7 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
             why = receive(shared, &mut receiver) => why,
             why = send(shared, &mut sender) => why,
         };
-        self.diary.ended(self.why);
+        self.log.ended(self.why);
         if for_good {
             let goodbye = async {
                 sender.close().await?;
@@ -114,14 +114,14 @@ impl<P: Protocol, D: Dial> Driver<P, D> {
                 receiver.skip_to_end().await?;
                 Ok::<(), StreamError>(())
             };
-            // A robot that does not read, or does not stop sending, does not keep us.
+            // The wait is limited, because the robot may neither read nor stop sending.
             let _ = timeout(CLOSING, goodbye).await;
             shared.close(self.why);
         }
     }
 }
 
-/// Waits for the command connection and gives its number. Its end is for others to see.
+/// Waits for the command connection and returns its number. The caller handles its end.
 async fn up(commands: &mut watch::Receiver<ConnectionState>, shared: &Shared) -> u64 {
     loop {
         let state = *commands.borrow_and_update();
@@ -137,7 +137,7 @@ async fn up(commands: &mut watch::Receiver<ConnectionState>, shared: &Shared) ->
     }
 }
 
-/// Waits until the command connection of this number is no longer the last one.
+/// Waits until the command connection with this number is no longer the latest one.
 async fn parted(mut commands: watch::Receiver<ConnectionState>, number: u64) -> Loss {
     let parted = |state: &ConnectionState| state.is_closed() || state.connects() != number;
     match commands.wait_for(parted).await {
@@ -147,7 +147,7 @@ async fn parted(mut commands: watch::Receiver<ConnectionState>, number: u64) -> 
     }
 }
 
-/// Hands on what arrives, until the connection ends.
+/// Delivers received frames until the connection ends.
 async fn receive<R: AsyncRead + Unpin, P: Protocol>(
     shared: &Shared,
     receiver: &mut Receiver<R, P>,
@@ -177,7 +177,7 @@ async fn receive<R: AsyncRead + Unpin, P: Protocol>(
     }
 }
 
-/// Sends what is to be sent, until the connection ends.
+/// Sends frames until the connection ends.
 async fn send<W: AsyncWrite + Unpin>(shared: &Shared, sender: &mut Sender<W>) -> Loss {
     loop {
         let frame = shared.next().await;
@@ -189,7 +189,7 @@ async fn send<W: AsyncWrite + Unpin>(shared: &Shared, sender: &mut Sender<W>) ->
     }
 }
 
-/// However it ends, even with the runtime, nobody waits for ever.
+/// Ends all waits, even if the runtime ends.
 impl<P, D> Drop for Driver<P, D> {
     fn drop(&mut self) {
         if self.why == Loss::NotYet {

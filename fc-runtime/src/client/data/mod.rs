@@ -1,8 +1,8 @@
-//! An app's connection to the data port.
+//! A connection of an app to the data port.
 //!
-//! One task connects, reads and writes. Between it and the app there is room for one frame either
-//! way, so that a slow side slows the other one down, and nobody's memory grows. A subscription to one
-//! stream has a few more, of which the oldest makes way.
+//! One task connects, reads and writes. There is room for one frame in each direction between the task and the app, so
+//! a slow side slows the other one down and memory does not grow. A subscription holds a few frames and drops the
+//! oldest.
 
 mod driver;
 mod error;
@@ -14,10 +14,10 @@ pub use subscription::{StreamItem, Subscription};
 
 use super::config::ClientConfig;
 use super::connecting::Dial;
-use super::diary::Diary;
-use super::life::{ConnectionState, ConnectionStates, closed};
+use super::connection_log::ConnectionLog;
 use super::loss::Loss;
 use super::state::Handle;
+use super::state_watch::{ConnectionState, ConnectionStates, closed};
 use crate::clock;
 use crate::content::StreamContent;
 use crate::frame::{Encoder, FrameId};
@@ -35,31 +35,29 @@ use std::time::Duration;
 use tokio::sync::Mutex;
 use tokio::time::{timeout, timeout_at};
 
-/// A connection to a robot's data port: frames of raw bytes in both directions.
+/// A connection to a robot's data port, for frames of raw bytes in both directions.
 ///
-/// It is made in the background as soon as the command connection is there, and made again after a
-/// loss, as [`ClientConfig::reconnect`](super::ClientConfig::reconnect) says. The protocol ties it to
-/// the command connection by nothing but the address, and a robot knows whose it is only as long as one
-/// command connection has come from there. So it is also made again whenever the command connection
-/// was ([`Loss::Renewed`]), and ends with it.
+/// It is made in the background when the command connection is up, and again after a loss, as
+/// [`ClientConfig::reconnect`](super::ClientConfig::reconnect) specifies. In the protocol, only the address links it to
+/// the command connection. A robot can assign it to an app only while one command connection comes from that address.
+/// So it is also made again after each new command connection ([`Loss::Renewed`]), and ends with the command
+/// connection.
 ///
-/// The protocol has no acknowledgement for such frames. What was on its way when the connection was
-/// lost may have arrived or not, and [`DataError::Lost`] says so: to the sender, if anything was
-/// sent over the lost connection, and to the receiver. Then it goes on over the next one; nothing
-/// is sent twice.
+/// The protocol does not acknowledge these frames. A frame in flight at a loss may have arrived. [`DataError::Lost`]
+/// reports the loss to the receiver, and to the sender if anything was sent. Then both continue over the next
+/// connection. No frame is sent twice.
 ///
-/// Nothing is queued but one frame either way, unless something is [subscribed](Self::subscribe) to. Sending
-/// waits until the socket has taken the frame. As long as the app does not take what has arrived, the robot is
-/// not read, and a loss may be seen late.
-/// A frame that stalls while it arrives, and a robot that does not read, lose the connection after
+/// One frame is buffered in each direction, unless the app has a [subscription](Self::subscribe). Sending waits until
+/// the socket has taken the frame. While the app does not receive, the robot is not read, and a loss may be noticed
+/// late. A stalled frame, or a robot that does not read, loses the connection after
 /// [`ClientConfig::stall_timeout`](super::ClientConfig::stall_timeout).
 ///
 /// Closed when dropped. Keeps the command connection open.
 pub struct DataConnection<P: Protocol> {
     shared: Arc<Shared>,
-    /// One frame is sent at a time.
+    /// Locked while a frame is sent, so that frames are sent one at a time.
     encoder: Mutex<Encoder<P>>,
-    /// How long to wait for a connection.
+    /// Longest wait for a connection.
     patience: Duration,
     _commands: Handle<P>,
 }
@@ -70,9 +68,9 @@ impl<P: Protocol> DataConnection<P> {
         let shared = Arc::new(Shared::new());
         let driver = Driver::<P, D> {
             shared: Arc::clone(&shared),
-            commands: commands.lock().life.watch(),
+            commands: commands.lock().connection.subscribe(),
             config: config.clone(),
-            diary: Diary::new::<P>(dial.address(), "data"),
+            log: ConnectionLog::new::<P>(dial.address(), "data"),
             dial,
             why: Loss::NotYet,
             protocol: PhantomData,
@@ -86,8 +84,8 @@ impl<P: Protocol> DataConnection<P> {
         }
     }
 
-    /// Waits until there is a connection, for no longer than the call timeout. A robot sends what it is
-    /// asked for to the data connections that there are: wait for this one before asking.
+    /// Waits until there is a connection, for up to the call timeout. A robot sends streams only to existing data
+    /// connections, so wait here before you request a stream.
     ///
     /// Cancellation safe.
     ///
@@ -95,9 +93,9 @@ impl<P: Protocol> DataConnection<P> {
     ///
     /// [`DataError::NotConnected`] or [`DataError::Closed`].
     pub async fn connected(&self) -> Result<(), DataError> {
-        let mut states = self.shared.lock().life.watch();
+        let mut states = self.shared.lock().connection.subscribe();
         let settled = |state: &ConnectionState| state.is_connected() || state.is_closed();
-        // An error means that it was in no time, or that there is nobody left to say it.
+        // An error means a timeout, or the end of the connection.
         let _ = timeout(self.patience, states.wait_for(settled)).await;
         match self.state() {
             ConnectionState::Connected { .. } => Ok(()),
@@ -106,16 +104,16 @@ impl<P: Protocol> DataConnection<P> {
         }
     }
 
-    /// The next frame.
+    /// Returns the next frame.
     ///
     /// Cancellation safe.
     ///
     /// # Errors
     ///
-    /// [`DataError`]; unless it is [`DataError::Closed`], the next call goes on with the next frame.
+    /// [`DataError`]. After any error except [`DataError::Closed`], the next call continues with the next frame.
     pub async fn recv(&self) -> Result<StreamFrame, DataError> {
         loop {
-            let came = self.shared.came.notified();
+            let came = self.shared.inbox_changed.notified();
             if let Some(taken) = self.shared.take() {
                 return taken;
             }
@@ -123,27 +121,28 @@ impl<P: Protocol> DataConnection<P> {
         }
     }
 
-    /// The frames of one stream from now on, in a queue of their own; they no longer come to [`recv`](Self::recv).
+    /// Subscribes to one stream: returns a receiver with its own queue. The frames no longer come to
+    /// [`recv`](Self::recv).
     ///
-    /// As long as anybody has subscribed, the robot is read whatever the app takes: a frame of another stream that
-    /// finds the one before it not yet received is dropped, and [`missed`](Self::missed) counts it.
+    /// While there are subscriptions, the robot is always read. A frame of another stream is dropped if the frame
+    /// before it has not been received, and [`missed`](Self::missed) counts it.
     #[must_use]
     pub fn subscribe<T: StreamContent>(&self, code: u16) -> Subscription<T> {
         let allowance = P::DEFAULTS.limits.json();
         Subscription::new(Arc::clone(&self.shared), code, allowance)
     }
 
-    /// How many frames to which nobody had subscribed have been dropped since this was last asked.
+    /// Returns the number of dropped frames without a subscription since the last call.
     #[must_use]
     pub fn missed(&self) -> u64 {
-        std::mem::take(&mut self.shared.lock().takers.skipped)
+        std::mem::take(&mut self.shared.lock().subscriptions.skipped)
     }
 
-    /// Sends a frame with a JSON object, without an envelope; all else is as with [`send`](Self::send).
+    /// Sends a frame with a JSON object, without an envelope, like [`send`](Self::send).
     ///
     /// # Errors
     ///
-    /// [`DataError::Invalid`] if it breaks one of its own constraints, and those of [`send`](Self::send).
+    /// [`DataError::Invalid`] if it violates a constraint, and the errors of [`send`](Self::send).
     pub async fn send_json<M: Message>(
         &self,
         code: u16,
@@ -154,17 +153,16 @@ impl<P: Protocol> DataConnection<P> {
         self.send(code, id, &to_vec(content)).await
     }
 
-    /// Sends a frame of raw bytes: `code` says what they belong to, `id` which request they answer
-    /// or prepare. Resolves when the socket has taken it. Without a connection it waits for one, for no
-    /// longer than the call timeout.
+    /// Sends a frame of raw bytes. `code` is the stream, `id` the request that it belongs to. Resolves when the socket
+    /// has taken the frame. Waits for a connection for up to the call timeout.
     ///
-    /// Cancellation: a frame that has not been begun is not sent; one that has been begun is finished.
+    /// Cancellation: a frame is either not sent or sent completely.
     ///
     /// # Errors
     ///
-    /// [`DataError::Lost`] if the connection was lost meanwhile, or had been after something was sent
-    /// over it: send again from where the robot can go on. [`DataError::NotConnected`],
-    /// [`DataError::Closed`] and [`DataError::Frame`] if nothing was sent.
+    /// [`DataError::Lost`] if the connection was lost meanwhile, or earlier after something was sent: send again from a
+    /// position at which the robot can continue. [`DataError::NotConnected`], [`DataError::Closed`] and
+    /// [`DataError::Frame`] if nothing was sent.
     pub async fn send(&self, code: u16, id: u32, data: &[u8]) -> Result<(), DataError> {
         let deadline = after(clock::now(), self.patience);
         let frame = FrameId {
@@ -177,13 +175,13 @@ impl<P: Protocol> DataConnection<P> {
         let mut bytes = Vec::new();
         encoder.bytes(&mut bytes, frame, data)?;
         give_way(data.len()).await;
-        let mut turn = Turn {
+        let mut pending = PendingFrame {
             shared: &self.shared,
             bytes: Some(bytes),
         };
         loop {
-            let went = self.shared.went.notified();
-            let state = match turn.look() {
+            let went = self.shared.outbox_changed.notified();
+            let state = match pending.look() {
                 Ok(result) => return result,
                 Err(state) => state,
             };
@@ -191,61 +189,61 @@ impl<P: Protocol> DataConnection<P> {
                 went.await;
                 continue;
             };
-            if timeout_at(deadline.into(), went).await.is_err() && turn.take_back() {
+            if timeout_at(deadline.into(), went).await.is_err() && pending.take_back() {
                 return Err(DataError::NotConnected(why));
             }
         }
     }
 
-    /// Whether there is a connection at this moment, and why not.
+    /// Returns the state of the connection, with the reason if there is none.
     #[must_use]
     pub fn state(&self) -> ConnectionState {
-        self.shared.lock().life.now()
+        self.shared.lock().connection.now()
     }
 
-    /// The states of the connection: the present one first, and then each that it comes to.
+    /// Returns the states of the connection: the present one, then each new one.
     #[must_use]
     pub fn states(&self) -> ConnectionStates {
-        ConnectionStates::new(self.shared.lock().life.watch())
+        ConnectionStates::new(self.shared.lock().connection.subscribe())
     }
 
-    /// Waits until the connection has ended for good, and says why.
+    /// Waits until the connection has ended for good, and returns the reason.
     ///
     /// Cancellation safe.
     pub async fn closed(&self) -> Loss {
-        let states = self.shared.lock().life.watch();
+        let states = self.shared.lock().connection.subscribe();
         closed(states).await
     }
 
-    /// Closes the connection. A frame that is being sent is finished, if the robot takes it within a
-    /// second. What has arrived can still be received.
+    /// Closes the connection. A frame that is being sent is completed if the robot takes it within a second. Frames
+    /// that have arrived can still be received.
     pub fn close(&self) {
-        self.shared.lock().life.close(Loss::Here);
-        self.shared.tell();
-        self.shared.end.notify_one();
+        self.shared.lock().connection.close(Loss::Here);
+        self.shared.notify_all();
+        self.shared.closing.notify_one();
     }
 }
 
-/// One frame's turn to be sent.
-struct Turn<'a> {
+/// A frame that waits to be sent.
+struct PendingFrame<'a> {
     shared: &'a Shared,
-    /// Until it is in the outbox.
+    /// Set until the frame is in the outbox.
     bytes: Option<Vec<u8>>,
 }
 
-impl Turn<'_> {
-    /// Goes on. What has become of the frame, or else the state in which it waits.
+impl PendingFrame<'_> {
+    /// Continues. Returns the result for the frame, or the state in which it waits.
     fn look(&mut self) -> Result<Result<(), DataError>, ConnectionState> {
         let mut state = self.shared.lock();
-        let now = state.life.now();
+        let now = state.connection.now();
         if self.bytes.is_some() {
             if let ConnectionState::Closed { why, .. } = now {
                 return Ok(Err(DataError::Closed(why)));
             }
-            if let Some(loss) = state.unsure.take() {
+            if let Some(loss) = state.sender_loss.take() {
                 return Ok(Err(DataError::Lost(loss)));
             }
-            // There may be one still that was given up on its way.
+            // The outbox may still hold a frame whose caller has given up.
             if matches!(state.outbox, Outbox::Empty)
                 && let Some(bytes) = self.bytes.take()
             {
@@ -267,7 +265,7 @@ impl Turn<'_> {
         }
     }
 
-    /// Takes the frame back, if it has not been begun.
+    /// Takes the frame back if sending has not started.
     fn take_back(&mut self) -> bool {
         if self.bytes.is_some() {
             return true;
@@ -281,8 +279,8 @@ impl Turn<'_> {
     }
 }
 
-/// When nobody waits for it any more.
-impl Drop for Turn<'_> {
+/// The caller has given up.
+impl Drop for PendingFrame<'_> {
     fn drop(&mut self) {
         if self.bytes.is_some() {
             return;
@@ -293,10 +291,10 @@ impl Drop for Turn<'_> {
             Outbox::Sending { orphan } => *orphan = true,
             Outbox::Waiting(_) | Outbox::Done(Ok(())) => state.outbox = Outbox::Empty,
             Outbox::Done(Err(loss)) => {
-                // The next one is told.
+                // The next sender gets the loss.
                 let loss = *loss;
                 state.outbox = Outbox::Empty;
-                state.unsure = Some(loss);
+                state.sender_loss = Some(loss);
             }
         }
     }

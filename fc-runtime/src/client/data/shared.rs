@@ -1,116 +1,117 @@
-//! What the handle of a data connection and its driver share: room for one frame either way.
+//! The state that the handle of a data connection shares with its driver: room for one frame in each direction.
 
 use super::error::DataError;
-use super::subscription::Takers;
-use crate::client::life::{ConnectionState, Life};
+use super::subscription::SubscriptionQueues;
 use crate::client::loss::Loss;
+use crate::client::state_watch::{ConnectionState, StateWatch};
 use crate::stream::StreamFrame;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use crate::sync::lock;
+use std::sync::{Mutex, MutexGuard};
 use tokio::sync::Notify;
 
-/// The frame that is to be sent.
+/// The frame to be sent.
 #[derive(Debug)]
 pub(super) enum Outbox {
     Empty,
-    /// Not begun: it can be taken back.
+    /// Not started, so it can be taken back.
     Waiting(Vec<u8>),
-    /// Begun, and the driver's.
+    /// Taken by the driver.
     Sending {
-        /// Nobody waits for it any more.
+        /// `true` if the sender has given up.
         orphan: bool,
     },
-    /// For its sender to know.
+    /// Result for the sender.
     Done(Result<(), Loss>),
 }
 
-/// Behind the lock.
+/// The state behind the lock.
 #[derive(Debug)]
 pub(super) struct State {
-    pub(super) life: Life,
-    /// What has arrived and not been taken.
+    pub(super) connection: StateWatch,
+    /// The received frame that has not been taken.
     inbox: Option<Result<StreamFrame, DataError>>,
-    /// A loss that the receiver has not been told, after what is in the inbox.
-    gap: Option<Loss>,
-    /// Those who have subscribed to a stream.
-    pub(super) takers: Takers,
+    /// A loss to be reported to the receiver after the frame in the inbox.
+    receiver_loss: Option<Loss>,
+    /// Receivers of subscriptions.
+    pub(super) subscriptions: SubscriptionQueues,
     pub(super) outbox: Outbox,
-    /// A loss that the sender has not been told, after frames were sent.
-    pub(super) unsure: Option<Loss>,
-    /// Something has been sent over this connection.
+    /// A loss to be reported to the sender, after frames were sent.
+    pub(super) sender_loss: Option<Loss>,
+    /// `true` if something was sent over this connection.
     sent: bool,
-    /// Something has been received over it.
+    /// `true` if something was received over this connection.
     heard: bool,
 }
 
 #[derive(Debug)]
 pub(super) struct Shared {
     state: Mutex<State>,
-    /// Something has arrived, or the connection has another state.
-    pub(super) came: Notify,
-    /// The outbox, or the state of the connection, has changed.
-    pub(super) went: Notify,
+    /// A frame has arrived, or the state of the connection has changed.
+    pub(super) inbox_changed: Notify,
+    /// The outbox or the state of the connection has changed.
+    pub(super) outbox_changed: Notify,
     /// For the driver: the inbox is empty.
-    room: Notify,
-    /// For the driver: there is something to be sent.
-    work: Notify,
+    inbox_emptied: Notify,
+    /// For the driver: there is a frame to be sent.
+    outbox_filled: Notify,
     /// For the driver: this side closes the connection.
-    pub(super) end: Notify,
+    pub(super) closing: Notify,
 }
 
 impl Shared {
     pub(super) fn new() -> Self {
         Self {
             state: Mutex::new(State {
-                life: Life::new(),
+                connection: StateWatch::new(),
                 inbox: None,
-                gap: None,
-                takers: Takers::default(),
+                receiver_loss: None,
+                subscriptions: SubscriptionQueues::default(),
                 outbox: Outbox::Empty,
-                unsure: None,
+                sender_loss: None,
                 sent: false,
                 heard: false,
             }),
-            came: Notify::new(),
-            went: Notify::new(),
-            room: Notify::new(),
-            work: Notify::new(),
-            end: Notify::new(),
+            inbox_changed: Notify::new(),
+            outbox_changed: Notify::new(),
+            inbox_emptied: Notify::new(),
+            outbox_filled: Notify::new(),
+            closing: Notify::new(),
         }
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
-    /// Tells all that wait to look again.
-    pub(super) fn tell(&self) {
-        self.came.notify_waiters();
-        self.went.notify_waiters();
+    /// Wakes all waiting tasks.
+    pub(super) fn notify_all(&self) {
+        self.inbox_changed.notify_waiters();
+        self.outbox_changed.notify_waiters();
     }
 
-    /// What comes next for the receiver, if it is there.
+    /// Takes the next result for the receiver, if there is one.
     pub(super) fn take(&self) -> Option<Result<StreamFrame, DataError>> {
         let mut state = self.lock();
         let taken = match state.inbox.take() {
             Some(arrived) => Some(arrived),
-            None => state.gap.take().map(|loss| Err(DataError::Lost(loss))),
+            None => state
+                .receiver_loss
+                .take()
+                .map(|loss| Err(DataError::Lost(loss))),
         };
         if taken.is_some() {
             drop(state);
-            self.room.notify_one();
+            self.inbox_emptied.notify_one();
             return taken;
         }
-        match state.life.now() {
-            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
-            _ => None,
-        }
+        state.closed()
     }
 
-    /// Leaves what has arrived for those who have subscribed to it, or for the receiver as soon as there is room.
+    /// Delivers a frame to its subscriptions, or waits until the receiver has room for it.
     pub(super) async fn put(&self, mut arrived: Result<StreamFrame, DataError>) {
         loop {
-            let room = self.room.notified();
-            // Apart, for the lock must not be held while waiting.
+            let room = self.inbox_emptied.notified();
+            // A separate statement, because the lock must not be held while waiting.
             let placed = self.lock().place(arrived);
             match placed {
                 Ok(()) => break,
@@ -118,31 +119,28 @@ impl Shared {
             }
             room.await;
         }
-        self.came.notify_waiters();
+        self.inbox_changed.notify_waiters();
     }
 
-    /// Subscribes to the frames of a code. Says who is to ask for them.
+    /// Adds a subscription to a code and returns its id.
     pub(super) fn enter(&self, code: u16) -> u64 {
-        let id = self.lock().takers.enter(code);
-        // What waits for room need not wait any more.
-        self.room.notify_one();
+        let id = self.lock().subscriptions.enter(code);
+        // A frame that waits for room can be dropped now.
+        self.inbox_emptied.notify_one();
         id
     }
 
-    /// What comes next for a subscriber, if it is there.
+    /// Takes the next result for a subscription, if there is one.
     pub(super) fn take_of(&self, id: u64) -> Option<Result<StreamFrame, DataError>> {
         let mut state = self.lock();
-        let taken = state.takers.take(id);
+        let taken = state.subscriptions.take(id);
         if taken.is_some() {
             return taken;
         }
-        match state.life.now() {
-            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
-            _ => None,
-        }
+        state.closed()
     }
 
-    /// Something has been received.
+    /// Notes that a frame has been received.
     pub(super) fn hear(&self) {
         self.lock().heard = true;
     }
@@ -151,22 +149,22 @@ impl Shared {
         self.lock().heard
     }
 
-    /// Whether the connection has been of use.
+    /// Returns `true` if a frame has been sent or received.
     pub(super) fn is_used(&self) -> bool {
         let state = self.lock();
         state.heard || state.sent
     }
 
-    /// Takes a frame to be sent into the empty outbox.
+    /// Puts a frame into the empty outbox.
     pub(super) fn begin(&self, state: &mut State, bytes: Vec<u8>) {
         state.outbox = Outbox::Waiting(bytes);
-        self.work.notify_one();
+        self.outbox_filled.notify_one();
     }
 
-    /// The next frame to be sent.
+    /// Waits for the next frame to be sent.
     pub(super) async fn next(&self) -> Vec<u8> {
         loop {
-            let work = self.work.notified();
+            let work = self.outbox_filled.notified();
             {
                 let mut state = self.lock();
                 if let Outbox::Waiting(bytes) = &mut state.outbox {
@@ -180,7 +178,7 @@ impl Shared {
         }
     }
 
-    /// The frame that was being sent has been.
+    /// Notes that the frame has been sent.
     pub(super) fn sent(&self) {
         let mut state = self.lock();
         match state.outbox {
@@ -189,81 +187,89 @@ impl Shared {
             Outbox::Empty | Outbox::Waiting(_) | Outbox::Done(_) => {}
         }
         drop(state);
-        self.went.notify_waiters();
+        self.outbox_changed.notify_waiters();
     }
 
-    /// There is a connection. Says which.
+    /// Notes a new connection and returns its number.
     pub(super) fn connected(&self) -> u64 {
         let mut state = self.lock();
         state.heard = false;
         state.sent = false;
-        state.life.connected();
-        let connects = state.life.now().connects();
+        state.connection.connected();
+        let connects = state.connection.now().connects();
         drop(state);
-        self.tell();
+        self.notify_all();
         connects
     }
 
-    /// There is none yet.
+    /// Notes that there is no connection yet.
     pub(super) fn not_connected(&self, why: Loss) {
-        self.lock().life.lost(why);
-        self.tell();
+        self.lock().connection.lost(why);
+        self.notify_all();
     }
 
-    /// The connection that there was is lost, and what was on its way with it.
+    /// Notes a loss of the connection and of the frames in flight.
     pub(super) fn lost(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
-        state.gap = Some(why);
-        state.takers.lost(why);
-        state.life.lost(why);
+        state.receiver_loss = Some(why);
+        state.subscriptions.lost(why);
+        state.connection.lost(why);
         drop(state);
-        self.tell();
+        self.notify_all();
     }
 
-    /// There will be none any more.
+    /// Notes the end of the connection.
     pub(super) fn close(&self, why: Loss) {
         let mut state = self.lock();
         state.abandon(why);
-        state.life.close(why);
+        state.connection.close(why);
         drop(state);
-        self.tell();
+        self.notify_all();
     }
 }
 
 impl State {
-    /// Puts what has arrived where it is asked for; gives it back if there is no room.
+    /// Returns the result for a receiver if the connection is closed.
+    fn closed(&self) -> Option<Result<StreamFrame, DataError>> {
+        match self.connection.now() {
+            ConnectionState::Closed { why, .. } => Some(Err(DataError::Closed(why))),
+            _ => None,
+        }
+    }
+
+    /// Delivers a frame, or returns it if there is no room.
     fn place(
         &mut self,
         arrived: Result<StreamFrame, DataError>,
     ) -> Result<(), Result<StreamFrame, DataError>> {
-        let Err(arrived) = self.takers.offer(arrived) else {
+        let Err(arrived) = self.subscriptions.offer(arrived) else {
             return Ok(());
         };
-        if self.inbox.is_none() && self.gap.is_none() {
+        if self.inbox.is_none() && self.receiver_loss.is_none() {
             self.inbox = Some(arrived);
             return Ok(());
         }
-        if self.takers.is_empty() {
+        if self.subscriptions.is_empty() {
             return Err(arrived);
         }
-        // Subscribers do not wait for a receiver that there may not be.
-        self.takers.skipped += 1;
+        // Subscriptions do not wait for a receiver that may not exist.
+        self.subscriptions.skipped += 1;
         Ok(())
     }
 
-    /// Notes that nobody knows what has become of the frames that were sent.
+    /// Notes that sent frames may be lost.
     fn abandon(&mut self, why: Loss) {
         let sent = std::mem::take(&mut self.sent);
         match self.outbox {
             Outbox::Sending { orphan: false } => self.outbox = Outbox::Done(Err(why)),
             Outbox::Sending { orphan: true } => {
                 self.outbox = Outbox::Empty;
-                self.unsure = Some(why);
+                self.sender_loss = Some(why);
             }
-            // It must not go on where the one before it may be missing.
+            // The next frame must not follow one that may be missing.
             Outbox::Waiting(_) if sent => self.outbox = Outbox::Done(Err(why)),
-            Outbox::Empty | Outbox::Done(Ok(())) if sent => self.unsure = Some(why),
+            Outbox::Empty | Outbox::Done(Ok(())) if sent => self.sender_loss = Some(why),
             Outbox::Empty | Outbox::Waiting(_) | Outbox::Done(_) => {}
         }
     }

@@ -1,4 +1,4 @@
-//! Receivers of one stream each, with a queue of their own.
+//! Receivers of one stream each, with their own queues.
 
 use super::error::DataError;
 use super::shared::Shared;
@@ -11,17 +11,17 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// Frames waiting for one receiver.
+/// Frames in the queue of one receiver.
 const QUEUE: usize = 4;
 
-/// The frames of one stream from the receiver's creation on, in the order they came, each read as a `T`.
+/// The frames of one stream from the creation of the receiver on, in the order received, each read as a `T`.
 ///
-/// Each receiver has a queue of four frames. While it is full, the oldest frame in it makes way for the one that
-/// arrives, and [`missed`](Self::missed) counts it: of a picture of what is now, the last one counts, and an app that
-/// is slow delays neither the robot nor other receivers. What must not be missed is received with
-/// [`DataConnection::recv`](super::DataConnection::recv), which makes the robot wait.
+/// Each receiver has a queue of four frames. When it is full, a new frame replaces the oldest one, and
+/// [`missed`](Self::missed) counts that. This suits live data: only the latest frame matters, and a slow app delays
+/// neither the robot nor other receivers. Use [`DataConnection::recv`](super::DataConnection::recv) to get every frame;
+/// it makes the robot wait.
 ///
-/// It goes on over reconnecting, and ends with its [`DataConnection`](super::DataConnection).
+/// It continues after reconnections, and ends with its [`DataConnection`](super::DataConnection).
 pub struct Subscription<T> {
     shared: Arc<Shared>,
     id: u64,
@@ -29,12 +29,12 @@ pub struct Subscription<T> {
     content: PhantomData<fn() -> T>,
 }
 
-/// A frame of a stream, read.
+/// A frame of a stream with its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamItem<T> {
-    /// Message id, that of the request which it belongs to.
+    /// Message id of the request that it belongs to.
     pub id: u32,
-    /// What it carries.
+    /// Content.
     pub content: T,
 }
 
@@ -49,18 +49,18 @@ impl<T: StreamContent> Subscription<T> {
         }
     }
 
-    /// The next frame.
+    /// Returns the next frame.
     ///
     /// Cancellation safe: a frame is taken from the queue only when it is returned.
     ///
     /// # Errors
     ///
-    /// [`DataError::Lost`] where frames may be missing because the connection was lost; [`DataError::Frame`] and
-    /// [`DataError::Invalid`] for a frame that cannot be read. Unless it is [`DataError::Closed`], the next call goes
-    /// on with the next frame.
+    /// [`DataError::Lost`] if frames may be missing because the connection was lost; [`DataError::Frame`] and
+    /// [`DataError::Invalid`] for a frame that cannot be read. After any error except [`DataError::Closed`], the next
+    /// call continues with the next frame.
     pub async fn recv(&mut self) -> Result<StreamItem<T>, DataError> {
         let frame = loop {
-            let came = self.shared.came.notified();
+            let came = self.shared.inbox_changed.notified();
             if let Some(taken) = self.shared.take_of(self.id) {
                 break taken?;
             }
@@ -75,15 +75,15 @@ impl<T: StreamContent> Subscription<T> {
 }
 
 impl<T> Subscription<T> {
-    /// How many frames have made way for later ones since this was last asked.
+    /// Returns the number of replaced frames since the last call.
     pub fn missed(&mut self) -> u64 {
-        self.shared.lock().takers.missed_of(self.id)
+        self.shared.lock().subscriptions.missed_of(self.id)
     }
 }
 
 impl<T> Drop for Subscription<T> {
     fn drop(&mut self) {
-        self.shared.lock().takers.leave(self.id);
+        self.shared.lock().subscriptions.leave(self.id);
     }
 }
 
@@ -95,22 +95,22 @@ impl<T> fmt::Debug for Subscription<T> {
 
 /// The queues of all receivers of a data connection.
 #[derive(Debug, Default)]
-pub(super) struct Takers {
+pub(super) struct SubscriptionQueues {
     last: u64,
-    all: Vec<Taker>,
-    /// Frames of other streams, which were dropped.
+    all: Vec<SubscriptionQueue>,
+    /// Dropped frames of other streams.
     pub(super) skipped: u64,
 }
 
 #[derive(Debug)]
-struct Taker {
+struct SubscriptionQueue {
     id: u64,
     code: u16,
     waiting: VecDeque<Result<StreamFrame, DataError>>,
     missed: u64,
 }
 
-impl Taker {
+impl SubscriptionQueue {
     fn push(&mut self, arrived: Result<StreamFrame, DataError>) {
         if self.waiting.len() >= QUEUE {
             let oldest = self.waiting.iter().position(Result::is_ok);
@@ -121,10 +121,10 @@ impl Taker {
     }
 }
 
-impl Takers {
+impl SubscriptionQueues {
     pub(super) fn enter(&mut self, code: u16) -> u64 {
         self.last += 1;
-        self.all.push(Taker {
+        self.all.push(SubscriptionQueue {
             id: self.last,
             code,
             waiting: VecDeque::new(),
@@ -134,14 +134,14 @@ impl Takers {
     }
 
     fn leave(&mut self, id: u64) {
-        self.all.retain(|taker| taker.id != id);
+        self.all.retain(|queue| queue.id != id);
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// Hands out what has arrived; gives it back if nobody takes such frames.
+    /// Delivers a frame to its receivers, or returns it if there are none.
     pub(super) fn offer(
         &mut self,
         arrived: Result<StreamFrame, DataError>,
@@ -151,22 +151,22 @@ impl Takers {
             Err(DataError::Frame(error)) => error.frame().map(|frame| frame.code),
             Err(_) => None,
         };
-        let mut takers = self.all.iter_mut().filter(|it| Some(it.code) == code);
-        let Some(first) = takers.next() else {
+        let mut subscriptions = self.all.iter_mut().filter(|it| Some(it.code) == code);
+        let Some(first) = subscriptions.next() else {
             return Err(arrived);
         };
-        for other in takers {
+        for other in subscriptions {
             other.push(arrived.clone());
         }
         first.push(arrived);
         Ok(())
     }
 
-    /// Notes for everybody that frames may be missing here.
+    /// Adds a loss to all queues, because frames may be missing.
     pub(super) fn lost(&mut self, why: Loss) {
-        for taker in &mut self.all {
-            if !matches!(taker.waiting.back(), Some(Err(DataError::Lost(_)))) {
-                taker.push(Err(DataError::Lost(why)));
+        for queue in &mut self.all {
+            if !matches!(queue.waiting.back(), Some(Err(DataError::Lost(_)))) {
+                queue.push(Err(DataError::Lost(why)));
             }
         }
     }
@@ -174,13 +174,13 @@ impl Takers {
     pub(super) fn take(&mut self, id: u64) -> Option<Result<StreamFrame, DataError>> {
         self.all
             .iter_mut()
-            .find(|taker| taker.id == id)?
+            .find(|queue| queue.id == id)?
             .waiting
             .pop_front()
     }
 
     fn missed_of(&mut self, id: u64) -> u64 {
-        let taker = self.all.iter_mut().find(|taker| taker.id == id);
-        taker.map_or(0, |taker| std::mem::take(&mut taker.missed))
+        let queue = self.all.iter_mut().find(|queue| queue.id == id);
+        queue.map_or(0, |queue| std::mem::take(&mut queue.missed))
     }
 }

@@ -53,13 +53,13 @@ fn what_would_grow_is_left_plain() {
     assert!(!Deflater::new(9).member(&noise, &mut out));
 }
 
-/// What is given up before its end stays in the state of zlib-rs and adds up, until it has no room left and panics.
+/// An interrupted compression stays in the state of zlib-rs and adds up until it panics.
 #[fc_test::test]
 fn what_stays_plain_leaves_nothing_behind() {
     let noise: Vec<u8> = (0..7_u32).flat_map(|n| Md5::of(&n.to_le_bytes())).collect();
     for level in 0..=9 {
         let mut deflater = Deflater::new(level);
-        // Whatever room it had for one of another length would be room for these.
+        // Room for data of another length would also be enough for these.
         let mut out = Vec::new();
         for _ in 0..2000 {
             assert!(!deflater.member(&noise, &mut out), "level {level}");

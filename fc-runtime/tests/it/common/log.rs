@@ -1,4 +1,4 @@
-//! What the runtime logs, as a person reads it.
+//! The log of the runtime in readable form.
 
 use std::fmt::{Debug, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,8 +13,8 @@ static ALONE: Mutex<()> = Mutex::new(());
 /// The only test that logs at this moment.
 pub struct Alone(#[allow(dead_code, reason = "held")] MutexGuard<'static, ()>);
 
-/// One test at a time: what is first met while another test begins or ends to listen may stay off for
-/// both. Tests that do not listen themselves call it where others of their file do.
+/// One test at a time: a callsite first reached while another test starts or stops listening may stay disabled for
+/// both. Tests that do not listen call this if others of their file do.
 ///
 /// Blocks its thread, which is the test's own: paused time has nothing to wait for.
 pub fn alone() -> Alone {
@@ -31,7 +31,7 @@ pub struct Entry {
     pub line: String,
 }
 
-/// What is logged for as long as this lives: a line for each event.
+/// Records a line for each event until it is dropped.
 pub struct Log {
     lines: Arc<Mutex<Vec<Entry>>>,
     _listening: DefaultGuard,

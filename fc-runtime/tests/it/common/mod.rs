@@ -90,7 +90,7 @@ pub struct Moved {
     pub metres: i32,
 }
 
-/// How far a [`Go`] has come.
+/// Progress of a [`Go`].
 #[derive(Clone, Debug, PartialEq, Message, Report)]
 #[fc(code = 0x0BF0, name = "under_way", state(step: Step), failure(trouble?))]
 pub struct UnderWay {
@@ -227,7 +227,7 @@ const UNDER_WAY: OperationInfo = OperationInfo {
     ..MOVED
 };
 
-/// What is known of a command beside its types.
+/// The properties of a command besides its types.
 const fn operation(name: &'static str, code: u16, effect: Effect) -> OperationInfo {
     OperationInfo {
         name,
@@ -277,7 +277,7 @@ pub fn answer_to(request: FrameId) -> FrameId {
     }
 }
 
-/// Lets others have their turns until it has come to something that they bring about.
+/// Yields to other tasks until a condition holds that they bring about.
 ///
 /// # Panics
 /// If it does not come to that. Only a test that fails waits for so long.

@@ -117,7 +117,7 @@ pub fn data_over(
     (app.data_by(dial), dialled)
 }
 
-/// A data connection whose robot is a test, and what keeps it up.
+/// A data connection whose robot is a test, and the command connection that keeps it up.
 pub async fn data_of_raw(bytes: usize) -> (DataConnection<Toy>, DuplexStream, impl Sized) {
     let (app, commands) = app_of_raw(ClientConfig::new());
     let (data, mut dialled) = data_over(&app, bytes);
@@ -148,8 +148,7 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
         self.send(&super::frame(id, body.as_bytes())).await;
     }
 
-    /// The next frame, or the name of what is wrong with it; `None` once the other side has
-    /// closed.
+    /// Returns the next frame or the name of its error, or `None` if the other side has closed.
     pub async fn recv(&mut self) -> Option<(FrameId, String)> {
         loop {
             match self.decoder.next() {
@@ -181,7 +180,7 @@ impl<S: AsyncRead + AsyncWrite + Unpin> Raw<S> {
             };
             self.send(&super::frame(stream, b"x")).await;
         }
-        // It is answered at either port, when what was before it has been taken.
+        // Both ports answer it, after everything sent before.
         self.send_frame(id, "{}").await;
         self.result().await;
     }

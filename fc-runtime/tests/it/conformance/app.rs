@@ -15,7 +15,7 @@ use tokio::io::DuplexStream;
 use tokio::sync::{Mutex, mpsc};
 use tokio::task::AbortHandle;
 
-/// It dials at once, and gets a connection when the script says so.
+/// It dials at once, and gets a connection at a step of the script.
 const AT_ONCE: Backoff = Backoff {
     first: Duration::ZERO,
     longest: Duration::ZERO,
@@ -33,7 +33,7 @@ pub struct App {
     calls: Vec<AbortHandle>,
     /// By the calls' numbers.
     results: Results<(usize, &'static str)>,
-    /// What a receiver has got, not yet looked at.
+    /// Reports of a receiver that have not been checked yet.
     taken: Option<Event>,
 }
 

@@ -1,5 +1,5 @@
-//! `conformance/errors.json` is the list of error names: the runtime's are those, and those of the vectors are among
-//! them.
+//! `conformance/errors.json` lists the error names. The runtime has exactly these, and the golden frames use only
+//! these.
 
 use super::script::{folder, json_files};
 use crate::tally::Tally;
@@ -21,7 +21,7 @@ struct Error {
     name: String,
     #[serde(rename = "where")]
     place: Place,
-    /// Only where an implementation has such a limit of its own.
+    /// Only for implementations with such a limit.
     #[serde(default)]
     own_limit: bool,
     zh: String,
@@ -74,7 +74,7 @@ fn the_names_of_the_runtime_are_those_of_the_table() {
     ] {
         let mut tally = Tally::of(kind);
         assert_eq!(given(source, of), listed(place));
-        // A limit of one's own is not asked of others.
+        // Implementations need not have this limit.
         let shared = errors().into_iter().filter(|error| !error.own_limit);
         tally.held(shared.filter(|error| error.place == place).count());
     }
@@ -95,7 +95,7 @@ fn the_names_in_the_vectors_are_among_those_of_the_table() {
             seen.insert(name.to_owned());
         }
     }
-    // Whatever the spec has, these are of the frame format and of JSON themselves.
+    // These are errors of the frame format and of JSON, independent of the spec.
     for name in ["bad_head", "bad_digest", "bad_json", "wrong_type"] {
         assert!(seen.contains(name), "no vector is refused with {name}");
     }

@@ -1,7 +1,7 @@
 //! The scripts of `conformance/sessions` against this runtime.
 //!
-//! They say as data what any implementation must do over time. A failure names the file, the script, the step, and
-//! what was expected and got.
+//! They describe the required behaviour over time as data, for any implementation. A failure names the file, the
+//! script, the step, and the expected and the actual result.
 
 mod app;
 mod errors;
@@ -35,7 +35,7 @@ fn scripts(level: Level) -> Vec<(PathBuf, Script)> {
     scripts
 }
 
-/// Says of each script that does not hold why.
+/// Returns the reason for each script that does not hold.
 fn hold(level: Level, run: impl Fn(&Script) -> Result<(), script::Failure>) {
     let mut failures = Vec::new();
     let mut tally = Tally::of(match level {

@@ -1,5 +1,4 @@
-//! What the scripts of both sides of a whole peer have in common: frames at its other end, and a clock that the
-//! script holds.
+//! The common part of scripts for whole peers: frames at the other end, and a clock that the script controls.
 
 use super::script::{
     Action, Answers, Event, Failure, Frame, Given, Got, Kind, Open, Outcome, Place, Script, Sent,
@@ -21,14 +20,14 @@ pub trait Peer: Sized {
     async fn start(given: &Given) -> Self;
     /// The other end of its connection.
     fn wire(&mut self) -> &mut Wire;
-    /// Does what only this side can do.
+    /// Performs an action that only this side has.
     async fn act(&mut self, action: Action<'_>) -> Result<(), Failure>;
-    /// What has come of it beside frames.
+    /// Results besides frames.
     fn look(&mut self, got: &mut Got);
     fn in_flight(&self) -> Option<usize>;
 }
 
-/// Runs a script in a runtime of its own.
+/// Runs a script in its own runtime.
 pub fn run(script: &Script) -> Result<(), Failure> {
     let ack = script.given.ack.unwrap_or(defaults::ACK);
     if ack != defaults::ACK {
@@ -68,7 +67,7 @@ async fn one<P: Peer>(peer: &mut P, step: &Step) -> Result<(), Failure> {
         action => peer.act(action).await?,
     }
     let mut got = Got::default();
-    // The peer may go on when it sees that what it has closed is closed at the other end too.
+    // The peer may continue when the other end is closed as well.
     for _ in 0..2 {
         settle().await;
         peer.wire().drain(&mut got)?;
@@ -106,7 +105,7 @@ pub fn milliseconds(given: Option<u64>, default: u64) -> Duration {
     Duration::from_millis(given.unwrap_or(default))
 }
 
-/// What arrives at the test of what a task has come to.
+/// Results of a task that reach the test.
 pub struct Results<T> {
     pub sender: mpsc::UnboundedSender<T>,
     receiver: mpsc::UnboundedReceiver<T>,
@@ -242,7 +241,7 @@ impl Wire {
         Ok(())
     }
 
-    /// What the peer under test has sent.
+    /// Frames sent by the peer under test.
     fn drain(&mut self, got: &mut Got) -> Result<(), Failure> {
         while let Some(raw) = &mut self.raw
             && let Some(received) = raw.recv().now_or_never()
@@ -314,7 +313,7 @@ impl Operation {
     }
 }
 
-/// The code of a frame in this protocol; what no operation has stays as it is.
+/// Returns the code of a frame in this protocol. A code without an operation stays unchanged.
 fn toy(code: u16) -> u16 {
     match Operation::of(code) {
         Ok(Operation::Read) => Echo::CODE,

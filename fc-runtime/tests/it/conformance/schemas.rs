@@ -1,4 +1,4 @@
-//! The documented schemas take what is there, and the runner and the schema refuse the same mistakes.
+//! The documented schemas accept the existing files. Runner and schema reject the same mistakes.
 
 use super::script::{File, Level, folder, json_files};
 use crate::json_schema::Validator;
@@ -10,7 +10,7 @@ fn schema(name: &str) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Whether a value fits the schema, or one of its definitions.
+/// Returns `true` if a value fits the schema or one of its definitions.
 fn fits(schema: &Value, definition: Option<&str>, value: &Value) -> bool {
     let part = match definition {
         Some(name) => &schema["$defs"][name],
@@ -57,7 +57,7 @@ fn every_vector_fits_its_schema() {
         assert!(fits(&schema, None, &file), "{}", path.display());
         for list in ["accepted", "rejected"] {
             let mut worse = file.clone();
-            // What is not documented does not pass.
+            // Undocumented keys are rejected.
             if let Some(entry) = worse[list].get_mut(0) {
                 entry["note"] = json!("x");
                 assert!(!fits(&schema, None, &worse), "{}: {list}", path.display());
@@ -82,7 +82,7 @@ fn file(step: &Value) -> Value {
     })
 }
 
-/// Whether the runner reads it.
+/// Returns `true` if the runner accepts it.
 fn reads(file: &Value) -> bool {
     let file = serde_json::from_value::<File>(file.clone());
     file.is_ok_and(|file| file.scripts[0].steps[0].action().is_ok())

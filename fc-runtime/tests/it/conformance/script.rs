@@ -6,7 +6,7 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The folder that holds what every implementation is tested with.
+/// The folder with the data for all implementations.
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../conformance")
 }
@@ -24,7 +24,7 @@ pub fn json_files(folder: &Path) -> Vec<(PathBuf, String)> {
     paths.into_iter().map(read).collect()
 }
 
-/// What a peer is like in every script: see `conformance/README.md`.
+/// Properties of a peer in every script; see `conformance/README.md`.
 pub mod defaults {
     pub const IN_FLIGHT: usize = 64;
     pub const QUEUED_REPORTS: usize = 16;
@@ -48,11 +48,11 @@ pub struct File {
     pub scripts: Vec<Script>,
 }
 
-/// Who is tested.
+/// The tested part.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
-    /// The session alone: it says what a frame means and what is due.
+    /// The session alone: it returns the meaning of frames and the due requests.
     Session,
     /// A whole client or server, with frames at its other end.
     Peer,
@@ -68,7 +68,7 @@ pub struct Script {
 }
 
 impl Script {
-    /// Whether all that it says means something at its level: what means nothing there would demand nothing.
+    /// Returns `true` if all keys apply at this level. Other keys would check nothing.
     pub fn check(&self, level: Level) -> Result<(), Failure> {
         let given = &self.given;
         let whole = (level == Level::Peer).then_some(given.side);
@@ -101,13 +101,13 @@ pub enum Side {
     Robot,
 }
 
-/// The situation that a script begins in.
+/// The initial situation of a script.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Given {
     pub side: Side,
     pub first_id: u32,
-    /// How many bits the header has for a message id.
+    /// Number of bits of a message id in the header.
     #[serde(default)]
     pub id_bits: IdBits,
     pub in_flight: Option<usize>,
@@ -116,7 +116,7 @@ pub struct Given {
     pub call_timeout: Option<u64>,
     pub handler_timeout: Option<u64>,
     pub receivers: Option<usize>,
-    /// How many reports are remembered, where a script depends on it.
+    /// Number of remembered reports, if a script depends on it.
     pub remembers: Option<usize>,
 }
 
@@ -147,7 +147,7 @@ pub struct Ack {
     pub retries: u32,
 }
 
-/// One thing that happens, and all that comes of it.
+/// One event with all its effects.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Step {
@@ -164,7 +164,7 @@ pub struct Step {
     close: Option<Nothing>,
     shutdown: Option<Shutdown>,
     repeat: Option<Repeat>,
-    /// All that comes of it, in any order.
+    /// All effects, in any order.
     pub expect: Vec<Event>,
     pub then: Option<Then>,
 }
@@ -187,7 +187,7 @@ pub enum Action<'a> {
 }
 
 impl Step {
-    /// A key that means nothing at this level.
+    /// A key that does not apply at this level.
     fn misplaced(&self, level: Level) -> Option<&'static str> {
         let (call, report) = (self.call.as_ref(), self.report.as_ref());
         let (frame, lose) = (self.receive.as_ref(), self.lose.as_ref());
@@ -220,7 +220,7 @@ impl Step {
             .or_else(|| inside.into_iter().find_map(|step| step.misplaced(level)))
     }
 
-    /// What happens in the step: exactly one thing.
+    /// The event of the step: exactly one.
     pub fn action(&self) -> Result<Action<'_>, String> {
         let all = [
             self.call.as_ref().map(Action::Call),
@@ -259,7 +259,7 @@ pub struct Open {
     pub code: u16,
     pub timeout: Option<u64>,
     pub retries: Option<u32>,
-    /// Whether it may be sent once more after the connection was lost; peers only.
+    /// `true` if it may be sent once more after a loss of the connection; peers only.
     pub repeat: Option<bool>,
 }
 
@@ -271,7 +271,7 @@ pub enum Kind {
     Stream,
 }
 
-/// What a result code means.
+/// The meaning of a result code.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -288,15 +288,15 @@ pub enum Outcome {
 pub struct Frame {
     #[serde(rename = "as")]
     pub name: Option<String>,
-    /// The request that it answers; what else is said differs from what an answer to it has.
+    /// The request that it answers. Other keys replace those of the response.
     pub answer_to: Option<String>,
     pub kind: Option<Kind>,
     pub code: Option<u16>,
     pub id: Option<u32>,
-    /// Stands for what is in the frame: the same word, the same digest.
+    /// A word for the content of the frame. The same word means the same digest.
     pub data: Option<String>,
     pub result: Option<Outcome>,
-    /// The body is not what its code says.
+    /// The body is not valid for its code.
     #[serde(default)]
     pub broken: bool,
 }
@@ -333,7 +333,7 @@ pub struct Repeat {
     pub steps: Vec<Step>,
 }
 
-/// Something that the peer under test says or does.
+/// An action of the peer under test.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Event {
@@ -345,7 +345,7 @@ pub enum Event {
     Busy(String),
     /// The frame is the answer to this request, which has ended with it.
     Answer(String),
-    /// It is an answer that nobody waits for.
+    /// It is a response to no request in flight.
     Late,
     /// It is a command to be handled.
     Command,
@@ -357,7 +357,7 @@ pub enum Event {
     Stream,
     /// A request has ended without an answer.
     Expired(String),
-    /// A request has ended because its connection was lost or nobody waits any more.
+    /// A request has ended because its connection was lost or its caller stopped waiting.
     Ended(String),
     /// A peer's call or report has ended for its caller.
     Ends(Ends),
@@ -403,7 +403,7 @@ pub struct Answers {
     pub result: Outcome,
 }
 
-/// What holds after a step.
+/// The state after a step.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Then {
@@ -414,11 +414,11 @@ pub struct Then {
     pub next_due_by: Option<u64>,
 }
 
-/// When the session has to be asked again.
+/// Time at which the session must be asked again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextDue {
     Never,
-    /// In so many milliseconds.
+    /// In this many milliseconds.
     In(u128),
 }
 
@@ -428,13 +428,13 @@ impl NextDue {
     }
 }
 
-/// Tells null, which is never, from what is not said.
+/// Distinguishes null, which means never, from a missing key.
 fn next_due<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<NextDue>, D::Error> {
     let said = Option::<u64>::deserialize(deserializer)?;
     Ok(Some(NextDue::new(said.map(u128::from))))
 }
 
-/// What a peer has said and done in a step.
+/// The actions of a peer in a step.
 #[derive(Debug, Default)]
 pub struct Got(Vec<Event>);
 
@@ -443,7 +443,7 @@ impl Got {
         self.0.push(event);
     }
 
-    /// Compares with what was expected, in any order.
+    /// Compares with the expected actions, in any order.
     pub fn check(self, expected: &[Event]) -> Result<(), String> {
         let (mut left, mut missing) = (self.0, Vec::new());
         for event in expected {
@@ -464,7 +464,7 @@ impl Got {
 }
 
 impl Event {
-    /// Whether this is what was expected: an id counts where one was.
+    /// Returns `true` if the action is as expected. The id is compared only if one is expected.
     fn is(&self, expected: &Self) -> bool {
         let same = |got: &Sent, expected: &Sent| {
             got.name == expected.name && (expected.id.is_none() || got.id == expected.id)
@@ -477,7 +477,7 @@ impl Event {
     }
 }
 
-/// Where in a script something is.
+/// A position in a script.
 #[derive(Clone, Debug, Default)]
 pub struct Place(String);
 
@@ -498,5 +498,5 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a script does not hold.
+/// The reason why a script does not hold.
 pub type Failure = String;

@@ -39,7 +39,7 @@ struct Run<P: Protocol> {
     got: Got,
 }
 
-/// Runs a script, and says at which step something else happens than it demands.
+/// Runs a script. Returns the first step with another result than expected.
 pub fn run(script: &Script) -> Result<(), Failure> {
     match script.given.id_bits {
         IdBits::Sixteen => Run::<Short>::new(&script.given)?.steps(&script.steps),
@@ -103,7 +103,7 @@ impl<P: Protocol> Run<P> {
                 .and_then(|()| std::mem::take(&mut self.got).check(&step.expect))
                 .and_then(|()| self.then(step.then.as_ref()))
                 .map_err(|why| {
-                    // What is inside a repeated step has its place already.
+                    // Steps inside a repeated step have their position already.
                     if why.starts_with("step ") {
                         return why;
                     }
@@ -239,7 +239,7 @@ impl<P: Protocol> Run<P> {
     }
 
     fn due(&mut self) -> Result<(), Failure> {
-        // More is not due at once, however far the clock has gone; a session that does not come to an end is ended.
+        // No more can be due at once. A session that returns more is aborted.
         let most = self.requests.len() * 2 + 1;
         for _ in 0..most {
             let (frame, token, again) = match self.session.due(self.now) {

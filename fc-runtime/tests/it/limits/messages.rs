@@ -1,4 +1,4 @@
-//! What one message may be: how long, how far compressed, how many values, how deep.
+//! Limits of one message: length, inflation, number of values, depth.
 
 use crate::common::net::{Robot, loopback, service};
 use crate::common::{Echo, LIMITS, Toy, ToyHeader, ToyRequest, answer_to, command, frame};
@@ -92,7 +92,7 @@ fn inflate_ratio() {
     let packed = long.len() - ToyHeader::LEN;
     let least = (2 * free).div_ceil(packed);
     for (limit, within) in around(least) {
-        // Here it is what is sent that stays and the limit that moves.
+        // Here the sent text stays and the limit varies.
         let expected = if limit < least {
             Err("inflates_too_much")
         } else {
@@ -104,7 +104,7 @@ fn inflate_ratio() {
             "{limit} {within}"
         );
     }
-    // What is short may be blank, and so may be what is no text.
+    // Short data and data that is not text may be blank.
     for (length, within) in around(free) {
         let expected = if within {
             Ok(())

@@ -1,4 +1,4 @@
-//! How many there may be at once: calls, reports, connections.
+//! Limits of numbers at one time: calls, reports, connections.
 
 use crate::common::net::{Raw, Robot, app_of_raw, loopback, nowhere, service};
 use crate::common::{Echo, EchoReply, LIMITS, Moved, Toy, report, until};
@@ -106,7 +106,7 @@ async fn queued_bytes_at_the_app() {
         }
         until(|| app.counters().reports + app.counters().reports_refused == 3).await;
         assert_eq!(app.counters().reports_refused, u64::from(!within));
-        // What has been taken makes room again.
+        // A taken report makes room again.
         reports.recv().await.unwrap();
         robot
             .send_frame(report(Moved::CODE, 4), r#"{"metres":1}"#)

@@ -1,4 +1,4 @@
-//! How long something may take, and how slowly it may come.
+//! Limits of durations and rates.
 
 use crate::common::net::{Robot, loopback, service};
 use crate::common::{Echo, EchoReply, Toy, ToyHeader, command, frame};
@@ -7,8 +7,8 @@ use fc_runtime::{Audience, CallError, ClientConfig, Command, FrameId, Header, Pr
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
-/// Just within a limit and just beyond it; and whether that is within. What comes exactly at the end of a wait is not tested, it is a matter of who
-/// is asked first.
+/// Values just within and just beyond a limit, with the expected result. The exact end of a wait is not tested, because
+/// the order of polls decides it.
 fn around_time(limit: Duration) -> [(Duration, bool); 2] {
     let ms = Duration::from_millis(1);
     [(limit.saturating_sub(ms), true), (limit + ms, false)]
@@ -85,7 +85,7 @@ async fn comes_slowly(data: bool, piece: usize) -> bool {
     whole
 }
 
-/// Reads what is long piece by piece, one every five seconds; whether the robot has put up with it.
+/// Reads a long response in pieces, one every five seconds. Returns `true` if the robot accepts that.
 async fn is_read_slowly(data: bool, piece: usize) -> bool {
     let config = loopback()
         .stall_timeout(Duration::from_secs(7))

@@ -1,30 +1,30 @@
-//! A log that a flood does not flood.
+//! Limits of log lines.
 
 use std::time::{Duration, Instant};
 
-/// Lines that one cause may write in a minute.
+/// Lines of one cause in a time window.
 const LINES: u32 = 5;
 
-/// The lines of one cause, mostly on one connection: a few a minute, for what goes on for hours is no
-/// news. What is held back is counted, and the next line says so.
+/// Limits the lines of one cause, usually on one connection, to a few per minute. Suppressed lines are counted, and the
+/// next line contains their number.
 #[derive(Debug)]
-pub(crate) struct Thin {
+pub(crate) struct LogLimiter {
     window: Duration,
-    /// When the window began.
+    /// Start of the window.
     since: Option<Instant>,
     lines: u32,
     held: u64,
 }
 
-impl Default for Thin {
+impl Default for LogLimiter {
     fn default() -> Self {
         Self::within(Duration::from_secs(60))
     }
 }
 
-impl Thin {
-    /// As many lines a second, for what is news each time: that connections come and go. Nobody who
-    /// reads the log may take one for up that is down.
+impl LogLimiter {
+    /// Allows as many lines per second, for lines that are always new: connections that begin and end. A reader of the
+    /// log must not take a lost connection for an open one.
     pub(crate) fn per_second() -> Self {
         Self::within(Duration::from_secs(1))
     }
@@ -38,8 +38,8 @@ impl Thin {
         }
     }
 
-    /// Whether to write a line now; if so, how many were held back before it.
-    pub(crate) fn line(&mut self, now: Instant) -> Option<Held> {
+    /// Returns the number of lines suppressed before if a line may be written now, or `None`.
+    pub(crate) fn admit(&mut self, now: Instant) -> Option<Suppressed> {
         let window = self.window;
         let lasts = |since| now.saturating_duration_since(since) < window;
         if !self.since.is_some_and(lasts) {
@@ -51,16 +51,16 @@ impl Thin {
             return None;
         }
         self.lines += 1;
-        Some(Held(std::mem::take(&mut self.held)))
+        Some(Suppressed(std::mem::take(&mut self.held)))
     }
 }
 
-/// Lines held back.
+/// Number of suppressed lines.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held(u64);
+pub(crate) struct Suppressed(u64);
 
-impl Held {
-    /// What the line says of it: nothing if there were none.
+impl Suppressed {
+    /// Returns the number for the line, or `None` if no lines were suppressed.
     pub(crate) fn shown(self) -> Option<u64> {
         (self.0 > 0).then_some(self.0)
     }

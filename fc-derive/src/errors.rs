@@ -1,26 +1,26 @@
-//! All faults of one macro call, reported together.
+//! The errors of one macro call, reported together.
 
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use std::fmt::Display;
 
-/// Faults found so far.
+/// The errors found so far.
 #[derive(Default)]
-pub struct Faults(Option<syn::Error>);
+pub struct Errors(Option<syn::Error>);
 
-impl Faults {
-    /// Adds a fault on the tokens of `place`.
+impl Errors {
+    /// Adds an error at the tokens of `place`.
     pub fn on(&mut self, place: &dyn ToTokens, message: impl Display) {
         let place = place.to_token_stream();
         self.push(syn::Error::new_spanned(place, message.to_string()));
     }
 
-    /// Adds a fault at a span.
+    /// Adds an error at a span.
     pub fn at(&mut self, span: Span, message: impl Display) {
         self.push(syn::Error::new(span, message.to_string()));
     }
 
-    /// Adds a fault.
+    /// Adds an error.
     pub fn push(&mut self, error: syn::Error) {
         match &mut self.0 {
             Some(first) => first.combine(error),
@@ -28,18 +28,18 @@ impl Faults {
         }
     }
 
-    /// Gives the value of a result, or keeps its fault.
+    /// Returns the value of a result, or adds its error.
     pub fn ok<T>(&mut self, result: syn::Result<T>) -> Option<T> {
         result.map_err(|error| self.push(error)).ok()
     }
 
-    /// The faults as one error.
+    /// Returns all errors as one.
     pub fn into_result(self) -> syn::Result<()> {
         self.0.map_or(Ok(()), Err)
     }
 
-    /// The faults as `compile_error!`s in front of `stub`, which keeps the compiler from reporting
-    /// what is missing because of them; `code` if there are none.
+    /// Returns `code` without errors. Otherwise returns `compile_error!`s and `stub`, which prevents further errors
+    /// about missing implementations.
     pub fn finish(
         self,
         code: impl FnOnce() -> TokenStream,

@@ -1,33 +1,31 @@
-//! What the algorithms of [`crate::digest`] do, in one place so that their crates can be exchanged.
+//! The implementation of the algorithms, in one place so that their crates can be exchanged.
 
-use crate::digest::{Crc32, Md5, NoDigest, Sum};
-use std::fmt;
-use std::marker::PhantomData;
+use super::{Crc32, Md5, NoDigest, Sum};
 
-/// The work of an algorithm.
+/// The implementation of an algorithm.
 pub trait Compute: Sized {
-    /// What it knows after a part of the data.
+    /// State after a part of the data.
     type State: Send + 'static;
-    /// The same, to be gone on with any number of times.
+    /// State after a part of the data, which can be continued any number of times.
     #[cfg(feature = "server")]
     type Midstate: Send + Sync + 'static;
 
-    /// The digest of `data`.
+    /// Returns the digest of `data`.
     fn of(data: &[u8]) -> Sum;
-    /// The state before any data.
+    /// Returns the state before any data.
     fn begin() -> Self::State;
-    /// Takes in more data.
+    /// Adds data to the state.
     fn update(state: &mut Self::State, data: &[u8]);
-    /// The digest of all that was taken in.
+    /// Returns the digest of all data added to the state.
     fn end(state: Self::State) -> Sum;
-    /// The state after `first`.
+    /// Returns the state after `first`.
     #[cfg(feature = "server")]
     fn after(first: &[u8]) -> Self::Midstate;
-    /// The digest of the first part and `last` behind it.
+    /// Returns the digest of the first part followed by `last`.
     #[cfg(feature = "server")]
     fn resume(first: &Self::Midstate, last: &[u8]) -> Sum;
 
-    /// What tells data from other data of which a header says the same: the digest that has come with it, if any has.
+    /// Returns a value that distinguishes data under equal headers: the received digest, if the protocol has one.
     fn fingerprint(sum: Sum, _data: &[u8]) -> Sum {
         sum
     }
@@ -134,81 +132,20 @@ impl Compute for NoDigest {
         Sum::default()
     }
 
-    /// Nothing has come with it: it is digested on arrival.
+    /// The header contains no digest, so this computes one.
     fn fingerprint(_: Sum, data: &[u8]) -> Sum {
         Md5::of(data)
     }
 }
 
-/// From this length on, in bytes, data is digested in pieces: while it arrives, or while others have their
-/// turn in between.
-pub(crate) const LONG: usize = 64 * 1024;
-
-/// The digest of data as far as it has come.
-pub(crate) struct Digesting<A: Compute> {
-    /// Of a long frame. In a box: most frames are short, and what is moved about for them is to be so too.
-    state: Option<Box<A::State>>,
-    /// Bytes.
-    done: usize,
-    algorithm: PhantomData<A>,
-}
-
-impl<A: Compute> Default for Digesting<A> {
-    fn default() -> Self {
-        Self {
-            state: None,
-            done: 0,
-            algorithm: PhantomData,
-        }
-    }
-}
-
-impl<A: Compute> Digesting<A> {
-    /// Goes on with at most `most` bytes of `data`, of which a first part has been digested before. Gives
-    /// how many it were.
-    pub(crate) fn go_on(&mut self, data: &[u8], most: usize) -> usize {
-        let rest = data.get(self.done..).unwrap_or_default();
-        let piece = rest.get(..most).unwrap_or(rest);
-        let state = self.state.get_or_insert_with(|| Box::new(A::begin()));
-        A::update(state, piece);
-        self.done += piece.len();
-        piece.len()
-    }
-
-    /// Whether all of so much data has been digested.
-    #[cfg(feature = "server")]
-    pub(crate) fn is_done(&self, length: usize) -> bool {
-        self.done >= length
-    }
-
-    /// The digest of all of `data`.
-    #[inline]
-    pub(crate) fn finish(self, data: &[u8]) -> Sum {
-        match (self.state, data.get(self.done..)) {
-            (Some(mut state), Some(rest)) => {
-                A::update(&mut state, rest);
-                A::end(*state)
-            }
-            _ => A::of(data),
-        }
-    }
-}
-
-/// Shows how far it is: what has been digested says nothing to anybody.
-impl<A: Compute> fmt::Debug for Digesting<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Digesting({} bytes)", self.done)
-    }
-}
-
-/// What MD5 knows after a first part, to be gone on with any number of times. The crate's own state
-/// cannot be copied; RFC 1321 says what it is.
+/// The state of MD5 (RFC 1321) after a first part, which can be continued any number of times. The crate's state
+/// cannot be copied.
 #[cfg(feature = "server")]
 pub struct Md5Midstate {
     state: [u32; 4],
-    /// Behind the last whole block.
+    /// Bytes after the last whole block.
     rest: Vec<u8>,
-    /// Of the first part, in bytes.
+    /// Length of the first part, in bytes.
     length: u64,
 }
 
@@ -218,7 +155,6 @@ impl Md5Midstate {
     const BEGINNING: [u32; 4] = [0x6745_2301, 0xEFCD_AB89, 0x98BA_DCFE, 0x1032_5476];
     const BLOCK: usize = 64;
 
-    /// After `first`.
     fn after(first: &[u8]) -> Self {
         let mut state = Self::BEGINNING;
         let rest = Self::blocks(&mut state, first).to_vec();
@@ -229,11 +165,11 @@ impl Md5Midstate {
         }
     }
 
-    /// The digest of the first part and `last` behind it.
+    /// Returns the digest of the first part followed by `last`.
     fn digest(&self, last: &[u8]) -> Sum {
         let mut state = self.state;
         let mut end = [&self.rest, last, &[0x80]].concat();
-        // Sections 3.1 and 3.2: up to a whole block with the length in bits at its end.
+        // Sections 3.1 and 3.2: pad to a whole block that ends with the length in bits.
         let whole = (end.len() + 8).next_multiple_of(Self::BLOCK);
         end.resize(whole - 8, 0);
         let bits = (self.length + last.len() as u64).wrapping_mul(8);
@@ -246,7 +182,7 @@ impl Md5Midstate {
         digest
     }
 
-    /// Takes in all whole blocks and gives what is left.
+    /// Adds all whole blocks to the state and returns the remaining bytes.
     fn blocks<'a>(state: &mut [u32; 4], bytes: &'a [u8]) -> &'a [u8] {
         let (blocks, rest) = bytes.as_chunks::<{ Self::BLOCK }>();
         for block in blocks {
@@ -258,8 +194,9 @@ impl Md5Midstate {
 
 #[cfg(test)]
 mod tests {
-    use super::{Compute, Digesting, Sum};
-    use crate::digest::{Crc32, Md5, NoDigest};
+    use super::Compute;
+    use crate::digest::{Crc32, Md5, NoDigest, Sum};
+    use crate::frame::Digesting;
     use md5::Digest as _;
 
     fn data(length: u16) -> Vec<u8> {
@@ -313,7 +250,7 @@ mod tests {
         }
     }
 
-    /// Reports are told apart by it.
+    /// The session uses it to distinguish reports.
     #[fc_test::test]
     fn other_data_has_another_fingerprint_whatever_the_algorithm() {
         fn of<A: Compute>(data: &[u8]) -> Sum {

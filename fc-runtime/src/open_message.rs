@@ -1,15 +1,15 @@
-//! A message of any keys, to add an envelope to what has none and to take it off again.
+//! A message with any keys, to add an envelope to a JSON object and to remove it.
 
 use crate::json::{Extra, ObjectWriter, Reader};
 use crate::message::Message;
 
-/// A message all of whose keys are kept as they are.
+/// A message that keeps all keys unchanged.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Keys(Extra);
+pub(crate) struct OpenMessage(Extra);
 
 #[cfg(feature = "server")]
-impl Keys {
-    /// Those that are not among `others`.
+impl OpenMessage {
+    /// Returns the keys that `others` does not have.
     pub(crate) fn without(&self, others: &Self) -> Self {
         let mut left = Extra::new();
         let missing = self.0.iter().filter(|(key, _)| others.0.get(key).is_none());
@@ -20,7 +20,7 @@ impl Keys {
     }
 }
 
-impl Message for Keys {
+impl Message for OpenMessage {
     type Slots = Extra;
 
     fn slots() -> Extra {

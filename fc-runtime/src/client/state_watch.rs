@@ -1,4 +1,4 @@
-//! Whether there is a connection: as a value, and as a stream of its changes.
+//! The state of a connection, as a value and as a stream of changes.
 
 use super::loss::Loss;
 use futures_core::Stream;
@@ -9,48 +9,47 @@ use std::pin::Pin;
 use std::task::{Context, Poll};
 use tokio::sync::watch;
 
-/// Whether there is a connection at this moment, and why not.
+/// The state of a connection, with the reason if there is none.
 ///
-/// `connects` is the number of connections made so far. A robot may have restarted in between, so
-/// that an app that sees another number than before asks for the robot's state again.
+/// `connects` is the number of connections made so far. The robot may have restarted between two of them, so an app
+/// queries the robot's state when the number changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConnectionState {
     /// There is a connection.
     Connected {
-        /// Which one it is, counted from 1.
+        /// Number of the connection, counted from 1.
         connects: u64,
     },
-    /// There is none, and one is being made: the first, or another one after a loss. What can wait
-    /// for it does.
+    /// There is no connection, and one is being made: the first, or another one after a loss. Calls wait for it.
     Connecting {
-        /// Connections so far; 0 before the first.
+        /// Number of connections so far; 0 before the first.
         connects: u64,
-        /// Why there is none: the loss, and from then on what the last attempt failed with.
+        /// The loss, or the error of the last attempt.
         why: Loss,
     },
-    /// There will be none any more.
+    /// There will be no further connection.
     Closed {
-        /// Connections there have been.
+        /// Number of connections.
         connects: u64,
-        /// What ended the last one, or what the last attempt failed with.
+        /// The loss of the last connection, or the error of the last attempt.
         why: Loss,
     },
 }
 
 impl ConnectionState {
-    /// Whether there is a connection.
+    /// Returns `true` if there is a connection.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         matches!(self, Self::Connected { .. })
     }
 
-    /// Whether there will be no connection any more.
+    /// Returns `true` if there will be no further connection.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         matches!(self, Self::Closed { .. })
     }
 
-    /// How many connections have been made, the present one included.
+    /// Returns the number of connections so far, the present one included.
     #[must_use]
     pub fn connects(&self) -> u64 {
         match *self {
@@ -60,7 +59,7 @@ impl ConnectionState {
         }
     }
 
-    /// Why there is no connection; `None` while there is one.
+    /// Returns the reason why there is no connection, or `None` if there is one.
     #[must_use]
     pub fn why(&self) -> Option<Loss> {
         match *self {
@@ -70,16 +69,16 @@ impl ConnectionState {
     }
 }
 
-/// The state of a connection, and all who watch it.
+/// The state of a connection, and its watchers.
 #[derive(Debug)]
-pub(super) struct Life {
-    /// What the watchers are told. Asked for here, it costs a call nothing.
+pub(super) struct StateWatch {
+    /// Copy of the state for the watchers. A call reads it here at no cost.
     now: ConnectionState,
     told: watch::Sender<ConnectionState>,
 }
 
-impl Life {
-    /// Before the first connection.
+impl StateWatch {
+    /// Creates the state before the first connection.
     pub(super) fn new() -> Self {
         let now = ConnectionState::Connecting {
             connects: 0,
@@ -95,19 +94,19 @@ impl Life {
         self.now
     }
 
-    /// There is one more connection.
+    /// Notes a new connection.
     pub(super) fn connected(&mut self) {
         let connects = self.now.connects() + 1;
         self.turn(ConnectionState::Connected { connects });
     }
 
-    /// There is no connection, and another one is being made.
+    /// Notes that there is no connection and another one is being made.
     pub(super) fn lost(&mut self, why: Loss) {
         let connects = self.now.connects();
         self.turn(ConnectionState::Connecting { connects, why });
     }
 
-    /// There will be none. The first reason counts.
+    /// Notes the end. The first reason is kept.
     pub(super) fn close(&mut self, why: Loss) {
         let connects = self.now.connects();
         self.turn(ConnectionState::Closed { connects, why });
@@ -120,16 +119,15 @@ impl Life {
         }
     }
 
-    pub(super) fn watch(&self) -> watch::Receiver<ConnectionState> {
+    pub(super) fn subscribe(&self) -> watch::Receiver<ConnectionState> {
         self.told.subscribe()
     }
 }
 
-/// The states of a connection: first the one that it is in, then each that it comes to, and nothing
-/// after [`ConnectionState::Closed`].
+/// The states of a connection: the present one, then each new one, up to [`ConnectionState::Closed`].
 ///
-/// Nothing is queued. Who asks late gets the latest state, and from `connects` learns of
-/// connections in between. It does not keep the connection open.
+/// States are not queued. A late caller gets the latest state, and `connects` reveals connections in between. It does
+/// not keep the connection open.
 pub struct ConnectionStates(Pin<Box<dyn Stream<Item = ConnectionState> + Send + Sync>>);
 
 impl ConnectionStates {
@@ -148,7 +146,7 @@ impl ConnectionStates {
         Self(Box::pin(states.fuse()))
     }
 
-    /// The next state; `None` after [`ConnectionState::Closed`].
+    /// Returns the next state, or `None` after [`ConnectionState::Closed`].
     ///
     /// Cancellation safe.
     pub async fn recv(&mut self) -> Option<ConnectionState> {
@@ -170,7 +168,7 @@ impl fmt::Debug for ConnectionStates {
     }
 }
 
-/// Waits until a connection has ended for good, and says why.
+/// Waits until a connection has ended for good, and returns the reason.
 pub(super) async fn closed(mut states: watch::Receiver<ConnectionState>) -> Loss {
     let closed = states.wait_for(ConnectionState::is_closed).await;
     closed.map_or(Loss::Ended, |state| state.why().unwrap_or(Loss::Ended))

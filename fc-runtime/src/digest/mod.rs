@@ -1,21 +1,24 @@
-//! The algorithms by which a header says that its data has arrived undamaged.
+//! Digest algorithms, by which a header detects damaged data.
 //!
-//! A header names its algorithm as a type, so that what is not needed is not compiled and nothing is chosen while
-//! frames go by. Each guards against damage on the way, none against anybody's intent.
+//! A header names its algorithm as a type. So unused algorithms are not compiled, and frames need no choice at run time.
+//! The algorithms detect accidental damage, not attacks.
 
 #[cfg(feature = "frames")]
-pub(crate) use crate::frame::Compute;
+mod compute;
+
+#[cfg(feature = "frames")]
+pub(crate) use compute::Compute;
 #[cfg(not(feature = "frames"))]
 pub(crate) use sealed::Compute;
 use std::fmt::Debug;
 
-/// Room for the longest digest. A shorter one takes the first bytes, and zeros follow.
+/// A digest. Shorter digests take the first bytes, followed by zeros.
 pub type Sum = [u8; 16];
 
-/// How the data area of a frame is digested. The types of this module are all there are.
-#[allow(private_bounds, reason = "nobody else implements it")]
+/// A digest algorithm for the data area of a frame. Only the types of this module implement it.
+#[allow(private_bounds, reason = "sealed: no other type implements it")]
 pub trait DigestAlgorithm: Compute + Copy + Debug + Default + Send + Sync + 'static {
-    /// The digest of `data`.
+    /// Returns the digest of `data`.
     #[cfg(feature = "frames")]
     #[must_use]
     fn digest(data: &[u8]) -> Sum {
@@ -31,7 +34,7 @@ pub struct Md5;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Crc32;
 
-/// No digest: damage is left to be found by TCP's own checksum and by the parser.
+/// No digest: only the checksum of TCP and the parser detect damage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct NoDigest;
 
@@ -41,7 +44,7 @@ impl DigestAlgorithm for NoDigest {}
 
 #[cfg(not(feature = "frames"))]
 mod sealed {
-    /// Messages alone need no digest.
+    /// Empty, because messages without frames have no digest.
     pub trait Compute {}
 
     impl Compute for super::Md5 {}

@@ -1,7 +1,7 @@
-//! The receiving half of a robot's data connection: large frames pass the gate, and memory is asked for.
+//! The receiving half of a robot's data connection, with limits on memory and large frames.
 
-use super::budget::Account;
-use super::gate::{Gate, LARGE, through};
+use super::budget::ConnectionMemory;
+use super::gate::{Gate, LARGE, process_frame};
 use crate::frame::LONG;
 use crate::protocol::Protocol;
 use crate::stream::{Receiver, StreamError, StreamFrame};
@@ -10,23 +10,23 @@ use std::io;
 use std::sync::Arc;
 use tokio::io::AsyncRead;
 
-/// A receiver within the bounds of a robot.
-pub(super) struct Bounded<R, P: Protocol> {
+/// A receiver that reserves memory, and passes the gate for large frames.
+pub(super) struct MeteredReceiver<R, P: Protocol> {
     receiver: Receiver<R, P>,
     gate: Gate,
-    account: Arc<Account>,
+    memory: Arc<ConnectionMemory>,
 }
 
-impl<R: AsyncRead + Unpin, P: Protocol> Bounded<R, P> {
-    pub(super) fn new(receiver: Receiver<R, P>, gate: Gate, account: Arc<Account>) -> Self {
+impl<R: AsyncRead + Unpin, P: Protocol> MeteredReceiver<R, P> {
+    pub(super) fn new(receiver: Receiver<R, P>, gate: Gate, memory: Arc<ConnectionMemory>) -> Self {
         Self {
             receiver,
             gate,
-            account,
+            memory,
         }
     }
 
-    /// The next frame; `None` at the end. Cancellation safe.
+    /// Returns the next frame, or `None` at the end. Cancellation safe.
     pub(super) async fn recv(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         loop {
             if let Some(frame) = self.pass().await? {
@@ -39,13 +39,13 @@ impl<R: AsyncRead + Unpin, P: Protocol> Bounded<R, P> {
         }
     }
 
-    /// The next frame that has arrived, as soon as it may be dealt with.
+    /// Returns the next complete frame, after the gate if it is large.
     async fn pass(&mut self) -> Result<Option<StreamFrame>, StreamError> {
         let receiver = &mut self.receiver;
         let taken = if let Some(work) = receiver.decoder().work(LARGE) {
-            let _inflated = poll_fn(|cx| self.account.poll_lend(cx, work.inflated)).await;
+            let _inflated = poll_fn(|cx| self.memory.poll_lend(cx, work.inflated)).await;
             let pass = self.gate.clone().pass().await;
-            through(Some(&pass), || receiver.take())
+            process_frame(Some(&pass), || receiver.take())
         } else {
             receiver.take()
         };
@@ -53,12 +53,11 @@ impl<R: AsyncRead + Unpin, P: Protocol> Bounded<R, P> {
         if decoder.idle() > LONG {
             decoder.tidy();
         }
-        self.account.hold(decoder.capacity(), 0);
+        self.memory.update(decoder.capacity(), 0);
         taken
     }
 
-    /// Reads once; 0 at the end of the stream. Without memory until something has come, and then with
-    /// as much as there is for it.
+    /// Reads once. Returns 0 at the end of the stream. Memory is reserved only after bytes have arrived.
     async fn read_on(&mut self) -> Result<usize, StreamError> {
         let decoder = self.receiver.decoder();
         if decoder.is_bare() {
@@ -66,22 +65,22 @@ impl<R: AsyncRead + Unpin, P: Protocol> Bounded<R, P> {
         }
         let bytes = decoder.growth();
         if bytes > 0 {
-            poll_fn(|cx| self.account.poll_more(cx, bytes)).await;
+            poll_fn(|cx| self.memory.poll_grow(cx, bytes)).await;
         }
         self.receiver.fill().await
     }
 
-    /// Reads on to the end of the stream, and looks at nothing.
+    /// Reads and drops everything up to the end of the stream.
     pub(super) async fn skip_to_end(&mut self) -> io::Result<()> {
         self.receiver.skip_to_end().await
     }
 
-    /// Bytes received since this was last asked.
+    /// Returns the number of bytes received since the last call.
     pub(super) fn take_received(&mut self) -> usize {
         self.receiver.take_received()
     }
 
-    /// What [`Decoder::take_surplus`](crate::frame::Decoder::take_surplus) says.
+    /// Calls [`Decoder::take_surplus`](crate::frame::Decoder::take_surplus).
     pub(super) fn take_surplus(&mut self) -> u64 {
         self.receiver.decoder().take_surplus()
     }
