@@ -3,7 +3,6 @@
 //! It reads each file alone, in sound and unsound specs, and keeps its results for unchanged files.
 
 mod places;
-mod site;
 mod uses;
 
 use crate::load::Trees;
@@ -11,9 +10,9 @@ use crate::source::{FileId, Sources};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::sync::{Arc, OnceLock};
 
-pub use places::{Item, Place, Places};
-pub(crate) use site::entry_at;
-pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
+pub use crate::language::{OtherKey, Role, Site, Sought, site_at, sites};
+pub(crate) use places::entry_at;
+pub use places::{Item, Place, Places, described};
 pub use uses::Uses;
 
 /// The files of a spec as trees, with the places and names found in each.

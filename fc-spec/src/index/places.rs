@@ -1,8 +1,11 @@
 //! Where each thing that a spec says is written.
 
 use crate::diagnostic::nearest;
-use crate::language::grammar::{self, TRANSPORT, Table};
+use crate::language::grammar::{
+    self, AnyOperation, COMMON, Named, TRANSPORT, TYPES, Table, both_languages,
+};
 use crate::language::reference;
+use crate::load::Trees;
 use crate::load::draft::{Draft, Place as Written, Placed};
 use crate::model::{Direction, Kind, Text, TypeShape};
 use crate::source::{FileId, Span};
@@ -36,6 +39,20 @@ impl Item {
             None => format!(" {}", self.name),
         };
         text!("{kind}{name}", "{self}")
+    }
+}
+
+impl Item {
+    /// Returns `true` for a type, declared or made of a body.
+    #[must_use]
+    pub fn is_type(&self) -> bool {
+        TYPES.contains(&self.kind)
+    }
+
+    /// Returns `true` for a command, report or stream.
+    #[must_use]
+    pub fn is_operation(&self) -> bool {
+        AnyOperation::KINDS.contains(&self.kind)
     }
 }
 
@@ -335,4 +352,27 @@ fn types(places: &mut Said, draft: &Draft<'_>) {
             places.add(inside, Some(name), own, part.place);
         }
     }
+}
+
+/// The entry whose key stands there.
+pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
+    let has = |node: Node<'_>| node.span().start <= key.start && key.end <= node.span().end;
+    for entry in node.entries() {
+        if entry.key.span() == key {
+            return Some(entry);
+        }
+        if has(entry.value) {
+            return entry_at(entry.value, key);
+        }
+    }
+    let inside = node.items().find(|item| has(*item));
+    inside.and_then(|item| entry_at(item, key))
+}
+
+/// What a thing says of itself: its title, and more about it if there is more. Empty where the spec does not say it.
+#[must_use]
+pub fn described(trees: &Trees, place: &Place) -> Option<(Text, Option<Text>)> {
+    let tree = trees.tree(place.key.file)?;
+    let node = entry_at(tree.root(), place.key)?.value;
+    Some((both_languages(node), COMMON.about.read(node)))
 }

@@ -1,7 +1,7 @@
 //! Where a spec names things that it says elsewhere.
 
 use super::places::{Item, Place, Places};
-use super::site::{Sought, sites};
+use crate::language::{Sought, sites};
 use crate::syntax::Tree;
 use std::sync::Arc;
 

@@ -4,15 +4,19 @@
 //! All of this depends on the language alone, not on any spec.
 
 pub(crate) mod ambiguous_scalar;
+mod cursor;
 mod example;
 mod faults;
 pub(crate) mod grammar;
 mod reference;
 pub(crate) mod scalar;
 mod schema;
+mod site;
 
+pub(crate) use cursor::Cursor;
 #[cfg(test)]
 pub(crate) use reference::tables;
-pub(crate) use reference::words;
 pub use reference::{Key, Part, Takes, Word, reference};
 pub use schema::schema;
+pub(crate) use site::references;
+pub use site::{OtherKey, Role, Site, Sought, site_at, sites};

@@ -4,6 +4,7 @@
 //! and is left out or flagged, so that checks find only what is new.
 
 use crate::diagnostic::Faults;
+use crate::language::Site;
 use crate::language::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
@@ -174,6 +175,8 @@ pub(crate) struct Draft<'a> {
     /// Whether there is an answer that does not say what it answers, or how.
     pub broken_answers: bool,
     pub changes: Vec<Placed<'a, Change>>,
+    /// Values and keys that name a thing.
+    pub references: Vec<Site<'a>>,
     /// First type of each name; filled when all are lowered.
     pub type_index: HashMap<String, usize>,
     /// Types of which faults leave open what they are.

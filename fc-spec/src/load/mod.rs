@@ -17,7 +17,6 @@ mod edit;
 #[cfg(test)]
 mod examples;
 mod govern;
-mod inside;
 mod lower;
 mod partial;
 mod process;
@@ -40,7 +39,7 @@ pub use trees::Trees;
 
 pub(crate) use crate::names::is_snake as is_operation_name;
 pub(crate) use edit::text as written;
-pub(crate) use inside::{Inside, inside};
+pub(crate) use shape::{check_keys, check_root};
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// Reads a spec whose texts are in both languages: what it says, as far as it can be read, and all of its faults.

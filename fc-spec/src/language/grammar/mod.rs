@@ -52,9 +52,11 @@ macro_rules! grammar {
         };
 
         impl $Keys {
+            /// Its name in prose and in the schema.
+            pub const NAME: &'static str = $name;
             /// All of its keys.
             pub const TABLE: &'static $crate::language::grammar::kind::Table = &$crate::language::grammar::kind::Table {
-                name: $name,
+                name: Self::NAME,
                 name_zh: $name_zh,
                 doc: $crate::language::grammar::kind::Doc::new($en, $zh),
                 example: include_str!(concat!("examples/", stringify!($Keys), ".yaml")),
@@ -84,6 +86,7 @@ mod key;
 mod kind;
 mod operation;
 mod place;
+mod refers;
 pub(crate) mod unit;
 mod waiver;
 mod wire;
@@ -99,5 +102,6 @@ pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};
 pub(crate) use operation::*;
 pub(crate) use place::*;
+pub(crate) use refers::*;
 pub(crate) use waiver::*;
 pub(crate) use wire::*;

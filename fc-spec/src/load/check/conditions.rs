@@ -44,17 +44,11 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             );
             let unknown = fault(FaultCode::UnknownSibling, message);
             let others = question.beside.iter().map(|field| field.wire.as_str());
-            faults.push(match nearest(key, others) {
-                Some(near) => unknown.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => unknown.note(text!(
-                    "写同一个对象中的字段；公共字段不能用",
-                    "name a field of the same object; keys of the envelope cannot be used"
-                )),
-            });
+            let note = text!(
+                "写同一个对象中的字段；公共字段不能用",
+                "name a field of the same object; keys of the envelope cannot be used"
+            );
+            faults.push(unknown.suggest(nearest(key, others), Some(note)));
             continue;
         };
         if asked.wire == own.wire {

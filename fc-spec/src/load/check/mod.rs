@@ -8,6 +8,7 @@ mod available;
 mod cadence;
 mod codes;
 mod conditions;
+mod declared;
 mod each;
 mod entities;
 mod enums;
@@ -121,9 +122,7 @@ const OF_WHOLE: &[Check] = &[
     references::check_types,
     references::check_structs,
     references::check_operations,
-    references::check_set_off,
     codes::check_groups,
-    streams::check_commands,
     process::check_ties,
     process::check_state,
     references::check_results,
@@ -131,12 +130,8 @@ const OF_WHOLE: &[Check] = &[
     preconditions::check_names,
     preconditions::check_states,
     reach::check_unused,
-    entities::check_declared,
-    entities::check_unused,
-    places::check_declared,
-    places::check_unused,
-    available::check_declared,
-    available::check_unused,
+    declared::check_declared,
+    declared::check_unused,
     answers::check_known,
     answers::check_answered,
     answers::check_sections,

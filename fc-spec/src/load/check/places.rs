@@ -1,13 +1,11 @@
 //! Coordinate systems and stores, and what names them.
 
-use super::each::{fields, typed_fields};
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use super::each::typed_fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::FIELD;
 use crate::language::grammar::unit::is_length;
-use crate::language::grammar::{COMMON, FIELD, FILE};
 use crate::load::draft::Draft;
-use crate::model::{StructType, Text, Type, TypeShape};
-use crate::names;
-use crate::source::Span;
+use crate::model::{StructType, Type, TypeShape};
 use crate::text;
 use std::collections::HashSet;
 
@@ -113,120 +111,5 @@ fn structure<'d>(draft: &'d Draft<'_>, ty: &Type) -> Option<&'d StructType> {
     match &draft.type_named(named.name())?.def.shape {
         TypeShape::Struct(shape) => Some(shape),
         TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    }
-}
-
-/// Coordinate systems and stores that something names are declared.
-pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
-    for set in [systems(draft), stores(draft)] {
-        let declared: HashSet<&str> = set.declared.iter().map(|(name, _)| *name).collect();
-        // What is no name has been reported.
-        let users = set.users.iter().filter(|(name, _)| names::is_snake(name));
-        for (name, span) in users.filter(|(name, _)| !declared.contains(name)) {
-            let message = text!(
-                "没有{what} `{name}`",
-                "there is no {what} `{name}`",
-                what = set.what
-            );
-            let fault = Diagnostic::error(set.unknown, *span, message);
-            faults.push(match nearest(name, declared.iter().copied()) {
-                Some(near) => fault.fix(
-                    *span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => fault.note(text!(
-                    "在 `{key}:` 下声明",
-                    "declare it under `{key}:`",
-                    key = set.key
-                )),
-            });
-        }
-    }
-}
-
-/// Something names each of them. The one that a slip stands for is not reported a second time.
-pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
-    for set in [systems(draft), stores(draft)] {
-        let declared: HashSet<&str> = set.declared.iter().map(|(name, _)| *name).collect();
-        let mut used: HashSet<&str> = set.users.iter().map(|(name, _)| *name).collect();
-        let slips: Vec<&str> = used.difference(&declared).copied().collect();
-        for slip in slips {
-            used.extend(nearest(slip, declared.iter().copied()));
-        }
-        for (name, span) in set.declared.iter().filter(|(name, _)| !used.contains(name)) {
-            let message = text!(
-                "{what} `{name}` 没有用到",
-                "the {what} `{name}` is not used",
-                what = set.what
-            );
-            let note = text!(
-                "在适用的地方写 `{by}`，或将它删除",
-                "write `{by}` where it applies, or delete it",
-                by = set.by
-            );
-            faults.push(Diagnostic::error(set.unused, *span, message).note(note));
-        }
-    }
-}
-
-/// What is declared under one key and named by another, each name with its place.
-struct Names<'d> {
-    what: Text,
-    key: &'static str,
-    by: &'static str,
-    unknown: FaultCode,
-    unused: FaultCode,
-    declared: Vec<(&'d str, Span)>,
-    users: Vec<(&'d str, Span)>,
-}
-
-fn systems<'d>(draft: &'d Draft<'_>) -> Names<'d> {
-    let declared = draft.coordinates.iter();
-    let of_types = draft.types.iter().filter_map(|ty| match &ty.def.shape {
-        TypeShape::Struct(shape) => {
-            let name = shape.coordinates.as_deref()?;
-            Some((name, ty.place.at(FIELD.coordinates)))
-        }
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    });
-    let of_fields = fields(draft).filter_map(|(_, field, part)| {
-        let name = field.details().coordinates.as_deref()?;
-        Some((name, part.place.at(FIELD.coordinates)))
-    });
-    Names {
-        what: text!("坐标系", "coordinate system"),
-        key: FILE.coordinates.name,
-        by: FIELD.coordinates.name,
-        unknown: FaultCode::UnknownCoordinates,
-        unused: FaultCode::UnusedCoordinates,
-        declared: declared
-            .map(|it| (it.item.name.as_str(), it.place.name()))
-            .collect(),
-        users: of_types.chain(of_fields).collect(),
-    }
-}
-
-fn stores<'d>(draft: &'d Draft<'_>) -> Names<'d> {
-    let declared = draft.stores.iter();
-    let operations = draft.operations.iter();
-    let of_operations = operations.map(|it| (it.item.kept.as_deref(), it.place));
-    let of_tables = draft.tables.iter();
-    let of_tables = of_tables.map(|it| (it.item.kept.as_deref(), it.place));
-    let of_fields =
-        fields(draft).map(|(_, field, part)| (field.details().kept.as_deref(), part.place));
-    let users = of_operations.chain(of_tables).chain(of_fields);
-    Names {
-        what: text!("存储位置", "store"),
-        key: FILE.stores.name,
-        by: COMMON.kept.name,
-        unknown: FaultCode::UnknownStore,
-        unused: FaultCode::UnusedStore,
-        declared: declared
-            .map(|it| (it.item.name.as_str(), it.place.name()))
-            .collect(),
-        users: users
-            .filter_map(|(name, place)| Some((name?, place.at(COMMON.kept))))
-            .collect(),
     }
 }

@@ -1,6 +1,5 @@
 //! What has to hold before a command is accepted.
 
-use super::each::called;
 use super::reach::each_name;
 use super::value::{Mismatch, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -118,11 +117,8 @@ fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
     carried
 }
 
-/// The enums of states are declared, and what comes first is a command.
+/// The enums of states are declared.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
-    let commands = draft.operations.iter().map(|operation| &operation.item);
-    let commands = commands.filter(|operation| operation.kind() == Kind::Command);
-    let commands: HashSet<&str> = commands.map(|command| command.name.as_str()).collect();
     for (_, node) in preconditions(draft) {
         let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
         for Entry { key, .. } in enums.into_iter().flatten() {
@@ -133,41 +129,8 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
             let fault = Diagnostic::error(FaultCode::UnknownType, key.span(), message);
             let types = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
             let near = nearest(name, types.map(|ty| ty.def.name.as_str()));
-            faults.push(fix(fault, key, near));
+            faults.push(fault.suggest(near, None));
         }
-        for node in ACCEPTED.after.items(node) {
-            let Some(name) = node.as_str().filter(|name| !commands.contains(name)) else {
-                continue;
-            };
-            let mut operations = draft.operations.iter();
-            let other = operations.find(|operation| operation.item.name == name);
-            let fault = if let Some(other) = other {
-                let kind = called(other.item.kind());
-                let message = text!(
-                    "`after` 应为指令，而 `{name}` 是{kind}",
-                    "`after` needs a command, but `{name}` is a {kind}",
-                    kind = kind
-                );
-                Diagnostic::error(FaultCode::NotACommand, node.span(), message)
-                    .also(other.place.name(), text!("在这里声明", "declared here"))
-            } else {
-                let message = text!("没有指令 `{name}`", "there is no command `{name}`");
-                Diagnostic::error(FaultCode::UnknownOperation, node.span(), message)
-            };
-            let near = nearest(name, commands.iter().copied());
-            faults.push(fix(fault, node, near));
-        }
-    }
-}
-
-fn fix(fault: Diagnostic, node: Node<'_>, near: Option<&str>) -> Diagnostic {
-    match near {
-        Some(near) => fault.fix(
-            node.span(),
-            near,
-            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-        ),
-        None => fault,
     }
 }
 

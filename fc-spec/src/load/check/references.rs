@@ -1,12 +1,10 @@
 //! Names that must stand for something.
 
-use super::each::{called, fields};
+use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{
-    COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
-};
+use crate::language::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
 use crate::load::draft::{Draft, Place};
-use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
+use crate::model::{ResultRole, Text, Type, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};
 use crate::text;
@@ -198,82 +196,24 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
     }
 }
 
-/// What replaces a withdrawn operation exists and is not itself.
+/// Another operation replaces a deprecated one.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
-    let names: HashSet<&str> = draft
-        .operations
-        .iter()
-        .map(|operation| operation.item.name.as_str())
-        .collect();
     for operation in &draft.operations {
         let deprecated = operation.item.deprecated.as_ref();
         let Some(by) = deprecated.and_then(|deprecated| deprecated.replaced_by.as_deref()) else {
             continue;
         };
-        let node = DEPRECATED
-            .replaced_by
-            .of(OPERATION.deprecated.of(operation.place.node));
-        let span = node.map_or(operation.place.name(), Node::span);
         if by == operation.item.name {
+            let node = DEPRECATED
+                .replaced_by
+                .of(OPERATION.deprecated.of(operation.place.node));
+            let span = node.map_or(operation.place.name(), Node::span);
             let message = text!("接口不能由自己替代", "an operation cannot replace itself");
             faults.push(Diagnostic::error(
                 FaultCode::UnknownOperation,
                 span,
                 message,
             ));
-        } else if !names.contains(by) {
-            let message = text!("没有接口 `{by}`", "there is no operation `{by}`");
-            let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
-            faults.push(match nearest(by, names.iter().copied()) {
-                Some(near) => fault.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => fault,
-            });
-        }
-    }
-}
-
-/// What a command sets off is a report.
-pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
-    let reports = draft
-        .operations
-        .iter()
-        .map(|operation| &operation.item)
-        .filter(|operation| operation.kind() == Kind::Report);
-    let reports: HashSet<&str> = reports.map(|report| report.name.as_str()).collect();
-    for command in &draft.operations {
-        for node in COMMAND.sets_off.items(command.place.node) {
-            let node = SET_OFF.report.of(node).unwrap_or(node);
-            let Some(name) = node.as_str().filter(|name| !reports.contains(name)) else {
-                continue;
-            };
-            let span = node.span();
-            let mut operations = draft.operations.iter();
-            let other = operations.find(|operation| operation.item.name == name);
-            let fault = if let Some(other) = other {
-                let kind = called(other.item.kind());
-                let message = text!(
-                    "`sets_off` 应为上报，而 `{name}` 是{kind}",
-                    "`sets_off` needs a report, but `{name}` is a {kind}",
-                    kind = kind
-                );
-                Diagnostic::error(FaultCode::NotAReport, span, message)
-                    .also(other.place.name(), text!("在这里声明", "declared here"))
-            } else {
-                let message = text!("没有上报 `{name}`", "there is no report `{name}`");
-                Diagnostic::error(FaultCode::UnknownOperation, span, message)
-            };
-            faults.push(match nearest(name, reports.iter().copied()) {
-                Some(near) => fault.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => fault,
-            });
         }
     }
 }

@@ -82,17 +82,10 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
                     "`{ty}` has no value `{name}`",
                     ty = ty.def.name
                 );
-                let span = node.span();
-                let fault = Diagnostic::error(FaultCode::UnknownValue, span, message);
+                let fault = Diagnostic::error(FaultCode::UnknownValue, node.span(), message);
                 let known = shape.values.iter().map(|value| value.name.as_str());
-                faults.push(match nearest(name, known) {
-                    Some(near) => fault.fix(
-                        span,
-                        near,
-                        text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                    ),
-                    None => fault.note(text!("写取值的 `name`", "write the `name` of a value")),
-                });
+                let note = text!("写取值的 `name`", "write the `name` of a value");
+                faults.push(fault.suggest(nearest(name, known), Some(note)));
             }
         }
     }

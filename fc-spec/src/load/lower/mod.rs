@@ -120,15 +120,20 @@ impl<'a> Lowering<'a, '_> {
             (FILE.limits.name, Self::limits),
             (FILE.codes.name, Self::codes),
         ];
-        if let Some((_, lower)) = each.iter().find(|(key, _)| *key == name) {
+        let is_read = |(key, _): &&Lower<'a, Self>| *key == name;
+        let each = each.iter().find(is_read);
+        let clean = clean.iter().filter(|_| section.clean);
+        let whole = whatever.iter().chain(clean).find(is_read);
+        if each.or(whole).is_some() {
+            self.draft.references.extend(&section.references);
+        }
+        if let Some((_, lower)) = each {
             for Entry { key, value: node } in place.node.entries() {
                 self.entry = format!("{name}.{}", key.as_str().unwrap_or_default());
                 lower(self, Place { key, node });
             }
         }
         name.clone_into(&mut self.entry);
-        let clean = clean.iter().filter(|_| section.clean);
-        let whole = whatever.iter().chain(clean).find(|(key, _)| *key == name);
         if let Some((_, lower)) = whole {
             lower(self, place);
         }

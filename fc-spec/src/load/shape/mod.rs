@@ -6,21 +6,29 @@ mod keys;
 mod scalars;
 mod stray;
 
-pub(super) use keys::unknown_keys;
+pub(crate) use keys::check_keys;
 
 use super::texts;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
+use crate::language::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, File, Kind, TEXT, Table};
 use crate::language::scalar;
 use crate::model::{Lang, Languages};
 use crate::source::Span;
 use crate::syntax::{Entry, Items, Node, NodeKind, quoted};
 use crate::text;
 use expected::{describe_either, describe_key, wrong_kind};
-use keys::{article, missing_keys};
+use keys::{article, missing_keys, unknown_keys};
 use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 use stray::{is_split, misplaced, misplaced_entry, section_of};
+
+/// Reports the root of a file that is no mapping.
+pub(crate) fn check_root(root: Node<'_>, faults: &mut Faults) {
+    if root.as_mapping().is_none() {
+        let kind = Kind::Map(File::TABLE);
+        check_kind(&kind, root, root.span(), Languages::Any, faults);
+    }
+}
 
 /// Reports what `node` lacks of `kind`. Each text has to be in the languages `texts`.
 pub(super) fn check_kind(
@@ -43,6 +51,7 @@ pub(super) fn check_kind(
         }
         Kind::Json => check_json(node, Wanted::Either, faults),
         Kind::Type => check_type(node, at, faults),
+        Kind::Ref { name, .. } => check_scalar(name, node, at, faults),
         _ => check_scalar(kind, node, at, faults),
     }
 }
@@ -155,7 +164,9 @@ fn check_entries(
             continue;
         }
         check_key(key, entry.key, faults);
-        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) = (key, scalar::int(entry.key)) {
+        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) =
+            (key.form(), scalar::int(entry.key))
+        {
             match numbers.get(&number) {
                 Some(first) => faults.push(
                     Diagnostic::error(
@@ -192,7 +203,7 @@ fn check_entries(
 fn check_key(kind: &Kind, key: Node<'_>, faults: &mut Faults) {
     match kind {
         Kind::WireKey => check_wire_key(key, faults),
-        _ => check_scalar(kind, key, key.span(), faults),
+        _ => check_scalar(kind.form(), key, key.span(), faults),
     }
 }
 
@@ -255,7 +266,7 @@ fn check_list(
         check_kind(of, item, item.span(), texts, faults);
     }
     if matches!(
-        of,
+        of.form(),
         Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
     ) {
         check_repeated(items, faults);
@@ -316,7 +327,7 @@ fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, texts: Languages, faul
 
 /// Whether a scalar is exactly what the kind asks for.
 fn fits(kind: &Kind, node: Node<'_>) -> bool {
-    match kind {
+    match kind.form() {
         Kind::Code => scalar::code(node).is_some(),
         Kind::Int { .. } => scalar::int(node).is_some(),
         Kind::Word(words) => node

@@ -1,18 +1,14 @@
 //! Every key and value of a file, and what the language says of it: for editors.
 
-use super::places::{Item, Place};
+use super::cursor::{Cursor, FILE_KIND};
+use super::reference::{Word, words};
 use crate::language::grammar::{
-    ACCEPTED, ANSWER, AVAILABLE, Answer, Audience, Available, COMMON, Choice, Command, Conflict,
-    Constants, CoordinateSystem, DEPRECATED, DeclaredError, ENUM_VALUE, ERROR, Entity, Enum,
-    EnumValue, FIELD, FIELD_KIND, FILE, Field, File, Group, Items, Kind, Machine, NamedVariant,
-    OPERATION, Object, OneOf, Precondition, RANGE, Range, Report, ResultCode, SET_OFF, STREAM,
-    Series, SetOff, Store, Stream, Struct, Table, both_languages,
+    AnyKey, COMMON, Choice, Command, EnumValue, FILE, Field, File, Items, Kind, Named, OPERATION,
+    Object, Report, TYPES, Table,
 };
-use crate::language::{Word, words};
-use crate::load::Trees;
-use crate::model::{RangeUse, Text, Type};
+use crate::model::{RangeUse, Type};
 use crate::source::Span;
-use crate::syntax::{Entry, Node, Style};
+use crate::syntax::{Node, Style};
 
 /// A key or a scalar value of a file.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +53,7 @@ pub struct OtherKey {
 /// A thing that something is the name of, whether or not the spec has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sought {
-    /// What it may be; ids of [`Item`](super::Item)s.
+    /// What it may be; ids of [`Item`](crate::index::Item)s.
     pub kinds: &'static [&'static str],
     /// What it is part of: of an enum value, its enum.
     pub owner: Option<String>,
@@ -67,30 +63,7 @@ pub struct Sought {
     pub span: Span,
 }
 
-static FILE_KIND: Kind = Kind::Map(File::TABLE);
-static WIRE_KEY: Kind = Kind::WireKey;
-
-const TYPES: &[&str] = &[Struct::TABLE.name, Enum::TABLE.name, OneOf::TABLE.name];
-const STRUCTS: &[&str] = &[Struct::TABLE.name];
-const VALUES: &[&str] = &[EnumValue::TABLE.name];
-const ENUMS: &[&str] = &[Enum::TABLE.name];
-const COMMANDS: &[&str] = &[Command::TABLE.name];
-const REPORTS: &[&str] = &[Report::TABLE.name];
-const OPERATIONS: &[&str] = &[Command::TABLE.name, Report::TABLE.name, Stream::TABLE.name];
-
-impl Item {
-    /// Whether it is a type, declared or made of a body.
-    #[must_use]
-    pub fn is_type(&self) -> bool {
-        TYPES.contains(&self.kind)
-    }
-
-    /// Whether it is a command, report or stream.
-    #[must_use]
-    pub fn is_operation(&self) -> bool {
-        OPERATIONS.contains(&self.kind)
-    }
-}
+static TYPE: Kind = Kind::Type;
 
 /// Shows every key and every scalar of a file, in the order in which they stand.
 pub fn sites<'t>(root: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
@@ -100,6 +73,22 @@ pub fn sites<'t>(root: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
         owner: None,
     };
     walk.through(&FILE_KIND, root, see);
+}
+
+/// The values and keys below a top key of a file that name a thing, except types of fields.
+pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Site<'t>> {
+    let walk = Walk {
+        part: File::NAME,
+        key: Some(section.name),
+        owner: None,
+    };
+    let mut found = Vec::new();
+    walk.through(&section.kind, node, &mut |site| {
+        if site.role != Role::Key && site.kind.refers().is_some() {
+            found.push(site);
+        }
+    });
+    found
 }
 
 /// The key or scalar on which an offset of the file lies, or right behind which.
@@ -126,45 +115,21 @@ struct Walk<'t> {
 
 impl<'t> Walk<'t> {
     fn through(self, kind: &'static Kind, node: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
-        if node.as_mapping().is_some() {
-            self.mapping(kind, kind, node, see);
-        } else if node.as_sequence().is_some() {
-            if let Some(of) = items(kind, node) {
-                for item in node.items() {
-                    self.through(of, item, see);
-                }
+        match Cursor::new(kind, node) {
+            Cursor::Declared(table) | Cursor::Ambiguous(table) => {
+                self.declared(table, kind, node, see);
             }
-        } else {
-            see(self.site(Role::Value, kind, node, None));
-        }
-    }
-
-    /// `asked`: what stands here by the language; `kind`: the one of its forms that is looked at.
-    fn mapping(
-        self,
-        asked: &'static Kind,
-        kind: &'static Kind,
-        node: Node<'t>,
-        see: &mut dyn FnMut(Site<'t>),
-    ) {
-        match kind {
-            Kind::Map(table) => self.declared(table, asked, node, see),
-            Kind::Entries { key, value, .. } => self.chosen(asked, (key, value), node, see),
-            Kind::Body => self.chosen(asked, (&WIRE_KEY, &FIELD_KIND), node, see),
-            Kind::Either(kinds) => {
-                let mut kinds = kinds.iter();
-                if let Some(kind) = kinds.find(|kind| kind.could_be(node)) {
-                    self.mapping(asked, kind, node, see);
-                }
+            Cursor::Chosen { key, value } => self.chosen(kind, (key, value), node, see),
+            Cursor::Items(of) => node.items().for_each(|item| self.through(of, item, see)),
+            Cursor::Free if node.as_mapping().is_some() => {}
+            Cursor::Free if node.as_sequence().is_none() => {
+                see(self.site(Role::Value, kind, node, None));
             }
-            Kind::ByKey { tables, otherwise } => {
-                let mut marked = tables.iter().filter(|(mark, _)| node.entry(mark).is_some());
-                match marked.next() {
-                    Some((_, table)) => self.declared(table, asked, node, see),
-                    None => self.mapping(asked, otherwise, node, see),
-                }
+            // `[Station]`.
+            Cursor::Free if kind.is_type() => {
+                node.items().for_each(|item| self.through(&TYPE, item, see));
             }
-            _ => {}
+            Cursor::Free => {}
         }
     }
 
@@ -226,21 +191,6 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// What each item of a list is.
-fn items(kind: &'static Kind, node: Node<'_>) -> Option<&'static Kind> {
-    match kind {
-        Kind::List { of, .. } => Some(of),
-        // `[Station]`.
-        Kind::Type => Some(kind),
-        Kind::Either(kinds) => {
-            let mut kinds = kinds.iter();
-            let fits = kinds.find(|kind| kind.could_be(node))?;
-            items(fits, node)
-        }
-        _ => None,
-    }
-}
-
 /// The kinds of which one stands here, also where each item of a list is one of them.
 fn each(kind: &'static Kind) -> Vec<&'static Kind> {
     match kind {
@@ -285,65 +235,14 @@ impl<'t> Site<'t> {
         kinds.into_iter().flat_map(words).collect()
     }
 
-    /// What things one of which is to be named here; ids of [`Item`](super::Item)s.
+    /// What things one of which is to be named here; ids of [`Item`](crate::index::Item)s.
     #[must_use]
     pub fn names(&self) -> &'static [&'static str] {
-        let is = |table: &Table, key: &str| self.part == table.name && self.key == Some(key);
-        let under = |key: &str| self.key == Some(key);
         match self.role {
-            Role::Key => return &[],
-            Role::Chosen => {
-                return if is(Precondition::TABLE, ACCEPTED.r#in.name) {
-                    ENUMS
-                } else if is(Available::TABLE, AVAILABLE.from.name)
-                    || is(Available::TABLE, AVAILABLE.until.name)
-                {
-                    const { &[Series::TABLE.name] }
-                } else {
-                    &[]
-                };
-            }
-            Role::Value => {}
-        }
-        let kinds = each(self.kind);
-        let takes = |wanted: fn(&Kind) -> bool| kinds.iter().any(|kind| wanted(kind));
-        if is(NamedVariant::TABLE, FIELD.r#type.name)
-            || self.part == Constants::TABLE.name && takes(is_type_name)
-        {
-            STRUCTS
-        } else if takes(|kind| matches!(kind, Kind::Type)) || takes(is_type_name) {
-            TYPES
-        } else if is(Answer::TABLE, ANSWER.ids.name) {
-            const { &[Conflict::TABLE.name] }
-        } else if is(Range::TABLE, RANGE.groups.name) {
-            const { &[Group::TABLE.name] }
-        } else if is(EnumValue::TABLE, ENUM_VALUE.then.name) {
-            VALUES
-        } else if under(OPERATION.errors.name) || is(DeclaredError::TABLE, ERROR.code.name) {
-            const { &[ResultCode::TABLE.name] }
-        } else if under(DEPRECATED.replaced_by.name) {
-            OPERATIONS
-        } else if is(SetOff::TABLE, SET_OFF.report.name)
-            || under(crate::language::grammar::COMMAND.sets_off.name)
-        {
-            REPORTS
-        } else if is(Precondition::TABLE, ACCEPTED.after.name)
-            || is(Stream::TABLE, STREAM.started_by.name)
-            || is(Stream::TABLE, STREAM.stopped_by.name)
-        {
-            COMMANDS
-        } else if is(Available::TABLE, AVAILABLE.r#for.name) {
-            const { &[Audience::TABLE.name] }
-        } else if is(Available::TABLE, AVAILABLE.hardware.name) {
-            const { &[Machine::TABLE.name] }
-        } else if under(FIELD.refers.name) {
-            const { &[Entity::TABLE.name] }
-        } else if under(COMMON.kept.name) {
-            const { &[Store::TABLE.name] }
-        } else if under(FIELD.coordinates.name) {
-            const { &[CoordinateSystem::TABLE.name] }
-        } else {
-            &[]
+            Role::Key => &[],
+            Role::Chosen => self.kind.refers().unwrap_or_default(),
+            Role::Value if self.kind.is_type() => TYPES,
+            Role::Value => self.kind.refers().unwrap_or_default(),
         }
     }
 
@@ -370,7 +269,7 @@ impl<'t> Site<'t> {
         if name.is_empty() || Type::built_in().any(|built_in| built_in == name) && kinds == TYPES {
             return None;
         }
-        let owner = if kinds == VALUES {
+        let owner = if kinds == EnumValue::KINDS {
             Some(self.owner?.to_owned())
         } else {
             None
@@ -433,10 +332,6 @@ impl<'t> Site<'t> {
     }
 }
 
-fn is_type_name(kind: &Kind) -> bool {
-    matches!(kind, Kind::TypeName)
-}
-
 /// The tables whose keys a mapping may have: one, unless it does not say yet which of several it is.
 fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table>) {
     match kind {
@@ -454,27 +349,4 @@ fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table
         }
         _ => {}
     }
-}
-
-/// The entry whose key stands there.
-pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
-    let has = |node: Node<'_>| node.span().start <= key.start && key.end <= node.span().end;
-    for entry in node.entries() {
-        if entry.key.span() == key {
-            return Some(entry);
-        }
-        if has(entry.value) {
-            return entry_at(entry.value, key);
-        }
-    }
-    let inside = node.items().find(|item| has(*item));
-    inside.and_then(|item| entry_at(item, key))
-}
-
-/// What a thing says of itself: its title, and more about it if there is more. Empty where the spec does not say it.
-#[must_use]
-pub fn described(trees: &Trees, place: &Place) -> Option<(Text, Option<Text>)> {
-    let tree = trees.tree(place.key.file)?;
-    let node = entry_at(tree.root(), place.key)?.value;
-    Some((both_languages(node), COMMON.about.read(node)))
 }
