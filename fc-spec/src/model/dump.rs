@@ -11,7 +11,7 @@ use super::{
 use crate::{names, text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
 /// What the generator knows of a protocol, for other programs.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -203,12 +203,10 @@ impl Dump {
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
         dump.check_codes()?;
-        dump.check_groups().map_err(DumpError::Name)?;
-        dump.check_entities().map_err(DumpError::Name)?;
         dump.check_conditions().map_err(DumpError::Name)?;
-        dump.check_places().map_err(DumpError::Name)?;
-        (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
-        let model = dump.model().link().map_err(DumpError::Name)?;
+        let model = dump.model();
+        model.check_names().map_err(DumpError::Name)?;
+        let model = model.link().map_err(DumpError::Name)?;
         model.check_ways().map_err(DumpError::Name)?;
         model.check_bodies().map_err(DumpError::Name)?;
         if let Some((ty, field)) = model.misfit() {
@@ -268,43 +266,6 @@ impl Dump {
         }
     }
 
-    /// Every operation, and every type that is in a group, is in one that there is.
-    fn check_groups(&self) -> Result<(), Unlinked> {
-        let groups: HashSet<&str> = self.groups.iter().map(|group| group.id.as_str()).collect();
-        let operations = self.operations.iter().map(|it| (&it.group, &it.name));
-        let types = self.types.iter();
-        let types = types.filter_map(|it| Some((it.group.as_ref()?, &it.name)));
-        let mut users = operations.chain(types);
-        match users.find(|(group, _)| !groups.contains(group.as_str())) {
-            Some((group, user)) => Err(Unlinked {
-                missing: format!("the group `{group}`"),
-                user: format!("`{user}`"),
-            }),
-            None => Ok(()),
-        }
-    }
-
-    /// Every field refers to an entity that there is, if to any.
-    fn check_entities(&self) -> Result<(), Unlinked> {
-        let entities = self.entities.iter().map(|entity| entity.name.as_str());
-        let entities: HashSet<&str> = entities.collect();
-        for ty in &self.types {
-            let TypeShape::Struct(shape) = &ty.shape else {
-                continue;
-            };
-            for field in &shape.fields {
-                let refers = field.details().refers.as_deref();
-                if let Some(name) = refers.filter(|name| !entities.contains(name)) {
-                    return Err(Unlinked {
-                        missing: format!("the entity `{name}`"),
-                        user: format!("`{}.{}`", ty.name, field.wire),
-                    });
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Every condition asks fields that there are beside its own.
     fn check_conditions(&self) -> Result<(), Unlinked> {
         for ty in &self.types {
@@ -320,42 +281,6 @@ impl Dump {
                         user: format!("`{}.{}`", ty.name, field.wire),
                     });
                 }
-            }
-        }
-        Ok(())
-    }
-
-    /// Every coordinate system and every store that something names is there.
-    fn check_places(&self) -> Result<(), Unlinked> {
-        let systems = self.coordinates.iter().map(|system| system.name.as_str());
-        let systems: HashSet<&str> = systems.collect();
-        let stores = self.stores.iter().map(|store| store.name.as_str());
-        let stores: HashSet<&str> = stores.collect();
-        let check = |known: &HashSet<&str>, what: &str, name: Option<&str>, user: &str| match name {
-            Some(name) if !known.contains(name) => Err(Unlinked {
-                missing: format!("the {what} `{name}`"),
-                user: format!("`{user}`"),
-            }),
-            _ => Ok(()),
-        };
-        for operation in &self.operations {
-            check(&stores, "store", operation.kept.as_deref(), &operation.name)?;
-        }
-        for table in &self.tables {
-            check(&stores, "store", table.kept.as_deref(), &table.id)?;
-        }
-        for ty in &self.types {
-            let TypeShape::Struct(shape) = &ty.shape else {
-                continue;
-            };
-            let system = shape.coordinates.as_deref();
-            check(&systems, "coordinate system", system, &ty.name)?;
-            for field in &shape.fields {
-                let user = format!("{}.{}", ty.name, field.wire);
-                let details = field.details();
-                let system = details.coordinates.as_deref();
-                check(&systems, "coordinate system", system, &user)?;
-                check(&stores, "store", details.kept.as_deref(), &user)?;
             }
         }
         Ok(())

@@ -12,6 +12,7 @@ mod dump_fit;
 mod entity;
 mod flat;
 mod glossary;
+mod named;
 mod operation;
 mod pattern;
 mod place;
