@@ -5,14 +5,11 @@
 
 mod available;
 mod body;
-mod entity;
-mod glossary;
 mod needs;
 mod operation;
-mod place;
 mod text;
+mod things;
 mod types;
-mod waiver;
 mod wire;
 
 pub(super) use body::USUAL_OBJECT;
