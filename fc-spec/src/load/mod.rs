@@ -33,7 +33,8 @@ use crate::model::Languages;
 use crate::source::Sources;
 use draft::Draft;
 
-pub use partial::{Loaded, Partial};
+pub use crate::model::Partial;
+pub use partial::Loaded;
 pub use settle::{Said, SettleError, Settled, settle};
 pub use trees::Trees;
 

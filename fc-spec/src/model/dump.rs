@@ -2,79 +2,9 @@
 //!
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
-use super::{
-    Answer, Availability, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem,
-    Entity, Envelope, Frame, Group, JsonRule, Limits, MissingSection, Model, Operation, Protocol,
-    Question, ResultCode, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types,
-    Unlinked, Waiver,
-};
+use super::{Condition, Dump, Model, Text, TypeShape, Unlinked};
 use crate::{names, text};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-
-/// What the generator knows of a protocol, for other programs.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct Dump {
-    /// Counts up when a key changes its meaning or goes. A key that is new in a format has a default.
-    pub format: u32,
-    /// The protocol as a whole, and what lies below its messages.
-    protocol: Below,
-    /// Groups of operations, in the order of their files' names.
-    groups: Vec<Group>,
-    /// Commands, reports and streams, by group, in the order of the files.
-    operations: Vec<Operation>,
-    /// Declared types and those made for bodies, as they stand in the spec.
-    types: Types,
-    /// By number.
-    result_codes: Vec<ResultCode>,
-    /// By number, both ends included.
-    ranges: Vec<CodeRange>,
-    /// By number.
-    retired_codes: Vec<RetiredCode>,
-    /// Published tables of constants.
-    tables: Vec<Table>,
-    /// What the ids in bodies stand for.
-    entities: Vec<Entity>,
-    /// In which positions are given.
-    coordinates: Vec<CoordinateSystem>,
-    /// Where things are kept.
-    stores: Vec<Store>,
-    /// Audiences, lines of machines and series of releases.
-    availability: Availability,
-    /// The words of the protocol and what they mean.
-    glossary: Vec<Term>,
-    /// Findings that are accepted for a time.
-    #[serde(default)]
-    waivers: Vec<Waiver>,
-    /// What the source lacks or contradicts.
-    conflicts: Vec<Conflict>,
-    /// What the spec answers to that.
-    answers: Vec<Answer>,
-    /// What only the owner of the protocol can say, the most pressing first.
-    questions: Vec<Question>,
-    /// Sections of the source of which nothing is left.
-    lost_sections: Vec<MissingSection>,
-    /// Of the protocol as a whole.
-    changes: Vec<Change>,
-}
-
-/// The protocol as a whole, and what lies below its messages.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Protocol")]
-struct Below {
-    #[serde(flatten)]
-    protocol: Protocol,
-    #[serde(flatten)]
-    transport: Transport,
-    frame: Frame,
-    /// What is done where JSON leaves it open, by rule.
-    json: BTreeMap<JsonRule, Text>,
-    /// The keys beside those of a message.
-    envelope: Envelope,
-    calls: CallDefaults,
-    limits: Limits,
-}
+use serde::Deserialize;
 
 /// Why a text is no dump that can be used.
 #[derive(Debug)]
@@ -138,42 +68,6 @@ impl std::error::Error for DumpError {
     }
 }
 
-impl From<&Model> for Dump {
-    fn from(model: &Model) -> Self {
-        let model = model.clone();
-        Self {
-            format: Self::FORMAT,
-            protocol: Below {
-                protocol: model.protocol,
-                transport: model.transport,
-                frame: model.frame,
-                json: model.json,
-                envelope: model.envelope,
-                calls: model.calls,
-                limits: model.limits,
-            },
-            groups: model.groups,
-            operations: model.operations,
-            types: model.types,
-            result_codes: model.results,
-            ranges: model.ranges,
-            retired_codes: model.retired,
-            tables: model.tables,
-            entities: model.entities,
-            coordinates: model.coordinates,
-            stores: model.stores,
-            availability: model.availability,
-            glossary: model.glossary,
-            waivers: model.waivers,
-            conflicts: model.conflicts,
-            answers: model.answers,
-            questions: model.questions,
-            lost_sections: model.missing_sections,
-            changes: model.changes,
-        }
-    }
-}
-
 impl Dump {
     /// Returns the JSON Schema of a dump, indented, with a newline at its end. It lacks keys that are computed from others.
     #[must_use]
@@ -202,9 +96,9 @@ impl Dump {
             return Err(DumpError::Format(format));
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
-        dump.check_codes()?;
-        dump.check_conditions().map_err(DumpError::Name)?;
         let model = dump.model();
+        model.check_codes()?;
+        model.check_conditions().map_err(DumpError::Name)?;
         model.check_names().map_err(DumpError::Name)?;
         let model = model.link().map_err(DumpError::Name)?;
         model.check_ways().map_err(DumpError::Name)?;
@@ -214,39 +108,9 @@ impl Dump {
         }
         Ok(model)
     }
+}
 
-    /// The same things in a model, whose references are by name only.
-    fn model(self) -> Model {
-        let below = self.protocol;
-        Model {
-            protocol: below.protocol,
-            transport: below.transport,
-            frame: below.frame,
-            json: below.json,
-            envelope: below.envelope,
-            results: self.result_codes,
-            calls: below.calls,
-            limits: below.limits,
-            ranges: self.ranges,
-            retired: self.retired_codes,
-            groups: self.groups,
-            operations: self.operations,
-            types: self.types,
-            tables: self.tables,
-            entities: self.entities,
-            coordinates: self.coordinates,
-            stores: self.stores,
-            availability: self.availability,
-            glossary: self.glossary,
-            waivers: self.waivers,
-            missing_sections: self.lost_sections,
-            conflicts: self.conflicts,
-            answers: self.answers,
-            questions: self.questions,
-            changes: self.changes,
-        }
-    }
-
+impl Model {
     /// Every code is spelled as its number.
     fn check_codes(&self) -> Result<(), DumpError> {
         let operations = self.operations.iter().map(|it| &it.code);
@@ -257,7 +121,7 @@ impl Dump {
                 (Some(it.last), &it.last_spelling),
             ]
         });
-        let retired = self.retired_codes.iter();
+        let retired = self.retired.iter();
         let retired = retired.map(|it| (Some(it.code), &it.spelling));
         let mut codes = operations.chain(ranges).chain(retired);
         match codes.find(|(value, spelling)| names::code(spelling) != *value) {
