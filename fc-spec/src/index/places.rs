@@ -6,7 +6,7 @@ use crate::language::grammar::{
 };
 use crate::language::reference;
 use crate::load::Trees;
-use crate::load::draft::{Draft, Place as Written, Placed};
+use crate::load::draft::{Draft, Origin, Sourced};
 use crate::model::{Direction, Kind, Text, TypeShape};
 use crate::source::{FileId, Span};
 use crate::syntax::{Entry, Node};
@@ -203,31 +203,36 @@ impl Places {
 struct Said(BTreeMap<Item, Place>);
 
 impl Said {
-    fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, place: Written<'_>) {
+    fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, origin: Origin<'_>) {
         let item = Item {
             kind: kind.name,
             owner: owner.map(str::to_owned),
             name: name.to_owned(),
         };
-        self.0.entry(item).or_insert_with(|| written(place));
+        self.0.entry(item).or_insert_with(|| written(origin));
     }
 
     /// What stands once, and is called what it is.
-    fn one(&mut self, kind: &'static Table, place: Written<'_>) {
-        self.add(kind, None, kind.name, place);
+    fn one(&mut self, kind: &'static Table, origin: Origin<'_>) {
+        self.add(kind, None, kind.name, origin);
     }
 
     /// The same, if it is there.
-    fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Placed<'_, T>>) {
-        if let Some(Placed { place, .. }) = placed {
-            self.one(kind, *place);
+    fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Sourced<'_, T>>) {
+        if let Some(Sourced { origin, .. }) = placed {
+            self.one(kind, *origin);
         }
     }
 
     /// What is called as its key says.
-    fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Placed<'_, T>]) {
-        for Placed { place, .. } in placed {
-            self.add(kind, owner, place.key.as_str().unwrap_or_default(), *place);
+    fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Sourced<'_, T>]) {
+        for Sourced { origin, .. } in placed {
+            self.add(
+                kind,
+                owner,
+                origin.key.as_str().unwrap_or_default(),
+                *origin,
+            );
         }
     }
 
@@ -235,20 +240,20 @@ impl Said {
     fn named_by<T>(
         &mut self,
         kind: &'static Table,
-        placed: &[Placed<'_, T>],
+        placed: &[Sourced<'_, T>],
         name: impl Fn(usize, &T) -> String,
     ) {
-        for (at, Placed { item, place }) in placed.iter().enumerate() {
-            self.add(kind, None, &name(at + 1, item), *place);
+        for (at, Sourced { item, origin }) in placed.iter().enumerate() {
+            self.add(kind, None, &name(at + 1, item), *origin);
         }
     }
 }
 
-fn written(place: Written<'_>) -> Place {
+fn written(origin: Origin<'_>) -> Place {
     Place {
-        key: place.key.span(),
-        whole: place.key.span().to(place.node.span()),
-        comments: place.key.comments().collect(),
+        key: origin.key.span(),
+        whole: origin.key.span().to(origin.node.span()),
+        comments: origin.key.comments().collect(),
     }
 }
 
@@ -259,14 +264,14 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
     places.if_there(grammar::Transport::TABLE, draft.transport.as_ref());
     places.if_there(grammar::Calls::TABLE, draft.calls.as_ref());
     places.if_there(grammar::Limits::TABLE, draft.limits.as_ref());
-    let transport = draft.transport.as_ref().map(|it| it.place.node);
+    let transport = draft.transport.as_ref().map(|it| it.origin.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
     for Entry { key, value: node } in ports.unwrap_or_default() {
         let name = key.as_str().unwrap_or_default();
-        places.add(grammar::Port::TABLE, None, name, Written { key, node });
+        places.add(grammar::Port::TABLE, None, name, Origin { key, node });
     }
     if let Some(frame) = &draft.frame {
-        places.one(grammar::Frame::TABLE, frame.place);
+        places.one(grammar::Frame::TABLE, frame.origin);
         places.keyed(grammar::HeaderField::TABLE, None, &frame.header);
         places.named_by(grammar::FrameKind::TABLE, &frame.kinds, |_, it| {
             it.value.to_string()
@@ -276,7 +281,7 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         });
     }
     if let Some(envelope) = &draft.envelope {
-        places.one(grammar::Envelope::TABLE, envelope.place);
+        places.one(grammar::Envelope::TABLE, envelope.origin);
         for (side, fields) in [
             (Direction::Request, &envelope.request),
             (Direction::Response, &envelope.response),
@@ -294,13 +299,13 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         it.spelling.clone()
     });
     places.named_by(grammar::Group::TABLE, &draft.groups, |_, it| it.id.clone());
-    for Placed { item, place } in &draft.operations {
+    for Sourced { item, origin } in &draft.operations {
         let kind = match item.kind() {
             Kind::Command => grammar::Command::TABLE,
             Kind::Report => grammar::Report::TABLE,
             Kind::Stream => grammar::Stream::TABLE,
         };
-        places.add(kind, None, &item.name, *place);
+        places.add(kind, None, &item.name, *origin);
     }
     types(&mut places, draft);
     places.keyed(grammar::Constants::TABLE, None, &draft.tables);
@@ -323,7 +328,7 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
     let answers = draft.answers.iter();
     Own {
         all: places.0.into_iter().collect(),
-        answers: answers.map(|answer| written(answer.place)).collect(),
+        answers: answers.map(|answer| written(answer.origin)).collect(),
     }
 }
 
@@ -347,9 +352,9 @@ fn types(places: &mut Said, draft: &Draft<'_>) {
                 choice.variants.iter().map(|it| it.name.as_str()).collect(),
             ),
         };
-        places.add(kind, None, name, ty.place);
+        places.add(kind, None, name, ty.origin);
         for (part, own) in ty.parts.iter().zip(names) {
-            places.add(inside, Some(name), own, part.place);
+            places.add(inside, Some(name), own, part.origin);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What an answer of the owner changes in the files of a spec.
 
-use super::draft::{AnswerDraft, Place, Placed};
+use super::draft::{AnswerDraft, Origin, Sourced};
 use super::govern::{Found, Governed};
 use crate::language::ambiguous_scalar::misread;
 use crate::language::grammar::{
@@ -143,23 +143,23 @@ impl<'s> Writing<'s> {
                 Found::Several(_) | Found::Nowhere(_) => {}
             }
         }
-        self.confirm(answer.place.node);
+        self.confirm(answer.origin.node);
     }
 
     /// Writes down a fact that nothing asks for, and an answer that says who said it.
     pub fn settle_loss(
         &mut self,
-        operation: &Placed<'_, Operation>,
+        operation: &Sourced<'_, Operation>,
         fact: Fact,
         state: BodyState,
         asked: &Text,
     ) {
-        let Placed { item, place } = operation;
-        if !self.has_lines(place.node) {
+        let Sourced { item, origin } = operation;
+        if !self.has_lines(origin.node) {
             return;
         }
-        self.fact(place.node, item.kind(), fact, state);
-        self.answer(*place, fact, state, asked);
+        self.fact(origin.node, item.kind(), fact, state);
+        self.answer(*origin, fact, state, asked);
     }
 
     /// Adds a key behind the first one of a field, which is its type.
@@ -293,7 +293,7 @@ impl<'s> Writing<'s> {
     }
 
     /// Adds an answer about a fact of an operation, which is asked in these words.
-    fn answer(&mut self, operation: Place<'_>, fact: Fact, before: BodyState, asked: &Text) {
+    fn answer(&mut self, operation: Origin<'_>, fact: Fact, before: BodyState, asked: &Text) {
         let answers = COMMON.answers.entry(operation.node);
         let last = operation.node.entries().last();
         let Some((at, indent)) = answers.or(last).map(|entry| {

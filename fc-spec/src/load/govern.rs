@@ -93,14 +93,14 @@ pub(super) fn governed<'d, 'a>(
         Subject::Operation(name) => {
             let mut all = draft.operations.iter();
             all.find(|operation| {
-                operation.item.name == *name && operation.place.node.span() == answer.holder.span()
+                operation.item.name == *name && operation.origin.node.span() == answer.holder.span()
             })
         }
         _ => None,
     };
     let operation = operation.map(|operation| &operation.item);
     let holder = answer.holder;
-    let entries = ANSWER.about.of(answer.place.node).map(Node::entries);
+    let entries = ANSWER.about.of(answer.origin.node).map(Node::entries);
     let entries = entries.into_iter().flatten();
     let is_value = |Entry { key, value }: Entry<'_>| {
         let path = key.as_str().unwrap_or_default();

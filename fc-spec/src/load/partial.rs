@@ -1,6 +1,6 @@
 //! What could be read of a spec, whether or not it has faults.
 
-use super::draft::{Draft, Placed};
+use super::draft::{Draft, Sourced};
 use crate::model::{Envelope, Frame, FrameKinds, Model, Partial, TypeDef, TypeShape, Types, link};
 
 /// What loading a spec comes to. Its faults are told apart from it, since a spec with faults has all of this, too.
@@ -106,7 +106,7 @@ fn known(mut def: TypeDef, mut broken: impl FnMut() -> bool) -> TypeDef {
     def
 }
 
-fn items<T>(placed: Vec<Placed<'_, T>>) -> Vec<T> {
+fn items<T>(placed: Vec<Sourced<'_, T>>) -> Vec<T> {
     shrunk(placed.into_iter().map(|placed| placed.item))
 }
 

@@ -1,6 +1,6 @@
 //! The questions for the owner: what the spec asks or decides, and what the source has lost without anybody asking.
 
-use super::draft::{AnswerDraft, Draft, Placed};
+use super::draft::{AnswerDraft, Draft, Sourced};
 use super::edit::{Silence, Writing};
 use super::govern::{Found, Governed, governed, is_doubt};
 use crate::language::grammar::FILE;
@@ -108,7 +108,7 @@ fn of_answer(
 
 /// What is asked of a fact of which the spec is in doubt and of which nothing else asks.
 fn of_loss(
-    operation: &Placed<'_, Operation>,
+    operation: &Sourced<'_, Operation>,
     fact: Fact,
     state: BodyState,
     text: Text,

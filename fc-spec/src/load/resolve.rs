@@ -41,7 +41,7 @@ fn resolve_acks(draft: &mut Draft<'_>) {
         calls.item.ack = default;
     }
     for operation in &mut draft.operations {
-        let has_own = REPORT.ack.of(operation.place.node).is_some();
+        let has_own = REPORT.ack.of(operation.origin.node).is_some();
         if let (Exchange::Report { ack, .. }, false) = (&mut operation.item.exchange, has_own) {
             *ack = default;
         }

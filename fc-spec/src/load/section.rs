@@ -1,6 +1,6 @@
 //! The top keys of all files: which may stand where, and how often.
 
-use super::draft::Place;
+use super::draft::Origin;
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{self, FILE, File, GROUP};
@@ -36,7 +36,7 @@ pub(super) struct Section<'a> {
     /// The key.
     pub name: &'static str,
     /// Its place.
-    pub place: Place<'a>,
+    pub origin: Origin<'a>,
     /// Group of the file.
     pub group: Option<&'a str>,
     /// Values and keys in it that name a thing.
@@ -94,7 +94,7 @@ fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faul
             }
             sections.push(Section {
                 name: key.name,
-                place: Place {
+                origin: Origin {
                     key: entry.key,
                     node: entry.value,
                 },
@@ -165,7 +165,7 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
         if !once.any(|name| *name == section.name) {
             return true;
         }
-        let span = section.place.name();
+        let span = section.origin.name();
         let Some(earlier) = first.get(section.name) else {
             first.insert(section.name, span);
             return true;

@@ -1,6 +1,6 @@
 //! Writing down what the owner says.
 
-use super::draft::{Draft, Placed};
+use super::draft::{Draft, Sourced};
 use super::edit::{Word, Writing};
 use super::govern::{Found, Governed, governed};
 use crate::diagnostic::{Faults, nearest};
@@ -211,7 +211,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
         if state == BodyState::Open {
             ask_for(fact.name());
         }
-        if !writing.has_lines(operation.place.node) {
+        if !writing.has_lines(operation.origin.node) {
             return Err(layout(&question.location));
         }
         writing.settle_loss(operation, fact, state, &question.text);
@@ -266,7 +266,7 @@ fn find<'q>(questions: &'q [Question], id: &str) -> Result<&'q Question, SettleE
 fn lost<'d, 'a>(
     draft: &'d Draft<'a>,
     question: &Question,
-) -> Option<(&'d Placed<'a, Operation>, Fact, BodyState)> {
+) -> Option<(&'d Sourced<'a, Operation>, Fact, BodyState)> {
     let Subject::Operation(name) = &question.subject else {
         return None;
     };

@@ -3,7 +3,7 @@
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{AVAILABLE, COMMON, FIELD};
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::names;
 use crate::source::Span;
@@ -24,7 +24,7 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
     let operations = draft.operations.iter().filter_map(|operation| {
         Some(Limit {
             available: operation.item.available.as_ref()?,
-            node: COMMON.available.of(operation.place.node)?,
+            node: COMMON.available.of(operation.origin.node)?,
             within: None,
         })
     });
@@ -51,7 +51,7 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
             .filter_map(move |(available, part)| {
                 Some(Limit {
                     available: available?,
-                    node: COMMON.available.of(part.place.node)?,
+                    node: COMMON.available.of(part.origin.node)?,
                     within,
                 })
             })
@@ -68,7 +68,7 @@ fn named<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Named<'a> {
     names.filter(|(name, _)| names::is_snake(name)).collect()
 }
 
-fn names_of<'d>(declared: &'d [Placed<'_, Declared>]) -> HashSet<&'d str> {
+fn names_of<'d>(declared: &'d [Sourced<'_, Declared>]) -> HashSet<&'d str> {
     declared.iter().map(|it| it.item.name.as_str()).collect()
 }
 
@@ -117,7 +117,7 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
             "`{field}` has `available`, but is required",
             field = field.wire
         );
-        let span = part.place.key_at(COMMON.available);
+        let span = part.origin.key_at(COMMON.available);
         let fault = Diagnostic::error(FaultCode::LimitedButRequired, span, message);
         faults.push(
             fault
@@ -149,7 +149,7 @@ pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
                 operation = operation.item.name
             );
             let fault = Diagnostic::error(FaultCode::LimitBeyondOperation, span, message);
-            let span = operation.place.key_at(COMMON.available);
+            let span = operation.origin.key_at(COMMON.available);
             faults.push(fault.also(span, text!("接口自身的限制", "the operation's own limit")));
         }
     }
@@ -171,7 +171,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(FaultCode::NothingLeft, span, message));
         };
         for ty in &draft.types {
-            let span = ty.place.name();
+            let span = ty.origin.name();
             let body = ty.def.body_of.as_ref();
             let mut operations = draft.operations.iter();
             let within = body.and_then(|body| operations.find(|it| it.item.name == body.operation));
@@ -215,7 +215,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             let is_for = has(details.available.as_ref(), name);
             if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
                 report(
-                    part.place.at(FIELD.only),
+                    part.origin.at(FIELD.only),
                     text!("这个字段可取的值", "value that this field takes"),
                 );
             }

@@ -16,7 +16,7 @@ pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
         if field.details().condition.is_none() {
             continue;
         }
-        let node = part.place.node;
+        let node = part.origin.node;
         if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
             let message = text!(
                 "`{field}` 同时有 `when` 和 `unless`",
@@ -138,7 +138,7 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
         if own.details().condition.is_none() {
             continue;
         }
-        let node = part.place.node;
+        let node = part.origin.node;
         for condition in [FIELD.when, FIELD.unless] {
             for entry in condition.of(node).into_iter().flat_map(Node::entries) {
                 let mut beside = shape.fields.iter().zip(ty.parts.iter().copied());

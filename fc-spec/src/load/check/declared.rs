@@ -7,7 +7,7 @@ use crate::language::grammar::{
     ACCEPTED, AVAILABILITY, AnyOperation, Audience, COMMON, Command, CoordinateSystem, Entity,
     FIELD, FILE, Machine, Named, Report, STREAM, Series, Store,
 };
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{Kind, Text};
 use crate::source::Span;
 use crate::text;
@@ -127,7 +127,7 @@ fn misfit(draft: &Draft<'_>, site: &Site<'_>, name: &str) -> Option<Diagnostic> 
         (FaultCode::NotAReport, message)
     };
     let fault = Diagnostic::error(code, site.node.span(), message);
-    Some(fault.also(other.place.name(), text!("在这里声明", "declared here")))
+    Some(fault.also(other.origin.name(), text!("在这里声明", "declared here")))
 }
 
 /// The things with one list of declarations.
@@ -289,7 +289,7 @@ fn operations<'d, T: Named>(draft: &'d Draft<'_>, fits: fn(Kind) -> bool) -> Thi
     Things {
         kinds: T::KINDS,
         declared: declared
-            .map(|it| (it.item.name.as_str(), it.place.name()))
+            .map(|it| (it.item.name.as_str(), it.origin.name()))
             .collect(),
         is_complete: true,
         unknown: FaultCode::UnknownOperation,
@@ -299,10 +299,10 @@ fn operations<'d, T: Named>(draft: &'d Draft<'_>, fits: fn(Kind) -> bool) -> Thi
     }
 }
 
-fn names<'d, T>(placed: &'d [Placed<'_, T>], name: fn(&T) -> &String) -> Vec<(&'d str, Span)> {
+fn names<'d, T>(placed: &'d [Sourced<'_, T>], name: fn(&T) -> &String) -> Vec<(&'d str, Span)> {
     let placed = placed.iter();
     placed
-        .map(|it| (name(&it.item).as_str(), it.place.name()))
+        .map(|it| (name(&it.item).as_str(), it.origin.name()))
         .collect()
 }
 

@@ -26,7 +26,7 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
             refers = FIELD.refers.name,
             field = field.wire
         );
-        let span = part.place.at(FIELD.refers);
+        let span = part.origin.at(FIELD.refers);
         let fault = Diagnostic::error(FaultCode::RefersOnWrongType, span, message);
         faults.push(fault.also(part.ty, text!("类型", "the type")));
     }

@@ -11,14 +11,14 @@ use crate::vocabulary::Word as _;
 /// An answer says what it answers.
 pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
-        let node = answer.place.node;
+        let node = answer.origin.node;
         if ANSWER.ids.of(node).is_none() && ANSWER.about.of(node).is_none() {
             let message = text!(
                 "答复没有 `ids`，也没有 `about`",
                 "the answer has neither `ids` nor `about`"
             );
             faults.push(
-                Diagnostic::error(FaultCode::AnswerToNothing, answer.place.name(), message).note(
+                Diagnostic::error(FaultCode::AnswerToNothing, answer.origin.name(), message).note(
                     text!(
                         "在 `ids:` 中写明疑问，或在 `about:` 中写明涉及的内容",
                         "name a conflict in `ids:`, or a fact in `about:`"
@@ -107,7 +107,7 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                         now = now(&governed),
                         name = name
                     );
-                    let at = ANSWER.confirmed.entry(answer.place.node);
+                    let at = ANSWER.confirmed.entry(answer.origin.node);
                     let at = at.map_or(governed.path.span(), |entry| entry.key.span());
                     faults.push(
                         Diagnostic::error(FaultCode::SettledButUntouched, at, message)

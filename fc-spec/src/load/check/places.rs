@@ -25,7 +25,7 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
                     coordinates = FIELD.coordinates.name,
                     field = field.wire
                 );
-                let span = part.place.at(FIELD.coordinates);
+                let span = part.origin.at(FIELD.coordinates);
                 let fault = Diagnostic::error(FaultCode::CoordinatesOnWrongType, span, message);
                 faults.push(fault.also(part.ty, text!("类型", "the type")));
             }
@@ -36,7 +36,7 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             .as_deref()
             .filter(|known| *known != system)
         {
-            let span = part.place.at(FIELD.coordinates);
+            let span = part.origin.at(FIELD.coordinates);
             let message = text!(
                 "`{ty}` 已经写了坐标系 `{known}`",
                 "`{ty}` already has the coordinate system `{known}`",
@@ -73,8 +73,8 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
         if let TypeShape::Struct(shape) = &ty.def.shape
             && shape.coordinates.is_some()
         {
-            let what = format!("`{}`", ty.place.key.as_str().unwrap_or_default());
-            push(shape, ty.place.at(FIELD.coordinates), &what);
+            let what = format!("`{}`", ty.origin.key.as_str().unwrap_or_default());
+            push(shape, ty.origin.at(FIELD.coordinates), &what);
         }
     }
     for (_, field, part) in typed_fields(draft) {
@@ -83,7 +83,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
             && field.details().coordinates.is_some()
         {
             let what = format!("`{}`", field.ty.item());
-            push(shape, part.place.at(FIELD.coordinates), &what);
+            push(shape, part.origin.at(FIELD.coordinates), &what);
         }
     }
 }

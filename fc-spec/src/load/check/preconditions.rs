@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 /// The preconditions of each command that has some, with its name.
 fn preconditions<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d str, Node<'a>)> {
     draft.operations.iter().filter_map(|operation| {
-        let node = COMMAND.accepted.of(operation.place.node)?;
+        let node = COMMAND.accepted.of(operation.origin.node)?;
         let is_command = operation.item.kind() == Kind::Command;
         is_command.then_some((operation.item.name.as_str(), node))
     })
@@ -55,7 +55,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "`in` needs an enum, but `{name}` is not one"
                 );
                 let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
-                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
                 continue;
             }
             if !carried
@@ -67,7 +67,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "no report and no response carries a `{name}`"
                 );
                 let fault = Diagnostic::error(FaultCode::UnseenState, key.span(), message);
-                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
             }
             check_values(draft, name, value, faults);
         }

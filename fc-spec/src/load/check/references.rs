@@ -3,7 +3,7 @@
 use super::each::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
-use crate::load::draft::{Draft, Place};
+use crate::load::draft::{Draft, Origin};
 use crate::model::{ResultRole, Text, Type, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};
@@ -15,18 +15,18 @@ const SUGGESTIONS: usize = 100;
 
 /// Every named type of a field exists.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
-    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.place));
+    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.origin));
     let envelope = draft.envelope.iter();
     let envelope = envelope.flat_map(|envelope| envelope.request.iter().chain(&envelope.response));
-    let envelope = envelope.map(|field| (field.item.ty.clone(), field.place));
+    let envelope = envelope.map(|field| (field.item.ty.clone(), field.origin));
     // A name of several fields that stands for nothing is one fault: it is declared nowhere, or under another name.
     let mut found: Vec<(String, Vec<Node<'_>>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
-    for (ty, place) in fields.chain(envelope) {
+    for (ty, origin) in fields.chain(envelope) {
         let Some(name) = unknown(draft, &ty) else {
             continue;
         };
-        let node = innermost(place);
+        let node = innermost(origin);
         if let Some((_, nodes)) = known.get(name).and_then(|at| found.get_mut(*at)) {
             nodes.push(node);
         } else {
@@ -57,8 +57,8 @@ fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
 }
 
 /// The scalar that names the type, inside any YAML lists around it.
-fn innermost(place: Place<'_>) -> Node<'_> {
-    let mut node = FIELD.r#type.of(place.node).unwrap_or(place.node);
+fn innermost(origin: Origin<'_>) -> Node<'_> {
+    let mut node = FIELD.r#type.of(origin.node).unwrap_or(origin.node);
     loop {
         let mut items = node.items();
         let (Some(item), None) = (items.next(), items.next()) else {
@@ -148,7 +148,8 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         if let TypeShape::OneOf(choice) = &ty.def.shape {
             for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-                if let (false, Some(node)) = (part.broken, NAMED_VARIANT.r#type.of(part.place.node))
+                if let (false, Some(node)) =
+                    (part.broken, NAMED_VARIANT.r#type.of(part.origin.node))
                 {
                     check_struct(
                         draft,
@@ -162,7 +163,7 @@ pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
         }
     }
     for table in &draft.tables {
-        let row = TABLE.row.of(table.place.node);
+        let row = TABLE.row.of(table.origin.node);
         if let Some(node) = row.filter(|node| node.as_scalar().is_some()) {
             check_struct(
                 draft,
@@ -189,7 +190,7 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
             );
             faults.push(
                 Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
-                    .also(ty.place.name(), text!("在这里声明", "declared here")),
+                    .also(ty.origin.name(), text!("在这里声明", "declared here")),
             );
         }
         Some(_) => {}
@@ -206,8 +207,8 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
         if by == operation.item.name {
             let node = DEPRECATED
                 .replaced_by
-                .of(OPERATION.deprecated.of(operation.place.node));
-            let span = node.map_or(operation.place.name(), Node::span);
+                .of(OPERATION.deprecated.of(operation.origin.node));
+            let span = node.map_or(operation.origin.name(), Node::span);
             let message = text!("接口不能由自己替代", "an operation cannot replace itself");
             faults.push(Diagnostic::error(
                 FaultCode::UnknownOperation,
@@ -229,7 +230,7 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
         .map(|result| result.item.code)
         .collect();
     for operation in &draft.operations {
-        for error in OPERATION.errors.items(operation.place.node) {
+        for error in OPERATION.errors.items(operation.origin.node) {
             let node = ERROR.code.of(error).unwrap_or(error);
             let code = ERROR.code.read_in_or_at(error);
             let success = draft.results.iter().find(|result| {
@@ -243,7 +244,7 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
-                        .also(success.place.name(), text!("在这里声明", "declared here"))
+                        .also(success.origin.name(), text!("在这里声明", "declared here"))
                         .note(text!(
                             "去掉它：每个接口都可以返回成功",
                             "remove it: every operation can return success"

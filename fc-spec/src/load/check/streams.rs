@@ -2,14 +2,14 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::STREAM;
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{Kind, Operation};
 use crate::text;
 
 /// A frame carries bytes of a media type or a JSON object.
 pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
     for stream in streams(draft) {
-        let node = stream.place.node;
+        let node = stream.origin.node;
         let Some((text, span)) = STREAM.content.of(node).and_then(|content| {
             let text = content.as_str()?;
             Some((text, content.span()))
@@ -35,7 +35,7 @@ pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-fn streams<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = &'d Placed<'a, Operation>> {
+fn streams<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = &'d Sourced<'a, Operation>> {
     let operations = draft.operations.iter();
     operations.filter(|operation| operation.item.kind() == Kind::Stream)
 }
