@@ -8,15 +8,15 @@ mod cursor;
 mod example;
 mod faults;
 pub(crate) mod grammar;
+mod occurrence;
 mod reference;
 pub(crate) mod scalar;
 mod schema;
-mod site;
 
 pub(crate) use cursor::Cursor;
+pub(crate) use occurrence::references;
+pub use occurrence::{Occurrence, OtherKey, Reference, Role, occurrence_at, visit};
 #[cfg(test)]
 pub(crate) use reference::tables;
 pub use reference::{Key, Part, Takes, Word, reference};
 pub use schema::schema;
-pub(crate) use site::references;
-pub use site::{OtherKey, Role, Site, Sought, site_at, sites};

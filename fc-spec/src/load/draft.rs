@@ -4,7 +4,7 @@
 //! and is left out or flagged, so that checks find only what is new.
 
 use crate::diagnostic::Faults;
-use crate::language::Site;
+use crate::language::Occurrence;
 use crate::language::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
@@ -176,7 +176,7 @@ pub(crate) struct Draft<'a> {
     pub broken_answers: bool,
     pub changes: Vec<Sourced<'a, Change>>,
     /// Values and keys that name a thing.
-    pub references: Vec<Site<'a>>,
+    pub references: Vec<Occurrence<'a>>,
     /// First type of each name; filled when all are lowered.
     pub type_index: HashMap<String, usize>,
     /// Types of which faults leave open what they are.

@@ -4,7 +4,7 @@ use super::draft::Origin;
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{self, FILE, File, GROUP};
-use crate::language::{Cursor, Site, references};
+use crate::language::{Cursor, Occurrence, references};
 use crate::model::{Languages, Text};
 use crate::source::Span;
 use crate::syntax::{self, Entry, Node};
@@ -40,7 +40,7 @@ pub(super) struct Section<'a> {
     /// Group of the file.
     pub group: Option<&'a str>,
     /// Values and keys in it that name a thing.
-    pub references: Vec<Site<'a>>,
+    pub references: Vec<Occurrence<'a>>,
     /// Whether its shape is sound.
     pub clean: bool,
 }

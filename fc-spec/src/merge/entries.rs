@@ -2,8 +2,8 @@
 
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
-use crate::language::grammar::{CHOICE, FIELD_KIND};
 use crate::language::Cursor;
+use crate::language::grammar::{CHOICE, FIELD_KIND};
 use crate::syntax::{Entry, Node, Scalar};
 
 /// An entry of the result.

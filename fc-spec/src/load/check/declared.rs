@@ -2,7 +2,7 @@
 
 use super::each::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::Site;
+use crate::language::Occurrence;
 use crate::language::grammar::{
     ACCEPTED, AVAILABILITY, AnyOperation, Audience, COMMON, Command, CoordinateSystem, Entity,
     FIELD, FILE, Machine, Named, Report, STREAM, Series, Store,
@@ -40,13 +40,13 @@ struct Unused {
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     for things in things(draft).iter().filter(|things| things.is_complete) {
         let known = things.names();
-        for (site, name) in things.references(draft) {
+        for (occurrence, name) in things.references(draft) {
             if known.contains(name) {
                 continue;
             }
-            let fault = misfit(draft, site, name).unwrap_or_else(|| {
+            let fault = misfit(draft, occurrence, name).unwrap_or_else(|| {
                 let message = (things.message)(name);
-                Diagnostic::error(things.unknown, site.node.span(), message)
+                Diagnostic::error(things.unknown, occurrence.node.span(), message)
             });
             let names = things.declared.iter().map(|(name, _)| *name);
             faults.push(fault.suggest(nearest(name, names), things.note.clone()));
@@ -89,21 +89,21 @@ impl<'d> Things<'d> {
     fn references<'r, 'a>(
         &self,
         draft: &'r Draft<'a>,
-    ) -> impl Iterator<Item = (&'r Site<'a>, &'a str)> {
+    ) -> impl Iterator<Item = (&'r Occurrence<'a>, &'a str)> {
         let kinds = self.kinds;
         let sites = draft.references.iter();
-        let sites = sites.filter(move |site| site.names() == kinds);
-        sites.filter_map(|site| Some((site, site.node.as_str()?)))
+        let sites = sites.filter(move |occurrence| occurrence.names() == kinds);
+        sites.filter_map(|occurrence| Some((occurrence, occurrence.node.as_str()?)))
     }
 }
 
 /// The error of a reference to an operation of another kind.
-fn misfit(draft: &Draft<'_>, site: &Site<'_>, name: &str) -> Option<Diagnostic> {
-    let is_operation = [Command::KINDS, Report::KINDS].contains(&site.names());
+fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<Diagnostic> {
+    let is_operation = [Command::KINDS, Report::KINDS].contains(&occurrence.names());
     let mut operations = draft.operations.iter();
     let other = operations.find(|it| is_operation && it.item.name == name)?;
     let kind = called(other.item.kind());
-    let is = |key: &str| site.key == Some(key);
+    let is = |key: &str| occurrence.key == Some(key);
     let (code, message) = if is(ACCEPTED.after.name) {
         let message = text!(
             "`after` 应为指令，而 `{name}` 是{kind}",
@@ -126,30 +126,29 @@ fn misfit(draft: &Draft<'_>, site: &Site<'_>, name: &str) -> Option<Diagnostic> 
         );
         (FaultCode::NotAReport, message)
     };
-    let fault = Diagnostic::error(code, site.node.span(), message);
+    let fault = Diagnostic::error(code, occurrence.node.span(), message);
     Some(fault.also(other.origin.name(), text!("在这里声明", "declared here")))
 }
 
-/// The things with one list of declarations.
+/// All things that references may name, other than types.
 fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
-    let words = &draft.availability;
-    let in_availability = |key| {
-        text!(
-            "在 `availability: {{ {key} }}` 下声明",
-            "declare it under `availability: {{ {key} }}`"
-        )
+    let command = Things {
+        message: |name| text!("没有指令 `{name}`", "there is no command `{name}`"),
+        ..operations::<Command>(draft, |kind| kind == Kind::Command)
     };
+    let report = Things {
+        message: |name| text!("没有上报 `{name}`", "there is no report `{name}`"),
+        ..operations::<Report>(draft, |kind| kind == Kind::Report)
+    };
+    let operations = [command, report, operations::<AnyOperation>(draft, |_| true)];
+    let others = sections(draft).into_iter().chain(availability(draft));
+    operations.into_iter().chain(others).collect()
+}
+
+/// The things with a section of the spec.
+fn sections<'d>(draft: &'d Draft<'_>) -> [Things<'d>; 3] {
     let in_section = |key| text!("在 `{key}:` 下声明", "declare it under `{key}:`");
-    vec![
-        Things {
-            message: |name| text!("没有指令 `{name}`", "there is no command `{name}`"),
-            ..operations::<Command>(draft, |kind| kind == Kind::Command)
-        },
-        Things {
-            message: |name| text!("没有上报 `{name}`", "there is no report `{name}`"),
-            ..operations::<Report>(draft, |kind| kind == Kind::Report)
-        },
-        operations::<AnyOperation>(draft, |_| true),
+    [
         Things {
             kinds: Entity::KINDS,
             declared: names(&draft.entities, |it| &it.name),
@@ -212,6 +211,19 @@ fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
                 note: write_or_delete(COMMON.kept.name),
             }),
         },
+    ]
+}
+
+/// The words of `availability`.
+fn availability<'d>(draft: &'d Draft<'_>) -> [Things<'d>; 3] {
+    let words = &draft.availability;
+    let in_availability = |key| {
+        text!(
+            "在 `availability: {{ {key} }}` 下声明",
+            "declare it under `availability: {{ {key} }}`"
+        )
+    };
+    [
         Things {
             kinds: Audience::KINDS,
             declared: names(&words.audiences, |it| &it.name),

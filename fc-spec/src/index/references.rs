@@ -1,71 +1,76 @@
 //! Where a spec names things that it says elsewhere.
 
-use super::places::{Item, Place, Places};
-use crate::language::{Sought, sites};
+use super::definitions::{DefId, DefSite, Definitions};
+use crate::language::{Reference, visit};
 use crate::syntax::Tree;
 use std::sync::Arc;
 
 /// Every place at which a thing is named, other than that which says it, in the order of the files.
 #[derive(Clone, Debug, Default)]
-pub struct Uses(Vec<Arc<Named>>);
+pub struct References(Vec<Arc<FileReferences>>);
 
 /// Those of one file.
 #[derive(Debug, Default)]
-pub(super) struct Named {
+pub(super) struct FileReferences {
     /// In the order in which they stand.
-    all: Vec<Sought>,
+    all: Vec<Reference>,
     /// The same by their names.
     by_name: Vec<usize>,
 }
 
 /// Of one file.
-pub(super) fn named(tree: &Tree<'_>) -> Named {
+pub(super) fn of_file(tree: &Tree<'_>) -> FileReferences {
     let mut all = Vec::new();
-    sites(tree.root(), &mut |site| all.extend(site.sought()));
+    visit(tree.root(), &mut |occurrence| {
+        all.extend(occurrence.reference());
+    });
     let mut by_name: Vec<usize> = (0..all.len()).collect();
-    by_name.sort_by_key(|at| all.get(*at).map(|sought: &Sought| sought.name.as_str()));
-    Named { all, by_name }
+    by_name.sort_by_key(|at| {
+        all.get(*at)
+            .map(|reference: &Reference| reference.name.as_str())
+    });
+    FileReferences { all, by_name }
 }
 
-impl Named {
-    fn called<'n>(&'n self, name: &'n str) -> impl Iterator<Item = &'n Sought> {
-        let named = |at: &usize| self.all.get(*at).map(|sought| sought.name.as_str());
+impl FileReferences {
+    fn called<'n>(&'n self, name: &'n str) -> impl Iterator<Item = &'n Reference> {
+        let named = |at: &usize| self.all.get(*at).map(|reference| reference.name.as_str());
         let first = self.by_name.partition_point(|at| named(at) < Some(name));
         let from = self.by_name.get(first..).unwrap_or_default();
-        let sought = from.iter().filter_map(|at| self.all.get(*at));
-        sought.take_while(move |sought| sought.name == name)
+        let references = from.iter().filter_map(|at| self.all.get(*at));
+        references.take_while(move |reference| reference.name == name)
     }
 }
 
-impl Uses {
-    pub(super) fn of_files(files: Vec<Arc<Named>>) -> Self {
+impl References {
+    pub(super) fn of_files(files: Vec<Arc<FileReferences>>) -> Self {
         Self(files)
     }
 
     /// All of them.
-    pub fn iter(&self) -> impl Iterator<Item = &Sought> {
+    pub fn iter(&self) -> impl Iterator<Item = &Reference> {
         self.0.iter().flat_map(|file| &file.all)
     }
 
     /// Those of one thing.
-    pub fn of<'u>(&'u self, item: &'u Item) -> impl Iterator<Item = &'u Sought> {
+    pub fn of<'u>(&'u self, item: &'u DefId) -> impl Iterator<Item = &'u Reference> {
         let called = self.0.iter().flat_map(|file| file.called(&item.name));
-        called.filter(|sought| sought.is(item))
+        called.filter(|reference| reference.is(item))
     }
 }
 
-impl Sought {
+impl Reference {
     /// Whether it is this thing.
     #[must_use]
-    pub fn is(&self, item: &Item) -> bool {
+    pub fn is(&self, item: &DefId) -> bool {
         self.name == item.name && self.kinds.contains(&item.kind) && self.owner == item.owner
     }
 
     /// The thing, and where it is written; `None` if the spec does not have it.
     #[must_use]
-    pub fn found<'p>(&self, places: &'p Places) -> Option<(Item, &'p Place)> {
+    pub fn found<'p>(&self, places: &'p Definitions) -> Option<(DefId, &'p DefSite)> {
         self.kinds.iter().find_map(|kind| {
-            let item = Item {
+            let item = DefId {
                 kind,
                 owner: self.owner.clone(),
                 name: self.name.clone(),

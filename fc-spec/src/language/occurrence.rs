@@ -12,7 +12,7 @@ use crate::syntax::{Node, Style};
 
 /// A key or a scalar value of a file.
 #[derive(Clone, Copy, Debug)]
-pub struct Site<'t> {
+pub struct Occurrence<'t> {
     /// Where it stands.
     pub node: Node<'t>,
     /// What it is there.
@@ -52,7 +52,7 @@ pub struct OtherKey {
 
 /// A thing that something is the name of, whether or not the spec has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sought {
+pub struct Reference {
     /// What it may be; ids of [`Item`](crate::index::Item)s.
     pub kinds: &'static [&'static str],
     /// What it is part of: of an enum value, its enum.
@@ -66,7 +66,7 @@ pub struct Sought {
 static TYPE: Kind = Kind::Type;
 
 /// Shows every key and every scalar of a file, in the order in which they stand.
-pub fn sites<'t>(root: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
+pub fn visit<'t>(root: Node<'t>, see: &mut dyn FnMut(Occurrence<'t>)) {
     let walk = Walk {
         part: File::TABLE.name,
         key: None,
@@ -76,16 +76,16 @@ pub fn sites<'t>(root: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
 }
 
 /// The values and keys below a top key of a file that name a thing, except types of fields.
-pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Site<'t>> {
+pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Occurrence<'t>> {
     let walk = Walk {
         part: File::NAME,
         key: Some(section.name),
         owner: None,
     };
     let mut found = Vec::new();
-    walk.through(&section.kind, node, &mut |site| {
-        if site.role != Role::Key && site.kind.refers().is_some() {
-            found.push(site);
+    walk.through(&section.kind, node, &mut |occurrence| {
+        if occurrence.role != Role::Key && occurrence.kind.refers().is_some() {
+            found.push(occurrence);
         }
     });
     found
@@ -93,13 +93,13 @@ pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Si
 
 /// The key or scalar on which an offset of the file lies, or right behind which.
 #[must_use]
-pub fn site_at<'t>(root: Node<'t>, offset: usize) -> Option<Site<'t>> {
-    let mut found: Option<Site<'t>> = None;
-    sites(root, &mut |site| {
-        let span = site.node.span();
+pub fn occurrence_at<'t>(root: Node<'t>, offset: usize) -> Option<Occurrence<'t>> {
+    let mut found: Option<Occurrence<'t>> = None;
+    visit(root, &mut |occurrence| {
+        let span = occurrence.node.span();
         if span.start <= offset && offset <= span.end {
             // What begins here is meant rather than what ends.
-            found = Some(site);
+            found = Some(occurrence);
         }
     });
     found
@@ -114,7 +114,7 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    fn through(self, kind: &'static Kind, node: Node<'t>, see: &mut dyn FnMut(Site<'t>)) {
+    fn through(self, kind: &'static Kind, node: Node<'t>, see: &mut dyn FnMut(Occurrence<'t>)) {
         match Cursor::new(kind, node) {
             Cursor::Declared(table) | Cursor::Ambiguous(table) => {
                 self.declared(table, kind, node, see);
@@ -123,7 +123,7 @@ impl<'t> Walk<'t> {
             Cursor::Items(of) => node.items().for_each(|item| self.through(of, item, see)),
             Cursor::Free if node.as_mapping().is_some() => {}
             Cursor::Free if node.as_sequence().is_none() => {
-                see(self.site(Role::Value, kind, node, None));
+                see(self.occurrence(Role::Value, kind, node, None));
             }
             // `[Station]`.
             Cursor::Free if kind.is_type() => {
@@ -138,7 +138,7 @@ impl<'t> Walk<'t> {
         table: &'static Table,
         asked: &'static Kind,
         node: Node<'t>,
-        see: &mut dyn FnMut(Site<'t>),
+        see: &mut dyn FnMut(Occurrence<'t>),
     ) {
         for entry in node.entries() {
             let known = table.key(entry.name());
@@ -147,7 +147,7 @@ impl<'t> Walk<'t> {
                 key: known.map(|key| key.name),
                 ..self
             };
-            see(walk.site(Role::Key, asked, entry.key, Some((node, asked))));
+            see(walk.occurrence(Role::Key, asked, entry.key, Some((node, asked))));
             if let Some(known) = known {
                 walk.through(&known.kind, entry.value, see);
             }
@@ -159,7 +159,7 @@ impl<'t> Walk<'t> {
         asked: &'static Kind,
         (key, value): (&'static Kind, &'static Kind),
         node: Node<'t>,
-        see: &mut dyn FnMut(Site<'t>),
+        see: &mut dyn FnMut(Occurrence<'t>),
     ) {
         let is_types = self.part == File::TABLE.name && self.key == Some(FILE.types.name);
         for entry in node.entries() {
@@ -167,19 +167,19 @@ impl<'t> Walk<'t> {
             if is_types {
                 walk.owner = entry.key.as_str();
             }
-            see(walk.site(Role::Chosen, key, entry.key, Some((node, asked))));
+            see(walk.occurrence(Role::Chosen, key, entry.key, Some((node, asked))));
             walk.through(value, entry.value, see);
         }
     }
 
-    fn site(
+    fn occurrence(
         self,
         role: Role,
         kind: &'static Kind,
         node: Node<'t>,
         within: Option<(Node<'t>, &'static Kind)>,
-    ) -> Site<'t> {
-        Site {
+    ) -> Occurrence<'t> {
+        Occurrence {
             node,
             role,
             part: self.part,
@@ -200,7 +200,7 @@ fn each(kind: &'static Kind) -> Vec<&'static Kind> {
     }
 }
 
-impl<'t> Site<'t> {
+impl<'t> Occurrence<'t> {
     /// The keys that may still be added beside this one. None where the spec chooses the keys.
     #[must_use]
     pub fn other_keys(&self) -> Vec<OtherKey> {
@@ -240,15 +240,14 @@ impl<'t> Site<'t> {
     pub fn names(&self) -> &'static [&'static str] {
         match self.role {
             Role::Key => &[],
-            Role::Chosen => self.kind.refers().unwrap_or_default(),
             Role::Value if self.kind.is_type() => TYPES,
-            Role::Value => self.kind.refers().unwrap_or_default(),
+            Role::Chosen | Role::Value => self.kind.refers().unwrap_or_default(),
         }
     }
 
     /// The thing that is named here.
     #[must_use]
-    pub fn sought(&self) -> Option<Sought> {
+    pub fn reference(&self) -> Option<Reference> {
         let kinds = self.names();
         let text = self.node.as_str().filter(|_| !kinds.is_empty())?;
         let mut span = self.node.span();
@@ -274,7 +273,7 @@ impl<'t> Site<'t> {
         } else {
             None
         };
-        Some(Sought {
+        Some(Reference {
             kinds,
             owner,
             name: name.to_owned(),

@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 
 /// A thing that a spec says.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Item {
+pub struct DefId {
     /// What the language calls it, which is the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
     pub kind: &'static str,
     /// What it is part of, where its name alone does not tell it from others: the type of a field.
@@ -26,7 +26,7 @@ pub struct Item {
     pub name: String,
 }
 
-impl Item {
+impl DefId {
     /// The name with the kind: `field Station.name`, `字段 Station.name`.
     #[must_use]
     pub fn text(&self) -> Text {
@@ -42,7 +42,7 @@ impl Item {
     }
 }
 
-impl Item {
+impl DefId {
     /// Returns `true` for a type, declared or made of a body.
     #[must_use]
     pub fn is_type(&self) -> bool {
@@ -57,7 +57,7 @@ impl Item {
 }
 
 /// With its kind: `field Station.name`.
-impl fmt::Display for Item {
+impl fmt::Display for DefId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, owner, name } = self;
         match owner {
@@ -70,7 +70,7 @@ impl fmt::Display for Item {
 
 /// Where something is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct DefSite {
     /// What names it: its key, or the list item itself.
     pub key: Span,
     /// All of it.
@@ -81,24 +81,24 @@ pub struct Place {
 
 /// Where each thing is written that could be read. Of two of one name, the first.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
-    files: Vec<Arc<Own>>,
+pub struct Definitions {
+    files: Vec<Arc<FileDefinitions>>,
     /// The answers, which are counted through all files.
-    answers: Own,
+    answers: FileDefinitions,
     /// All of them in order, as the number of their file and their own in it.
     order: OnceLock<Vec<(usize, usize)>>,
 }
 
 /// What one file says.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Own {
+pub(super) struct FileDefinitions {
     /// In the order of [`Item`].
-    all: Vec<(Item, Place)>,
-    answers: Vec<Place>,
+    all: Vec<(DefId, DefSite)>,
+    answers: Vec<DefSite>,
 }
 
-impl Own {
-    fn get(&self, item: &Item) -> Option<&Place> {
+impl FileDefinitions {
+    fn get(&self, item: &DefId) -> Option<&DefSite> {
         let at = self
             .all
             .binary_search_by(|(known, _)| known.cmp(item))
@@ -106,23 +106,23 @@ impl Own {
         self.all.get(at).map(|(_, place)| place)
     }
 
-    fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
+    fn iter(&self) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.all.iter().map(|(item, place)| (item, place))
     }
 }
 
-impl Places {
-    pub(super) fn of_files(files: Vec<Arc<Own>>) -> Self {
+impl Definitions {
+    pub(super) fn of_files(files: Vec<Arc<FileDefinitions>>) -> Self {
         let answers = files.iter().flat_map(|file| &file.answers);
         let answers = (1_usize..).zip(answers).map(|(at, place)| {
-            let item = Item {
+            let item = DefId {
                 kind: grammar::Answer::TABLE.name,
                 owner: None,
                 name: at.to_string(),
             };
             (item, place.clone())
         });
-        let mut answers = Own {
+        let mut answers = FileDefinitions {
             all: answers.collect(),
             answers: Vec::new(),
         };
@@ -134,21 +134,21 @@ impl Places {
         }
     }
 
-    fn parts(&self) -> impl Iterator<Item = &Own> {
+    fn parts(&self) -> impl Iterator<Item = &FileDefinitions> {
         let files = self.files.iter().map(Arc::as_ref);
         files.chain(std::iter::once(&self.answers))
     }
 
     /// Where it is written.
     #[must_use]
-    pub fn get(&self, item: &Item) -> Option<&Place> {
+    pub fn get(&self, item: &DefId) -> Option<&DefSite> {
         self.parts().find_map(|part| part.get(item))
     }
 
     /// All of them, in the order of [`Item`].
-    pub fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let order = self.order.get_or_init(|| self.ordered());
-        let parts: Vec<&Own> = self.parts().collect();
+        let parts: Vec<&FileDefinitions> = self.parts().collect();
         order.iter().filter_map(move |&(part, at)| {
             let (item, place) = parts.get(part)?.all.get(at)?;
             Some((item, place))
@@ -170,7 +170,7 @@ impl Places {
     }
 
     /// Those of one file, also those of a name that stands in an earlier file too.
-    pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let own = usize::try_from(file.0).ok();
         let own = own.and_then(|at| self.files.get(at));
         let own = own.into_iter().flat_map(|own| own.iter());
@@ -179,7 +179,7 @@ impl Places {
     }
 
     /// All of this name, with or without that of what it is part of: `Station.name`, `name`.
-    pub fn named(&self, name: &str) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn named(&self, name: &str) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.iter().filter(move |(item, _)| {
             let own = match &item.owner {
                 Some(owner) => name
@@ -200,11 +200,11 @@ impl Places {
 
 /// On the way to what one file says.
 #[derive(Default)]
-struct Said(BTreeMap<Item, Place>);
+struct Collector(BTreeMap<DefId, DefSite>);
 
-impl Said {
+impl Collector {
     fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, origin: Origin<'_>) {
-        let item = Item {
+        let item = DefId {
             kind: kind.name,
             owner: owner.map(str::to_owned),
             name: name.to_owned(),
@@ -249,8 +249,8 @@ impl Said {
     }
 }
 
-fn written(origin: Origin<'_>) -> Place {
-    Place {
+fn written(origin: Origin<'_>) -> DefSite {
+    DefSite {
         key: origin.key.span(),
         whole: origin.key.span().to(origin.node.span()),
         comments: origin.key.comments().collect(),
@@ -258,8 +258,8 @@ fn written(origin: Origin<'_>) -> Place {
 }
 
 /// Of the draft of one file.
-pub(super) fn own(draft: &Draft<'_>) -> Own {
-    let mut places = Said::default();
+pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
+    let mut places = Collector::default();
     places.if_there(grammar::Protocol::TABLE, draft.protocol.as_ref());
     places.if_there(grammar::Transport::TABLE, draft.transport.as_ref());
     places.if_there(grammar::Calls::TABLE, draft.calls.as_ref());
@@ -326,13 +326,13 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         at.to_string()
     });
     let answers = draft.answers.iter();
-    Own {
+    FileDefinitions {
         all: places.0.into_iter().collect(),
         answers: answers.map(|answer| written(answer.origin)).collect(),
     }
 }
 
-fn types(places: &mut Said, draft: &Draft<'_>) {
+fn types(places: &mut Collector, draft: &Draft<'_>) {
     for ty in &draft.types {
         let name = ty.def.name.as_str();
         let (kind, inside, names): (_, _, Vec<&str>) = match &ty.def.shape {
@@ -376,7 +376,7 @@ pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
 
 /// What a thing says of itself: its title, and more about it if there is more. Empty where the spec does not say it.
 #[must_use]
-pub fn described(trees: &Trees, place: &Place) -> Option<(Text, Option<Text>)> {
+pub fn described(trees: &Trees, place: &DefSite) -> Option<(Text, Option<Text>)> {
     let tree = trees.tree(place.key.file)?;
     let node = entry_at(tree.root(), place.key)?.value;
     Some((both_languages(node), COMMON.about.read(node)))
