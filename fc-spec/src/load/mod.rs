@@ -11,11 +11,11 @@
 //! reported: all faults of a spec show up in one run.
 
 mod check;
-mod consequence;
 pub(crate) mod draft;
 mod edit;
 #[cfg(test)]
 mod examples;
+mod follow_ups;
 mod govern;
 mod lower;
 mod partial;

@@ -7,15 +7,15 @@ mod available;
 mod body;
 mod cadence;
 mod condition;
+mod coordinates;
 mod dump;
 mod dump_fit;
 mod entity;
-mod flat;
+mod exchange_dump;
 mod glossary;
 mod named;
 mod operation;
 mod pattern;
-mod place;
 mod precondition;
 mod process;
 mod projection;
@@ -25,10 +25,10 @@ mod reference;
 mod sections;
 mod stream;
 mod text;
+mod text_form;
 mod types;
 mod value;
 mod waiver;
-mod written;
 
 pub use crate::names::{has_unprintable, is_hidden};
 pub use crate::vocabulary::{
@@ -43,6 +43,7 @@ pub use body::{
 };
 pub use cadence::{Cadence, Step};
 pub use condition::{Asked, Condition};
+pub use coordinates::{CoordinateSystem, Store};
 pub use dump::DumpError;
 pub use entity::Entity;
 pub use glossary::Term;
@@ -50,7 +51,6 @@ pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
 pub use pattern::{Pattern, PatternError};
-pub use place::{CoordinateSystem, Store};
 pub use precondition::{Accepted, AcceptedIn, StateSet};
 pub use process::{KeyPath, SetOff, Tie};
 pub(crate) use process::{enums, way};

@@ -1,9 +1,9 @@
 //! Keys that mean the same wherever they stand.
 
 use super::available::Available;
+use super::coordinates::Store;
 use super::form::{Bool, Date, Entries, Form, List, Name, Scalar, Str};
 use super::kind::Kind;
-use super::place::Store;
 use super::refers::{AnyOperation, Ref};
 use crate::model;
 use crate::syntax::Node;

@@ -1,13 +1,13 @@
 //! Types, bodies and fields.
 
 use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
+use super::coordinates::CoordinateSystem;
 use super::entity::Entity;
 use super::form::{
     Body, Bool, Entries, EnumType, Form, Int, Json, List, Name, Number, OtherForm, Scalar, Str,
     Type, TypeName, Unit, WireKey,
 };
 use super::kind::{Kind, Table};
-use super::place::CoordinateSystem;
 use super::refers::Ref;
 use crate::syntax::Node;
 use crate::vocabulary::{Quirk, StateOrder};

@@ -77,6 +77,7 @@ macro_rules! grammar {
 
 mod available;
 mod common;
+mod coordinates;
 mod entity;
 mod field;
 mod file;
@@ -85,7 +86,6 @@ mod glossary;
 mod key;
 mod kind;
 mod operation;
-mod place;
 mod refers;
 pub(crate) mod unit;
 mod waiver;
@@ -93,6 +93,7 @@ mod wire;
 
 pub(crate) use available::*;
 pub(crate) use common::*;
+pub(crate) use coordinates::*;
 pub(crate) use entity::*;
 pub(crate) use field::*;
 pub(crate) use file::*;
@@ -101,7 +102,6 @@ pub(crate) use glossary::*;
 pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};
 pub(crate) use operation::*;
-pub(crate) use place::*;
 pub(crate) use refers::*;
 pub(crate) use waiver::*;
 pub(crate) use wire::*;

@@ -2,12 +2,12 @@
 
 use super::available::{Audience, Machine, Series};
 use super::common::Conflict;
+use super::coordinates::{CoordinateSystem, Store};
 use super::entity::Entity;
 use super::field::{Enum, EnumValue, Struct};
 use super::form::{ConflictId, Form, Name, ResultNumber, TypeName};
 use super::kind::Kind;
 use super::operation::{Command, Group, Report, Stream};
-use super::place::{CoordinateSystem, Store};
 use super::wire::ResultCode;
 use crate::syntax::Node;
 use std::marker::PhantomData;

@@ -1,6 +1,6 @@
 //! For whom things are: words that are declared, and limits that leave every audience a whole protocol.
 
-use super::each::fields;
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{AVAILABLE, COMMON, FIELD};
 use crate::load::draft::{Draft, Sourced};

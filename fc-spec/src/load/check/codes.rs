@@ -152,7 +152,7 @@ fn belong_together(one: &Operation, other: &Operation) -> bool {
 }
 
 /// Every code lies in a range whose purpose suits it.
-pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
+pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if !draft.codes_known {
         return;
     }

@@ -1,6 +1,6 @@
 //! Fields that are there, or valid, only under certain values of the fields beside them.
 
-use super::each::fields;
+use super::iter::fields;
 use super::value::{Mismatch, check_field};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::FIELD;

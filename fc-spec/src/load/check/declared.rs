@@ -1,6 +1,6 @@
 //! References to declared things, and things without a reference.
 
-use super::each::called;
+use super::iter::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::Occurrence;
 use crate::language::grammar::{

@@ -1,6 +1,6 @@
 //! Entities, and the fields that refer to them.
 
-use super::each::fields;
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::FIELD;
 use crate::load::draft::Draft;

@@ -1,7 +1,7 @@
 //! Examples of fields and rows of tables.
 
-use super::each::fields;
 use super::fields::is_absent_required;
+use super::iter::fields;
 use super::value::{Mismatch, check_field, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TABLE};

@@ -1,6 +1,6 @@
 //! Types are written out in place, in examples, documentation and dumps: that must come to an end.
 
-use super::reach::each_name;
+use super::unused_types::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::{Text, TypeShape};

@@ -1,6 +1,6 @@
 //! What a field says about itself.
 
-use super::each::{fields, typed_fields};
+use super::iter::{fields, typed_fields};
 use super::value::{Mismatch, check_constraints, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TEXT};

@@ -1,6 +1,6 @@
 //! Dates.
 
-use super::each::fields;
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
 use crate::load::draft::{Draft, Origin};

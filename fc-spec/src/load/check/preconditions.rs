@@ -1,6 +1,6 @@
 //! What has to hold before a command is accepted.
 
-use super::reach::each_name;
+use super::unused_types::each_name;
 use super::value::{Mismatch, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{ACCEPTED, COMMAND};

@@ -1,6 +1,6 @@
 //! Names that must stand for something.
 
-use super::each::fields;
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
 use crate::load::draft::{Draft, Origin};

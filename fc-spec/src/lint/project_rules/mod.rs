@@ -1,12 +1,14 @@
 //! HOUSE: rules that a project has written itself, and what is wrong with how it uses the lint.
 
-use super::finding::Finding;
-use super::predicate::Test;
-use super::rule::{Category, Level, Rule};
-use super::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
+mod parse;
+
 use crate::diagnostic::LintCode;
 use crate::index::DefId;
 use crate::language::grammar as language;
+use crate::lint::finding::Finding;
+use crate::lint::predicate::Test;
+use crate::lint::rule::{Category, Level, Rule};
+use crate::lint::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
 use crate::model::{Model, Text, TypeShape};
 use serde_json::Value;
 

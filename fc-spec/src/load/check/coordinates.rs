@@ -1,6 +1,6 @@
 //! Coordinate systems and stores, and what names them.
 
-use super::each::typed_fields;
+use super::iter::typed_fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::FIELD;
 use crate::language::grammar::unit::is_length;

@@ -103,7 +103,7 @@ impl<'s> Earlier<'s> {
     }
 
     /// Takes out of the faults found since those that follow from others.
-    pub fn keep_independent(mut self, found: &mut Faults) {
+    pub fn suppress(mut self, found: &mut Faults) {
         // What each name that stands for nothing is taken for, if for anything.
         let names: Vec<(FaultCode, Option<String>)> = found
             .iter()
