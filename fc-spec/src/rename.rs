@@ -6,7 +6,7 @@ use crate::index::{DefId, DefSite, Index, described, entry_at};
 use crate::language::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
-use crate::load::written;
+use crate::load::yaml_scalar;
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Entry, Node};
 
@@ -114,7 +114,7 @@ fn longhand(index: &Index, file: &SourceFile, node: Node<'_>, pair: &str) -> Opt
     } else {
         short.to_owned()
     };
-    let (zh, en) = (written(&title.zh), written(&title.en));
+    let (zh, en) = (yaml_scalar(&title.zh), yaml_scalar(&title.en));
     Some(format!(
         "{{ {}: {ty}, {pair}, {}: {zh}, {}: {en} }}",
         FIELD.r#type.name, TEXT.zh.name, TEXT.en.name

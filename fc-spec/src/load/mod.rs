@@ -10,13 +10,13 @@
 //! **Architecture invariant.** No step stops at a fault and none reports what an earlier one has
 //! reported: all faults of a spec show up in one run.
 
+mod answer_edit;
+mod answer_scope;
 mod check;
 pub(crate) mod draft;
-mod edit;
 #[cfg(test)]
 mod examples;
 mod follow_ups;
-mod govern;
 mod lower;
 mod partial;
 mod process;
@@ -39,7 +39,7 @@ pub use settle::{Said, SettleError, Settled, settle};
 pub use trees::Trees;
 
 pub(crate) use crate::names::is_snake as is_operation_name;
-pub(crate) use edit::text as written;
+pub(crate) use answer_edit::text as yaml_scalar;
 pub(crate) use shape::{check_keys, check_root};
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
