@@ -1,4 +1,4 @@
-//! Where each thing that a spec says is written.
+//! The places where a spec declares each thing.
 
 use crate::diagnostic::nearest;
 use crate::language::grammar::{
@@ -15,12 +15,12 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// A thing that a spec says.
+/// The identity of a thing that a spec declares.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DefId {
-    /// What the language calls it, which is the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
+    /// The kind, as the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
     pub kind: &'static str,
-    /// What it is part of, where its name alone does not tell it from others: the type of a field.
+    /// The thing around it, if the name alone is not unique: the type of a field.
     pub owner: Option<String>,
     /// Its name; a code as the spec writes it, a number in decimal; its place among its like, from 1, where it has neither.
     pub name: String,
@@ -68,10 +68,10 @@ impl fmt::Display for DefId {
     }
 }
 
-/// Where something is written.
+/// The place of a declaration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DefSite {
-    /// What names it: its key, or the list item itself.
+    /// Its key, or the list item itself.
     pub key: Span,
     /// All of it.
     pub whole: Span,
@@ -79,7 +79,7 @@ pub struct DefSite {
     pub comments: Vec<Span>,
 }
 
-/// Where each thing is written that could be read. Of two of one name, the first.
+/// The declaration of each thing that could be read. Of two with one name, the first.
 #[derive(Clone, Debug, Default)]
 pub struct Definitions {
     files: Vec<Arc<FileDefinitions>>,
@@ -89,7 +89,7 @@ pub struct Definitions {
     order: OnceLock<Vec<(usize, usize)>>,
 }
 
-/// What one file says.
+/// The declarations in one file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FileDefinitions {
     /// In the order of [`Item`].
@@ -139,7 +139,7 @@ impl Definitions {
         files.chain(std::iter::once(&self.answers))
     }
 
-    /// Where it is written.
+    /// Returns the place of a thing.
     #[must_use]
     pub fn get(&self, item: &DefId) -> Option<&DefSite> {
         self.parts().find_map(|part| part.get(item))
@@ -198,7 +198,7 @@ impl Definitions {
     }
 }
 
-/// On the way to what one file says.
+/// Collects the declarations of a file.
 #[derive(Default)]
 struct Collector(BTreeMap<DefId, DefSite>);
 
@@ -212,7 +212,7 @@ impl Collector {
         self.0.entry(item).or_insert_with(|| written(origin));
     }
 
-    /// What stands once, and is called what it is.
+    /// Adds the only thing of a kind, with the name of the kind.
     fn one(&mut self, kind: &'static Table, origin: Origin<'_>) {
         self.add(kind, None, kind.name, origin);
     }
@@ -224,7 +224,7 @@ impl Collector {
         }
     }
 
-    /// What is called as its key says.
+    /// Adds things with the names of their keys.
     fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Sourced<'_, T>]) {
         for Sourced { origin, .. } in placed {
             self.add(
@@ -236,7 +236,7 @@ impl Collector {
         }
     }
 
-    /// What has another name than its key, if it has one.
+    /// Adds things with other names than their keys.
     fn named_by<T>(
         &mut self,
         kind: &'static Table,
@@ -257,7 +257,7 @@ fn written(origin: Origin<'_>) -> DefSite {
     }
 }
 
-/// Of the draft of one file.
+/// Returns the declarations in the draft of one file.
 pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
     let mut places = Collector::default();
     places.if_there(grammar::Protocol::TABLE, draft.protocol.as_ref());
@@ -374,7 +374,7 @@ pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
     inside.and_then(|item| entry_at(item, key))
 }
 
-/// What a thing says of itself: its title, and more about it if there is more. Empty where the spec does not say it.
+/// Returns the title of a thing, and its `about` if it has one. Both are empty if the spec lacks them.
 #[must_use]
 pub fn described(trees: &Trees, place: &DefSite) -> Option<(Text, Option<Text>)> {
     let tree = trees.tree(place.key.file)?;

@@ -1,24 +1,24 @@
-//! Where a spec names things that it says elsewhere.
+//! The places where a spec names things that it declares elsewhere.
 
 use super::definitions::{DefId, DefSite, Definitions};
 use crate::language::{Reference, visit};
 use crate::syntax::Tree;
 use std::sync::Arc;
 
-/// Every place at which a thing is named, other than that which says it, in the order of the files.
+/// Every name of a thing, other than in its declaration, in the order of the files.
 #[derive(Clone, Debug, Default)]
 pub struct References(Vec<Arc<FileReferences>>);
 
-/// Those of one file.
+/// The references in one file.
 #[derive(Debug, Default)]
 pub(super) struct FileReferences {
-    /// In the order in which they stand.
+    /// In the order of the file.
     all: Vec<Reference>,
-    /// The same by their names.
+    /// Indexes into `all`, in the order of the names.
     by_name: Vec<usize>,
 }
 
-/// Of one file.
+/// Returns the references in a file.
 pub(super) fn of_file(tree: &Tree<'_>) -> FileReferences {
     let mut all = Vec::new();
     visit(tree.root(), &mut |occurrence| {
@@ -47,12 +47,12 @@ impl References {
         Self(files)
     }
 
-    /// All of them.
+    /// Returns all references.
     pub fn iter(&self) -> impl Iterator<Item = &Reference> {
         self.0.iter().flat_map(|file| &file.all)
     }
 
-    /// Those of one thing.
+    /// Returns the references to a thing.
     pub fn of<'u>(&'u self, item: &'u DefId) -> impl Iterator<Item = &'u Reference> {
         let called = self.0.iter().flat_map(|file| file.called(&item.name));
         called.filter(|reference| reference.is(item))
@@ -60,13 +60,13 @@ impl References {
 }
 
 impl Reference {
-    /// Whether it is this thing.
+    /// Returns `true` if it names this thing.
     #[must_use]
     pub fn is(&self, item: &DefId) -> bool {
         self.name == item.name && self.kinds.contains(&item.kind) && self.owner == item.owner
     }
 
-    /// The thing, and where it is written; `None` if the spec does not have it.
+    /// Returns the thing with its place; `None` if the spec does not declare it.
     #[must_use]
     pub fn found<'p>(&self, places: &'p Definitions) -> Option<(DefId, &'p DefSite)> {
         self.kinds.iter().find_map(|kind| {

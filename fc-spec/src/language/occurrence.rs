@@ -1,4 +1,4 @@
-//! Every key and value of a file, and what the language says of it: for editors.
+//! Every key and value of a file, with its part of the grammar.
 
 use super::cursor::{Cursor, FILE_KIND};
 use super::reference::{Word, words};
@@ -13,22 +13,22 @@ use crate::syntax::{Node, Style};
 /// A key or a scalar value of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Occurrence<'t> {
-    /// Where it stands.
+    /// The node.
     pub node: Node<'t>,
-    /// What it is there.
+    /// Its role.
     pub role: Role,
-    /// The part of the language whose key it is or stands under; the id of a [`Part`](crate::language::Part).
+    /// The part of the language that has the key, as the id of a [`Part`](crate::language::Part).
     pub part: &'static str,
-    /// That key; `None` of a key that the part does not have.
+    /// The key; `None` for a key that the part does not have.
     pub key: Option<&'static str>,
-    /// The declared type in which it stands.
+    /// The declared type around it.
     owner: Option<&'t str>,
-    /// Of a key, the mapping that it is in, and what the language says of that.
+    /// For a key, its mapping and the kind of the mapping.
     within: Option<(Node<'t>, &'static Kind)>,
     kind: &'static Kind,
 }
 
-/// What a site is.
+/// The role of a key or value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A key that the language has, or a slip of one.
@@ -46,26 +46,26 @@ pub struct OtherKey {
     pub part: &'static str,
     /// The key.
     pub name: &'static str,
-    /// Whether the spec chooses what stands under it, so that it goes over lines of its own.
+    /// `true` if the spec chooses the keys below it, so that it opens lines.
     pub opens_lines: bool,
 }
 
-/// A thing that something is the name of, whether or not the spec has it.
+/// A name of a thing, which the spec may lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// What it may be; ids of [`Item`](crate::index::Item)s.
+    /// The kinds that it may have, as in [`DefId`](crate::index::DefId).
     pub kinds: &'static [&'static str],
-    /// What it is part of: of an enum value, its enum.
+    /// The thing around it: for an enum value, its enum.
     pub owner: Option<String>,
     /// Its name.
     pub name: String,
-    /// Where that stands.
+    /// The place of the name.
     pub span: Span,
 }
 
 static TYPE: Kind = Kind::Type;
 
-/// Shows every key and every scalar of a file, in the order in which they stand.
+/// Calls `see` with every key and every scalar of a file, in the order of the file.
 pub fn visit<'t>(root: Node<'t>, see: &mut dyn FnMut(Occurrence<'t>)) {
     let walk = Walk {
         part: File::TABLE.name,
@@ -91,21 +91,21 @@ pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Oc
     found
 }
 
-/// The key or scalar on which an offset of the file lies, or right behind which.
+/// Returns the key or scalar at an offset of the file, or the one that ends there.
 #[must_use]
 pub fn occurrence_at<'t>(root: Node<'t>, offset: usize) -> Option<Occurrence<'t>> {
     let mut found: Option<Occurrence<'t>> = None;
     visit(root, &mut |occurrence| {
         let span = occurrence.node.span();
         if span.start <= offset && offset <= span.end {
-            // What begins here is meant rather than what ends.
+            // One that begins here goes before one that ends here.
             found = Some(occurrence);
         }
     });
     found
 }
 
-/// On the way down.
+/// The state on the way down.
 #[derive(Clone, Copy)]
 struct Walk<'t> {
     part: &'static str,
@@ -191,7 +191,7 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// The kinds of which one stands here, also where each item of a list is one of them.
+/// Returns the alternatives of a kind, also those of the items of a list.
 fn each(kind: &'static Kind) -> Vec<&'static Kind> {
     match kind {
         Kind::Either(kinds) => kinds.iter().flat_map(each).collect(),
@@ -201,7 +201,7 @@ fn each(kind: &'static Kind) -> Vec<&'static Kind> {
 }
 
 impl<'t> Occurrence<'t> {
-    /// The keys that may still be added beside this one. None where the spec chooses the keys.
+    /// Returns the keys that the mapping does not have yet. Empty if the spec chooses the keys.
     #[must_use]
     pub fn other_keys(&self) -> Vec<OtherKey> {
         let Some((mapping, kind)) = self.within else {
@@ -225,7 +225,7 @@ impl<'t> Occurrence<'t> {
         keys
     }
 
-    /// The words of which one may stand here, built-in types and units among them.
+    /// Returns the words that may be here, including built-in types and units.
     #[must_use]
     pub fn words(&self) -> Vec<Word> {
         if self.role == Role::Key {
@@ -235,7 +235,7 @@ impl<'t> Occurrence<'t> {
         kinds.into_iter().flat_map(words).collect()
     }
 
-    /// What things one of which is to be named here; ids of [`Item`](crate::index::Item)s.
+    /// Returns the kinds of things that may be named here, as in [`DefId`](crate::index::DefId).
     #[must_use]
     pub fn names(&self) -> &'static [&'static str] {
         match self.role {
@@ -245,7 +245,7 @@ impl<'t> Occurrence<'t> {
         }
     }
 
-    /// The thing that is named here.
+    /// Returns the name of a thing that is here.
     #[must_use]
     pub fn reference(&self) -> Option<Reference> {
         let kinds = self.names();
@@ -281,7 +281,7 @@ impl<'t> Occurrence<'t> {
         })
     }
 
-    /// Whether it says what something is called in code: the `name` of a field or of an enum value.
+    /// Returns `true` for a name in code: the `name` of a field or of an enum value.
     #[must_use]
     pub fn is_code_name(&self) -> bool {
         let fields = [
@@ -296,13 +296,13 @@ impl<'t> Occurrence<'t> {
             && fields.iter().any(|table| table.name == self.part)
     }
 
-    /// The declared type in which it stands.
+    /// Returns the declared type around it.
     #[must_use]
     pub fn owner(&self) -> Option<&'t str> {
         self.owner
     }
 
-    /// Of the key of a section of operations, the ranges from which their codes come.
+    /// Returns the use of the ranges for the operations of a section, for the key of the section.
     #[must_use]
     pub fn operations(&self) -> Option<RangeUse> {
         if self.part != File::TABLE.name || self.role != Role::Key {
@@ -316,7 +316,7 @@ impl<'t> Occurrence<'t> {
         .find_map(|(key, usage)| (self.key == Some(key)).then_some(usage))
     }
 
-    /// Of the code of an operation, the ranges from which it comes.
+    /// Returns the use of the ranges for the code of an operation, for the code.
     #[must_use]
     pub fn code_of(&self) -> Option<RangeUse> {
         if self.role != Role::Value || self.key != Some(OPERATION.code.name) {
@@ -331,7 +331,7 @@ impl<'t> Occurrence<'t> {
     }
 }
 
-/// The tables whose keys a mapping may have: one, unless it does not say yet which of several it is.
+/// Collects the tables whose keys a mapping may have. Several if no key decides yet.
 fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table>) {
     match kind {
         Kind::Map(table) => tables.push(table),
