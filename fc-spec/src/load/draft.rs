@@ -209,6 +209,16 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Returns the values and keys that name a thing of these kinds, each with the name.
+    pub fn references_to(
+        &self,
+        kinds: &'static [&'static str],
+    ) -> impl Iterator<Item = (&Occurrence<'a>, &'a str)> {
+        let references = self.references.iter();
+        let references = references.filter(move |it| it.names() == kinds);
+        references.filter_map(|it| Some((it, it.node.as_str()?)))
+    }
+
     /// The type of this name.
     pub fn type_named(&self, name: &str) -> Option<&TypeDraft<'a>> {
         self.types.get(*self.type_index.get(name)?)

@@ -1,7 +1,7 @@
 //! Codes of operations and their ranges.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
+use crate::language::grammar::{CODE, Group, Named, OPERATION, RANGE, RETIRED, SOURCE};
 use crate::load::draft::{Draft, Sourced};
 use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
 use crate::source::Span;
@@ -239,17 +239,13 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .map(|group| group.item.id.as_str())
         .collect();
-    for range in &draft.ranges {
-        for node in RANGE.groups.items(range.origin.node) {
-            let Some(id) = node.as_str().filter(|id| !known.contains(id)) else {
-                continue;
-            };
+    for (occurrence, id) in draft.references_to(Group::KINDS) {
+        if !known.contains(&id) {
+            let span = occurrence.node.span();
             let message = text!("没有分组 `{id}`", "there is no group `{id}`");
-            let fault = Diagnostic::error(FaultCode::UnknownGroup, node.span(), message);
+            let fault = Diagnostic::error(FaultCode::UnknownGroup, span, message);
             faults.push(match nearest(id, known.iter().copied()) {
-                Some(near) => {
-                    fault.fix(node.span(), near, text!("改为 `{near}`", "write `{near}`"))
-                }
+                Some(near) => fault.fix(span, near, text!("改为 `{near}`", "write `{near}`")),
                 None => fault,
             });
         }

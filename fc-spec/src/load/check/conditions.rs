@@ -1,7 +1,8 @@
 //! Fields that are there, or valid, only under certain values of the fields beside them.
 
 use super::iter::fields;
-use super::value::{Mismatch, check_field};
+use super::value::check_field;
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::FIELD;
 use crate::language::scalar;
@@ -85,34 +86,26 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         if asked.wire == question.own.wire || !has_single_values(draft, &asked.ty) {
             continue;
         }
-        let mut earlier: Vec<Node<'_>> = Vec::new();
-        for node in scalar::each_value(question.entry.value) {
-            let mut found = Vec::new();
-            check_field(draft, asked, node, &mut found);
-            faults.extend(found.into_iter().map(|mismatch| {
-                let code = FaultCode::ConditionValue;
-                let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(
-                    part.ty,
-                    text!(
-                        "作为条件的字段的类型",
-                        "the type of the field in the condition"
-                    ),
-                )
-            }));
-            let wire = scalar::scalar(node);
-            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-                Some(first) => {
-                    let message = text!(
-                        "这个值在条件中出现两次",
-                        "this value occurs twice in the condition"
-                    );
-                    let fault = Diagnostic::error(FaultCode::ConditionTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-                }
-                None => earlier.push(node),
-            }
-        }
+        let list = ValueList {
+            wrong: FaultCode::ConditionValue,
+            ty: Some((
+                part.ty,
+                text!(
+                    "作为条件的字段的类型",
+                    "the type of the field in the condition"
+                ),
+            )),
+            repeated: FaultCode::ConditionTwice,
+            message: text!(
+                "这个值在条件中出现两次",
+                "this value occurs twice in the condition"
+            ),
+        };
+        list.check(
+            scalar::each_value(question.entry.value),
+            |node, found| check_field(draft, asked, node, found),
+            faults,
+        );
     }
 }
 

@@ -40,7 +40,7 @@ struct Unused {
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     for things in things(draft).iter().filter(|things| things.is_complete) {
         let known = things.names();
-        for (occurrence, name) in things.references(draft) {
+        for (occurrence, name) in draft.references_to(things.kinds) {
             if known.contains(name) {
                 continue;
             }
@@ -62,7 +62,10 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         let known = things.names();
-        let mut used: HashSet<&str> = things.references(draft).map(|(_, name)| name).collect();
+        let mut used: HashSet<&str> = draft
+            .references_to(things.kinds)
+            .map(|(_, name)| name)
+            .collect();
         let slips: Vec<&str> = used.difference(&known).copied().collect();
         for slip in slips {
             used.extend(nearest(slip, known.iter().copied()));
@@ -83,17 +86,6 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
 impl<'d> Things<'d> {
     fn names(&self) -> HashSet<&'d str> {
         self.declared.iter().map(|(name, _)| *name).collect()
-    }
-
-    /// The references to these things, each with its name.
-    fn references<'r, 'a>(
-        &self,
-        draft: &'r Draft<'a>,
-    ) -> impl Iterator<Item = (&'r Occurrence<'a>, &'a str)> {
-        let kinds = self.kinds;
-        let sites = draft.references.iter();
-        let sites = sites.filter(move |occurrence| occurrence.names() == kinds);
-        sites.filter_map(|occurrence| Some((occurrence, occurrence.node.as_str()?)))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::iter::{fields, typed_fields};
 use super::value::{Mismatch, check_constraints, check_type};
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TEXT};
 use crate::language::scalar;
@@ -12,7 +13,6 @@ use crate::model::{
     TypeShape, Value, WireForm,
 };
 use crate::source::Span;
-use crate::syntax::Node;
 use crate::text;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -228,25 +228,17 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             ));
             continue;
         }
-        let mut earlier: Vec<Node<'_>> = Vec::new();
-        for node in FIELD.only.items(part.origin.node) {
-            let mut found = Vec::new();
-            check_type(draft, &field.ty, node, &mut found);
-            faults.extend(found.into_iter().map(|mismatch| {
-                let code = FaultCode::OnlyValue;
-                let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(part.ty, text!("枚举", "the enum"))
-            }));
-            let wire = scalar::scalar(node);
-            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-                Some(first) => {
-                    let message = text!("这个值出现两次", "this value occurs twice");
-                    let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-                }
-                None => earlier.push(node),
-            }
-        }
+        let list = ValueList {
+            wrong: FaultCode::OnlyValue,
+            ty: Some((part.ty, text!("枚举", "the enum"))),
+            repeated: FaultCode::OnlyTwice,
+            message: text!("这个值出现两次", "this value occurs twice"),
+        };
+        list.check(
+            FIELD.only.items(part.origin.node),
+            |node, found| check_type(draft, &field.ty, node, found),
+            faults,
+        );
     }
 }
 

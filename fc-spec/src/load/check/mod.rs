@@ -31,6 +31,7 @@ mod states;
 mod streams;
 mod unused_types;
 mod value;
+mod value_list;
 mod waivers;
 
 use super::draft::Draft;

@@ -1,10 +1,10 @@
 //! What has to hold before a command is accepted.
 
 use super::unused_types::each_name;
-use super::value::{Mismatch, check_type};
+use super::value::check_type;
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{ACCEPTED, COMMAND};
-use crate::language::scalar;
+use crate::language::grammar::{ACCEPTED, COMMAND, Enum, Named};
 use crate::load::draft::Draft;
 use crate::model::{Kind, Text, Type, TypeRef, TypeShape};
 use crate::syntax::{Entry, Node};
@@ -76,24 +76,17 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Faults) {
     let ty = Type::Named(TypeRef::named(name));
-    let mut earlier: Vec<Node<'_>> = Vec::new();
-    for node in values.items() {
-        let mut found = Vec::new();
-        check_type(draft, &ty, node, &mut found);
-        faults.extend(found.into_iter().map(|mismatch| {
-            let code = FaultCode::StateValue;
-            Mismatch { code, ..mismatch }.into_fault()
-        }));
-        let wire = scalar::scalar(node);
-        match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-            Some(first) => {
-                let message = text!("这个状态出现两次", "this state occurs twice");
-                let fault = Diagnostic::error(FaultCode::DuplicateItem, node.span(), message);
-                faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-            }
-            None => earlier.push(node),
-        }
-    }
+    let list = ValueList {
+        wrong: FaultCode::StateValue,
+        ty: None,
+        repeated: FaultCode::DuplicateItem,
+        message: text!("这个状态出现两次", "this state occurs twice"),
+    };
+    list.check(
+        values.items(),
+        |node, found| check_type(draft, &ty, node, found),
+        faults,
+    );
 }
 
 /// Names of all types in what the robot sends: reports and responses to commands.
@@ -119,14 +112,11 @@ fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
 
 /// The enums of states are declared.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
-    for (_, node) in preconditions(draft) {
-        let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
-        for Entry { key, .. } in enums.into_iter().flatten() {
-            let Some(name) = key.as_str().filter(|name| draft.type_named(name).is_none()) else {
-                continue;
-            };
+    for (occurrence, name) in draft.references_to(Enum::KINDS) {
+        if draft.type_named(name).is_none() {
+            let span = occurrence.node.span();
             let message = text!("没有类型 `{name}`", "there is no type `{name}`");
-            let fault = Diagnostic::error(FaultCode::UnknownType, key.span(), message);
+            let fault = Diagnostic::error(FaultCode::UnknownType, span, message);
             let types = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
             let near = nearest(name, types.map(|ty| ty.def.name.as_str()));
             faults.push(fault.suggest(near, None));

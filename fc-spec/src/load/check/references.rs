@@ -2,13 +2,16 @@
 
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, TABLE};
+use crate::language::grammar::{
+    Constants, DEPRECATED, FIELD, Named, OPERATION, ResultCode, Struct,
+};
+use crate::language::scalar;
 use crate::load::draft::{Draft, Origin};
 use crate::model::{ResultRole, Text, Type, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};
 use crate::text;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// "Did you mean" looks through all names, so a spec with very many faults goes without.
 const SUGGESTIONS: usize = 100;
@@ -145,34 +148,13 @@ const FOREIGN: &[(&str, &str)] = &[
 
 /// Variants of a choice and rows of a table are structs.
 pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
-    for ty in &draft.types {
-        if let TypeShape::OneOf(choice) = &ty.def.shape {
-            for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-                if let (false, Some(node)) =
-                    (part.broken, NAMED_VARIANT.r#type.of(part.origin.node))
-                {
-                    check_struct(
-                        draft,
-                        variant.ty.name(),
-                        node,
-                        &text!("选项", "a variant"),
-                        faults,
-                    );
-                }
-            }
-        }
-    }
-    for table in &draft.tables {
-        let row = TABLE.row.of(table.origin.node);
-        if let Some(node) = row.filter(|node| node.as_scalar().is_some()) {
-            check_struct(
-                draft,
-                table.item.row.name(),
-                node,
-                &text!("一行", "a row"),
-                faults,
-            );
-        }
+    for (occurrence, name) in draft.references_to(Struct::KINDS) {
+        let what = if occurrence.part == Constants::NAME {
+            text!("一行", "a row")
+        } else {
+            text!("选项", "a variant")
+        };
+        check_struct(draft, name, occurrence.node, &what, faults);
     }
 }
 
@@ -224,53 +206,37 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
     if draft.results_place.is_none() {
         return;
     }
-    let known: HashSet<i64> = draft
-        .results
-        .iter()
-        .map(|result| result.item.code)
-        .collect();
-    for operation in &draft.operations {
-        for error in OPERATION.errors.items(operation.origin.node) {
-            let node = ERROR.code.of(error).unwrap_or(error);
-            let code = ERROR.code.read_in_or_at(error);
-            let success = draft.results.iter().find(|result| {
-                result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code
-            });
-            if let Some(success) = success {
+    for (occurrence, _) in draft.references_to(ResultCode::KINDS) {
+        let node = occurrence.node;
+        let Some(code) = scalar::small_int::<i64>(node) else {
+            continue;
+        };
+        let mut results = draft.results.iter();
+        let fault = match results.find(|result| result.item.code == code) {
+            Some(success) if success.item.role == Some(ResultRole::Success) => {
                 let message = text!(
                     "{code} 表示成功，不是错误",
-                    "{code} means success, not an error",
-                    code = success.item.code
+                    "{code} means success, not an error"
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
-                        .also(success.origin.name(), text!("在这里声明", "declared here"))
-                        .note(text!(
-                            "去掉它：每个接口都可以返回成功",
-                            "remove it: every operation can return success"
-                        )),
-                );
-                continue;
-            }
-            if let Some(code) = code.filter(|code| !known.contains(code)) {
-                let known: Vec<_> = draft
-                    .results
-                    .iter()
-                    .map(|result| result.item.code.to_string())
-                    .collect();
-                faults.push(
-                    Diagnostic::error(
-                        FaultCode::UnknownResult,
-                        node.span(),
-                        text!("没有结果码 {code}", "there is no result code {code}"),
-                    )
+                Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
+                    .also(success.origin.name(), text!("在这里声明", "declared here"))
                     .note(text!(
-                        "可以写：{known}",
-                        "expected one of {known}",
-                        known = Text::listed(known)
-                    )),
-                );
+                        "去掉它：每个接口都可以返回成功",
+                        "remove it: every operation can return success"
+                    ))
             }
-        }
+            Some(_) => continue,
+            None => {
+                let known = draft.results.iter();
+                let known = known.map(|result| result.item.code.to_string());
+                let message = text!("没有结果码 {code}", "there is no result code {code}");
+                Diagnostic::error(FaultCode::UnknownResult, node.span(), message).note(text!(
+                    "可以写：{known}",
+                    "expected one of {known}",
+                    known = Text::listed(known)
+                ))
+            }
+        };
+        faults.push(fault);
     }
 }
