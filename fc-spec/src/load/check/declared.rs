@@ -8,48 +8,52 @@ use crate::language::grammar::{
     FIELD, FILE, Machine, Named, Report, STREAM, Series, Store,
 };
 use crate::load::draft::{Draft, Sourced};
-use crate::model::{Kind, Text};
+use crate::model::{Declared, Kind, Text};
 use crate::source::Span;
 use crate::text;
 use std::collections::HashSet;
 
-/// The things that references of one kind may name, and how they are reported.
+/// The things that references of one kind may name.
 struct Things<'d> {
     /// The kind of the references in the grammar.
     kinds: &'static [&'static str],
+    /// The name of the kind in a sentence.
+    what: Text,
+    home: Home,
     declared: Vec<(&'d str, Span)>,
-    /// Returns `true` if all of them are known.
-    is_complete: bool,
     unknown: FaultCode,
-    /// The message about an unknown name.
-    message: fn(&str) -> Text,
-    /// The note on an unknown name without a similar one.
-    note: Option<Text>,
-    /// How a thing without a reference is reported, if it is an error.
-    unused: Option<Unused>,
+    /// The code of a thing without a reference, if it is an error.
+    unused: Option<FaultCode>,
 }
 
-/// How a thing without a reference is reported.
-struct Unused {
-    code: FaultCode,
-    message: fn(&str) -> Text,
-    note: Text,
+/// The part of a spec that declares things.
+#[derive(Clone, Copy)]
+enum Home {
+    /// The sections of operations.
+    Operations,
+    /// A section; `by` is the key of the references.
+    Section { key: &'static str, by: &'static str },
+    /// A key of `availability`.
+    Availability(&'static str),
 }
 
 /// Every name of a thing is declared.
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
-    for things in things(draft).iter().filter(|things| things.is_complete) {
+    for things in &things(draft) {
+        if draft.availability.is_broken && matches!(things.home, Home::Availability(_)) {
+            continue;
+        }
         let known = things.names();
         for (occurrence, name) in draft.references_to(things.kinds) {
             if known.contains(name) {
                 continue;
             }
             let fault = misfit(draft, occurrence, name).unwrap_or_else(|| {
-                let message = (things.message)(name);
+                let message = things.unknown_message(name);
                 Diagnostic::error(things.unknown, occurrence.node.span(), message)
             });
             let names = things.declared.iter().map(|(name, _)| *name);
-            faults.push(fault.suggest(nearest(name, names), things.note.clone()));
+            faults.push(fault.suggest(nearest(name, names), things.declare()));
         }
     }
 }
@@ -58,7 +62,7 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
 /// without: the things of other audiences are not for it.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     for things in &things(draft) {
-        let Some(report) = &things.unused else {
+        let Some(code) = things.unused else {
             continue;
         };
         let known = things.names();
@@ -77,8 +81,8 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         for (name, span) in unused {
-            let fault = Diagnostic::error(report.code, *span, (report.message)(name));
-            faults.push(fault.note(report.note.clone()));
+            let fault = Diagnostic::error(code, *span, things.unused_message(name));
+            faults.push(fault.note(things.use_or_delete()));
         }
     }
 }
@@ -86,6 +90,79 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
 impl<'d> Things<'d> {
     fn names(&self) -> HashSet<&'d str> {
         self.declared.iter().map(|(name, _)| *name).collect()
+    }
+
+    fn unknown_message(&self, name: &str) -> Text {
+        let what = &self.what;
+        match self.home {
+            Home::Availability(_) => text!(
+                "没有名为 `{name}` 的{what}",
+                "there is no {what} `{name}`",
+                what = what
+            ),
+            Home::Operations | Home::Section { .. } => text!(
+                "没有{what} `{name}`",
+                "there is no {what} `{name}`",
+                what = what
+            ),
+        }
+    }
+
+    /// The note on an unknown name without a similar one.
+    fn declare(&self) -> Option<Text> {
+        match self.home {
+            Home::Operations => None,
+            Home::Section { key, .. } => {
+                Some(text!("在 `{key}:` 下声明", "declare it under `{key}:`"))
+            }
+            Home::Availability(key) => Some(text!(
+                "在 `availability: {{ {key} }}` 下声明",
+                "declare it under `availability: {{ {key} }}`"
+            )),
+        }
+    }
+
+    fn unused_message(&self, name: &str) -> Text {
+        let what = &self.what;
+        match self.home {
+            Home::Availability(_) => text!(
+                "没有 `available` 用到{what} `{name}`",
+                "no `available` names the {what} `{name}`",
+                what = what
+            ),
+            _ if self.kinds == Entity::KINDS => text!(
+                "没有字段指向{what} `{name}`",
+                "no field refers to the {what} `{name}`",
+                what = what
+            ),
+            Home::Operations | Home::Section { .. } => text!(
+                "{what} `{name}` 没有用到",
+                "the {what} `{name}` is not used",
+                what = what
+            ),
+        }
+    }
+
+    /// The note on a thing without a reference.
+    fn use_or_delete(&self) -> Text {
+        match self.home {
+            Home::Section { by, .. } if self.kinds == Entity::KINDS => text!(
+                "在存放它的 ID 的字段上写 `{by}`，或将它删除",
+                "write `{by}` on a field that holds its IDs, or delete it"
+            ),
+            Home::Section { by, .. } => text!(
+                "在适用的地方写 `{by}`，或将它删除",
+                "write `{by}` where it applies, or delete it"
+            ),
+            _ if self.kinds == Audience::KINDS => text!(
+                "在只面向它的内容上写 `available: {{ for: … }}`，或将它删除",
+                "write `available: {{ for: … }}` on the things that only it has, or delete it"
+            ),
+            Home::Availability(_) | Home::Operations => text!(
+                "在某个 `available` 中用到它，或将它删除",
+                "name it in an `available`, or delete it"
+            ),
+        }
     }
 }
 
@@ -124,202 +201,96 @@ fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<
 
 /// All things that references may name, other than types.
 fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
-    let command = Things {
-        message: |name| text!("没有指令 `{name}`", "there is no command `{name}`"),
-        ..operations::<Command>(draft, |kind| kind == Kind::Command)
-    };
-    let report = Things {
-        message: |name| text!("没有上报 `{name}`", "there is no report `{name}`"),
-        ..operations::<Report>(draft, |kind| kind == Kind::Report)
-    };
-    let operations = [command, report, operations::<AnyOperation>(draft, |_| true)];
-    let others = sections(draft).into_iter().chain(availability(draft));
-    operations.into_iter().chain(others).collect()
-}
-
-/// The things with a section of the spec.
-fn sections<'d>(draft: &'d Draft<'_>) -> [Things<'d>; 3] {
-    let in_section = |key| text!("在 `{key}:` 下声明", "declare it under `{key}:`");
-    [
-        Things {
-            kinds: Entity::KINDS,
-            declared: names(&draft.entities, |it| &it.name),
-            is_complete: true,
-            unknown: FaultCode::UnknownEntity,
-            message: |name| text!("没有实体 `{name}`", "there is no entity `{name}`"),
-            note: Some(in_section(FILE.entities.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedEntity,
-                message: |name| {
-                    text!(
-                        "没有字段指向实体 `{name}`",
-                        "no field refers to the entity `{name}`"
-                    )
-                },
-                note: text!(
-                    "在存放它的 ID 的字段上写 `refers`，或将它删除",
-                    "write `refers` on a field that holds its IDs, or delete it"
-                ),
-            }),
-        },
-        Things {
-            kinds: CoordinateSystem::KINDS,
-            declared: names(&draft.coordinates, |it| &it.name),
-            is_complete: true,
-            unknown: FaultCode::UnknownCoordinates,
-            message: |name| {
-                text!(
-                    "没有坐标系 `{name}`",
-                    "there is no coordinate system `{name}`"
-                )
-            },
-            note: Some(in_section(FILE.coordinates.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedCoordinates,
-                message: |name| {
-                    text!(
-                        "坐标系 `{name}` 没有用到",
-                        "the coordinate system `{name}` is not used"
-                    )
-                },
-                note: write_or_delete(FIELD.coordinates.name),
-            }),
-        },
-        Things {
-            kinds: Store::KINDS,
-            declared: names(&draft.stores, |it| &it.name),
-            is_complete: true,
-            unknown: FaultCode::UnknownStore,
-            message: |name| text!("没有存储位置 `{name}`", "there is no store `{name}`"),
-            note: Some(in_section(FILE.stores.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedStore,
-                message: |name| {
-                    text!(
-                        "存储位置 `{name}` 没有用到",
-                        "the store `{name}` is not used"
-                    )
-                },
-                note: write_or_delete(COMMON.kept.name),
-            }),
-        },
-    ]
-}
-
-/// The words of `availability`.
-fn availability<'d>(draft: &'d Draft<'_>) -> [Things<'d>; 3] {
     let words = &draft.availability;
-    let in_availability = |key| {
-        text!(
-            "在 `availability: {{ {key} }}` 下声明",
-            "declare it under `availability: {{ {key} }}`"
-        )
+    let entities = Things {
+        kinds: Entity::KINDS,
+        what: text!("实体", "entity"),
+        home: Home::Section {
+            key: FILE.entities.name,
+            by: FIELD.refers.name,
+        },
+        declared: names(&draft.entities, |it| &it.name),
+        unknown: FaultCode::UnknownEntity,
+        unused: Some(FaultCode::UnusedEntity),
     };
-    [
-        Things {
-            kinds: Audience::KINDS,
-            declared: names(&words.audiences, |it| &it.name),
-            is_complete: !words.is_broken,
-            unknown: FaultCode::UnknownAvailability,
-            message: |name| text!("没有名为 `{name}` 的受众", "there is no audience `{name}`"),
-            note: Some(in_availability(AVAILABILITY.audiences.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedAvailability,
-                message: |name| {
-                    text!(
-                        "没有 `available` 用到受众 `{name}`",
-                        "no `available` names the audience `{name}`"
-                    )
-                },
-                note: text!(
-                    "在只面向它的内容上写 `available: {{ for: … }}`，或将它删除",
-                    "write `available: {{ for: … }}` on the things that only it has, or delete it"
-                ),
-            }),
+    let coordinates = Things {
+        kinds: CoordinateSystem::KINDS,
+        what: text!("坐标系", "coordinate system"),
+        home: Home::Section {
+            key: FILE.coordinates.name,
+            by: FIELD.coordinates.name,
         },
-        Things {
-            kinds: Machine::KINDS,
-            declared: names(&words.hardware, |it| &it.name),
-            is_complete: !words.is_broken,
-            unknown: FaultCode::UnknownAvailability,
-            message: |name| {
-                text!(
-                    "没有名为 `{name}` 的机型",
-                    "there is no line of machines `{name}`"
-                )
-            },
-            note: Some(in_availability(AVAILABILITY.hardware.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedAvailability,
-                message: |name| {
-                    text!(
-                        "没有 `available` 用到机型 `{name}`",
-                        "no `available` names the line of machines `{name}`"
-                    )
-                },
-                note: name_or_delete(),
-            }),
+        declared: names(&draft.coordinates, |it| &it.name),
+        unknown: FaultCode::UnknownCoordinates,
+        unused: Some(FaultCode::UnusedCoordinates),
+    };
+    let stores = Things {
+        kinds: Store::KINDS,
+        what: text!("存储位置", "store"),
+        home: Home::Section {
+            key: FILE.stores.name,
+            by: COMMON.kept.name,
         },
-        Things {
-            kinds: Series::KINDS,
-            declared: names(&words.releases, |it| &it.name),
-            is_complete: !words.is_broken,
-            unknown: FaultCode::UnknownAvailability,
-            message: |name| {
-                text!(
-                    "没有名为 `{name}` 的版本系列",
-                    "there is no series of releases `{name}`"
-                )
-            },
-            note: Some(in_availability(AVAILABILITY.releases.name)),
-            unused: Some(Unused {
-                code: FaultCode::UnusedAvailability,
-                message: |name| {
-                    text!(
-                        "没有 `available` 用到版本系列 `{name}`",
-                        "no `available` names the series of releases `{name}`"
-                    )
-                },
-                note: name_or_delete(),
-            }),
-        },
+        declared: names(&draft.stores, |it| &it.name),
+        unknown: FaultCode::UnknownStore,
+        unused: Some(FaultCode::UnusedStore),
+    };
+    let command = text!("指令", "command");
+    let report = text!("上报", "report");
+    let operation = text!("接口", "operation");
+    let audience = text!("受众", "audience");
+    let machine = text!("机型", "line of machines");
+    let series = text!("版本系列", "series of releases");
+    vec![
+        operations::<Command>(draft, command, |kind| kind == Kind::Command),
+        operations::<Report>(draft, report, |kind| kind == Kind::Report),
+        operations::<AnyOperation>(draft, operation, |_| true),
+        entities,
+        coordinates,
+        stores,
+        available::<Audience>(audience, AVAILABILITY.audiences.name, &words.audiences),
+        available::<Machine>(machine, AVAILABILITY.hardware.name, &words.hardware),
+        available::<Series>(series, AVAILABILITY.releases.name, &words.releases),
     ]
 }
 
-/// Operations of some kinds.
-fn operations<'d, T: Named>(draft: &'d Draft<'_>, fits: fn(Kind) -> bool) -> Things<'d> {
+fn operations<'d, T: Named>(
+    draft: &'d Draft<'_>,
+    what: Text,
+    fits: fn(Kind) -> bool,
+) -> Things<'d> {
     let declared = draft.operations.iter();
     let declared = declared.filter(|it| fits(it.item.kind()));
     Things {
         kinds: T::KINDS,
+        what,
+        home: Home::Operations,
         declared: declared
             .map(|it| (it.item.name.as_str(), it.origin.name()))
             .collect(),
-        is_complete: true,
         unknown: FaultCode::UnknownOperation,
-        message: |name| text!("没有接口 `{name}`", "there is no operation `{name}`"),
-        note: None,
         unused: None,
     }
 }
 
-fn names<'d, T>(placed: &'d [Sourced<'_, T>], name: fn(&T) -> &String) -> Vec<(&'d str, Span)> {
-    let placed = placed.iter();
-    placed
+fn available<'d, T: Named>(
+    what: Text,
+    key: &'static str,
+    declared: &'d [Sourced<'_, Declared>],
+) -> Things<'d> {
+    Things {
+        kinds: T::KINDS,
+        what,
+        home: Home::Availability(key),
+        declared: names(declared, |it| &it.name),
+        unknown: FaultCode::UnknownAvailability,
+        unused: Some(FaultCode::UnusedAvailability),
+    }
+}
+
+fn names<'d, T>(sourced: &'d [Sourced<'_, T>], name: fn(&T) -> &String) -> Vec<(&'d str, Span)> {
+    let sourced = sourced.iter();
+    sourced
         .map(|it| (name(&it.item).as_str(), it.origin.name()))
         .collect()
-}
-
-fn write_or_delete(key: &str) -> Text {
-    text!(
-        "在适用的地方写 `{key}`，或将它删除",
-        "write `{key}` where it applies, or delete it"
-    )
-}
-
-fn name_or_delete() -> Text {
-    text!(
-        "在某个 `available` 中用到它，或将它删除",
-        "name it in an `available`, or delete it"
-    )
 }
