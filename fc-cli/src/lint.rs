@@ -2,7 +2,7 @@
 
 use fc_codegen::target::FILE;
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::places;
+use fc_spec::index::definitions;
 use fc_spec::lint::{faults, lint, settings, waive};
 
 use crate::check::{Denied, Shown};
@@ -146,7 +146,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let today = today(options.today.as_deref());
     let mut findings = lint(model, &settings, &today);
     waive(&mut findings, &model.waivers, &today);
-    let shown = faults(&findings, &settings, || places(&spec.sources));
+    let shown = faults(&findings, &settings, || definitions(&spec.sources));
     options.format.show(&project, &shown, &spec.sources)?;
     if options.format == Shown::Text && shown.is_empty() {
         let waived = findings.iter().filter(|it| it.waived.is_some()).count();

@@ -1,7 +1,7 @@
 //! `fcproto where`.
 
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{Item, Place as Written, places};
+use fc_spec::index::{DefId, DefSite as Written, definitions};
 use fc_spec::load::load;
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
@@ -73,7 +73,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if names.is_empty() {
         names.push(name);
     }
-    let places = places(&sources);
+    let places = definitions(&sources);
     let found = names.iter().flat_map(|name| places.named(name));
     let found: Vec<_> = found.map(|(item, at)| shown(item, at, &sources)).collect();
     if found.is_empty() {
@@ -97,7 +97,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-fn shown(item: &Item, written: &Written, sources: &Sources) -> String {
+fn shown(item: &DefId, written: &Written, sources: &Sources) -> String {
     let path = sources.path(written.key);
     let at = sources.line_col(written.key);
     let item = in_lang(&item.text());

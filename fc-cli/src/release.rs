@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use fc_codegen::inspect::frozen;
+use fc_codegen::inspect::release_dump;
 use fc_codegen::output::replace_spec_file;
 use fc_diff::release::{DIRECTORY, NoNumber, Number, Objection, file, goes_back, objections};
 use fc_diff::{Finding, Lang, first_section, is_ours, section, with_section};
@@ -289,7 +289,7 @@ fn write(
     sections: &[(Lang, &str, String)],
 ) -> Result<Vec<String>, Failure> {
     let path = slashed(&shelf.file(&file(number)));
-    replace_spec_file(&project.root, &path, &frozen(model))?;
+    replace_spec_file(&project.root, &path, &release_dump(model))?;
     let mut written = vec![path];
     for (lang, name, section) in sections {
         let path = slashed(&shelf.file(&format!("{DIRECTORY}/{name}")));

@@ -3,7 +3,7 @@
 use crate::finding::{Deployment, Finding, Spot};
 use crate::rule::pick;
 use crate::version::Version;
-use fc_spec::index::{Item, Place};
+use fc_spec::index::{DefId, DefSite};
 use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
 use fc_spec::source::Span;
@@ -109,9 +109,9 @@ fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
     ))
 }
 
-fn place_of<'v>(spots: &[Spot], version: &'v Version) -> Option<&'v Place> {
+fn place_of<'v>(spots: &[Spot], version: &'v Version) -> Option<&'v DefSite> {
     spots.iter().find_map(|spot| {
-        let is_kind = |item: &Item| spot.kind.is_empty() || item.kind == spot.kind;
+        let is_kind = |item: &DefId| spot.kind.is_empty() || item.kind == spot.kind;
         let mut found = version.places.named(&spot.name);
         let found = found.find(|(item, _)| is_kind(item));
         found.map(|(_, place)| place)

@@ -2,7 +2,7 @@
 
 use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{Places, places};
+use fc_spec::index::{Definitions, definitions};
 use fc_spec::load::Trees;
 use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
 use fc_spec::source::Sources;
@@ -28,7 +28,7 @@ pub struct Version {
     /// The files; none for a dump.
     pub sources: Sources,
     /// The place of each definition in the files.
-    pub places: Places,
+    pub places: Definitions,
 }
 
 /// The reason why a version cannot be loaded.
@@ -158,7 +158,7 @@ impl Version {
                 name: name.to_owned(),
                 model,
                 sources: Sources::new(),
-                places: Places::default(),
+                places: Definitions::default(),
             });
         }
         // Looks for the spec of a project first, then for a spec in the directory itself.
@@ -195,7 +195,7 @@ impl Version {
             Some(model) => Ok(Self {
                 name,
                 model,
-                places: places(&sources),
+                places: definitions(&sources),
                 sources,
             }),
             None => Err(VersionError::Faulty {

@@ -6,7 +6,7 @@
 use crate::language::{self, both};
 use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{OtherKey, Site, site_at};
+use fc_spec::index::{Occurrence, OtherKey, occurrence_at};
 use fc_spec::language::Word;
 use fc_spec::source::{FileId, SourceFile, Span};
 use fc_spec::syntax::parse;
@@ -29,7 +29,7 @@ pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<C
         let Some(tree) = parse(file, &text, &mut Faults::new()) else {
             continue;
         };
-        let Some(site) = site_at(tree.root(), typed.start) else {
+        let Some(occurrence) = occurrence_at(tree.root(), typed.start) else {
             continue;
         };
         let found = Found {
@@ -37,7 +37,7 @@ pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<C
             replaced,
             items: Vec::new(),
         };
-        let items = found.of(&site);
+        let items = found.of(&occurrence);
         if !items.is_empty() {
             return items;
         }
@@ -123,8 +123,8 @@ struct Found<'s> {
 }
 
 impl Found<'_> {
-    fn of(mut self, site: &Site<'_>) -> Vec<CompletionItem> {
-        let keys = site.other_keys();
+    fn of(mut self, occurrence: &Occurrence<'_>) -> Vec<CompletionItem> {
+        let keys = occurrence.other_keys();
         let is_key = !keys.is_empty();
         for key in keys {
             self.key(key);
@@ -132,8 +132,8 @@ impl Found<'_> {
         if is_key {
             return self.items;
         }
-        let path = self.snapshot.sources().path(site.node.span());
-        if let Some(code) = site
+        let path = self.snapshot.sources().path(occurrence.node.span());
+        if let Some(code) = occurrence
             .code_of()
             .and_then(|it| self.snapshot.known().analysis().next_code(it, path))
         {
@@ -142,10 +142,10 @@ impl Found<'_> {
             let code = format!("0x{code:04X}");
             self.add(&code, CompletionItemKind::Value, what.to_owned(), None);
         }
-        for kind in site.names() {
-            self.things(kind, site);
+        for kind in occurrence.names() {
+            self.things(kind, occurrence);
         }
-        for word in site.words() {
+        for word in occurrence.words() {
             self.word(&word);
         }
         self.items
@@ -193,13 +193,13 @@ impl Found<'_> {
     }
 
     /// Adds the definitions of a kind. Enum values come from the enum at the cursor only.
-    fn things(&mut self, kind: &str, site: &Site<'_>) {
+    fn things(&mut self, kind: &str, occurrence: &Occurrence<'_>) {
         let lang = self.snapshot.settings.lang;
         let known = self.snapshot.known();
-        let places = known.places().iter();
+        let places = known.definitions().iter();
         let things: Vec<_> = places
             .filter(|(item, _)| item.kind == kind)
-            .filter(|(item, _)| item.owner.is_none() || item.owner.as_deref() == site.owner())
+            .filter(|(item, _)| item.owner.is_none() || item.owner.as_deref() == occurrence.owner())
             .collect();
         for (item, place) in things {
             let title = known.title(item, place);

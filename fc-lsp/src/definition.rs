@@ -9,6 +9,6 @@ use gen_lsp_types::Location;
 #[must_use]
 pub fn definition(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Location> {
     let meant = meant(snapshot, at)?;
-    let place = snapshot.places().get(&meant.item)?;
+    let place = snapshot.definitions().get(&meant.item)?;
     snapshot.location(place.key)
 }

@@ -6,7 +6,7 @@ use crate::language::{self, both};
 use crate::snapshot::Snapshot;
 use fc_codegen::emit::rust;
 use fc_reflect::sample::{Profile, Samples};
-use fc_spec::index::{Item, Role, Site};
+use fc_spec::index::{DefId, Occurrence, Role};
 use fc_spec::model::Lang;
 use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
 use fc_spec::source::FileId;
@@ -19,15 +19,15 @@ const LINES: usize = 60;
 /// Returns the hover text at an offset.
 #[must_use]
 pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
-    let (text, span) = snapshot.at(at, |site| {
-        let span = site.node.span();
-        if site.role == Role::Key {
-            return Some((of_key(snapshot, site)?, span));
+    let (text, span) = snapshot.at(at, |occurrence| {
+        let span = occurrence.node.span();
+        if occurrence.role == Role::Key {
+            return Some((of_key(snapshot, occurrence)?, span));
         }
-        if let Some(meant) = of_site(snapshot, site) {
+        if let Some(meant) = of_site(snapshot, occurrence) {
             return Some((thing(snapshot, &meant.item)?, meant.span));
         }
-        Some((of_word(snapshot, site)?, span))
+        Some((of_word(snapshot, occurrence)?, span))
     })?;
     Some(Hover {
         contents: MarkupContent {
@@ -39,9 +39,9 @@ pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
     })
 }
 
-fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
+fn of_key(snapshot: &Snapshot, occurrence: &Occurrence<'_>) -> Option<String> {
     let lang = snapshot.settings.lang;
-    let key = language::key(site.part, site.key?)?;
+    let key = language::key(occurrence.part, occurrence.key?)?;
     let required = if key.required {
         lang.pick("（必填）", " (required)")
     } else {
@@ -60,20 +60,20 @@ fn of_key(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
     Some(text)
 }
 
-fn of_word(snapshot: &Snapshot, site: &Site<'_>) -> Option<String> {
+fn of_word(snapshot: &Snapshot, occurrence: &Occurrence<'_>) -> Option<String> {
     let lang = snapshot.settings.lang;
-    let written = site.node.as_str()?.trim_end_matches('?');
-    let mut words = site.words().into_iter();
+    let written = occurrence.node.as_str()?.trim_end_matches('?');
+    let mut words = occurrence.words().into_iter();
     if let Some(word) = words.find(|word| word.word == written) {
         return Some(format!("`{}`\n\n{}", word.word, both(&word.text, lang)));
     }
     // For an unknown word, the description of its key.
-    let key = language::key(site.part, site.key?)?;
+    let key = language::key(occurrence.part, occurrence.key?)?;
     Some(format!("`{}`\n\n{}", key.name, both(&key.text, lang)))
 }
 
 /// Returns the hover text of a definition.
-pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
+pub fn thing(snapshot: &Snapshot, item: &DefId) -> Option<String> {
     let known = snapshot.known().analysis();
     let lang = snapshot.settings.lang;
     let mut text = format!("**{}** `{}`", kind(item, lang), name(item));
@@ -96,19 +96,19 @@ pub fn thing(snapshot: &Snapshot, item: &Item) -> Option<String> {
     } else if let Some(owner) = item.owner.as_deref().and_then(|it| known.types().named(it)) {
         of_part(&mut text, snapshot, owner, item)?;
     } else {
-        let place = snapshot.places().get(item)?;
+        let place = snapshot.definitions().get(item)?;
         let (title, about) = fc_spec::index::described(snapshot.trees(), place)?;
         described(&mut text, &title, about.as_ref(), lang);
     }
     Some(text)
 }
 
-fn kind(item: &Item, lang: Lang) -> &str {
+fn kind(item: &DefId, lang: Lang) -> &str {
     let part = language::part(item.kind);
     part.map_or(item.kind, |part| lang.text(&part.name))
 }
 
-fn name(item: &Item) -> String {
+fn name(item: &DefId) -> String {
     match &item.owner {
         Some(owner) => format!("{owner}.{}", item.name),
         None => item.name.clone(),
@@ -149,7 +149,7 @@ fn messages(text: &mut String, snapshot: &Snapshot, model: &Model, operation: &O
 }
 
 /// Adds a field, an enum value or a variant.
-fn of_part(text: &mut String, snapshot: &Snapshot, owner: &TypeDef, item: &Item) -> Option<()> {
+fn of_part(text: &mut String, snapshot: &Snapshot, owner: &TypeDef, item: &DefId) -> Option<()> {
     let lang = snapshot.settings.lang;
     match &owner.shape {
         TypeShape::Struct(shape) => {

@@ -2,7 +2,7 @@
 
 use crate::snapshot::Snapshot;
 use fc_diff::Finding;
-use fc_spec::index::{Item, Place, Role, sites};
+use fc_spec::index::{DefId, DefSite, Role, visit};
 use fc_spec::model::{Lang, RangeUse};
 use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{CodeLens, Command, Location};
@@ -42,7 +42,7 @@ pub fn checked(snapshot: &Snapshot) -> Checked {
 #[must_use]
 pub fn lenses(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     let mut lenses = free_codes(snapshot, file);
-    for (item, place) in snapshot.places().in_file(file) {
+    for (item, place) in snapshot.definitions().in_file(file) {
         if is_declared(snapshot, item, place) {
             lenses.extend(users(snapshot, item, place));
         }
@@ -60,15 +60,17 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     };
     let lang = snapshot.settings.lang;
     let known = snapshot.known();
-    sites(tree.root(), &mut |site| {
-        let usage = site.operations().filter(|_| site.role == Role::Key);
-        let path = snapshot.sources().path(site.node.span());
+    visit(tree.root(), &mut |occurrence| {
+        let usage = occurrence
+            .operations()
+            .filter(|_| occurrence.role == Role::Key);
+        let path = snapshot.sources().path(occurrence.node.span());
         let code = usage.and_then(|usage: RangeUse| known.analysis().next_code(usage, path));
         if let Some(code) = code {
             let title = lang.pick("空闲的功能码", "free code");
             let lens = said(
                 snapshot,
-                site.node.span(),
+                occurrence.node.span(),
                 format!("{title} 0x{code:04X}"),
                 None,
             );
@@ -80,14 +82,17 @@ fn free_codes(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
 
 /// Returns `true` for an item with its own declaration. A type that an operation or field defines inline is not
 /// declared.
-fn is_declared(snapshot: &Snapshot, item: &Item, place: &Place) -> bool {
+fn is_declared(snapshot: &Snapshot, item: &DefId, place: &DefSite) -> bool {
     let key = snapshot.sources().slice(place.key);
     item.owner.is_none() && key == item.name
 }
 
 /// Returns a lens with the number of places that name an item. An item without users gets a lens only if it is a type.
-fn users(snapshot: &Snapshot, item: &Item, place: &Place) -> Option<CodeLens> {
-    let uses = snapshot.uses().of(item).map(|sought| sought.span);
+fn users(snapshot: &Snapshot, item: &DefId, place: &DefSite) -> Option<CodeLens> {
+    let uses = snapshot
+        .references()
+        .of(item)
+        .map(|reference| reference.span);
     let places: Vec<Location> = uses.filter_map(|span| snapshot.location(span)).collect();
     if places.is_empty() && !item.is_type() {
         return None;
@@ -147,7 +152,7 @@ fn breaking(findings: &[Finding]) -> impl Iterator<Item = &Finding> {
 
 /// Returns the key of the operation or declared type that contains a finding.
 fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
-    let places = snapshot.places();
+    let places = snapshot.definitions();
     let spot = finding.new.iter().find_map(|spot| {
         let mut named = places.named(&spot.name);
         let found = named.find(|(item, _)| spot.kind.is_empty() || item.kind == spot.kind);

@@ -4,7 +4,7 @@ use fc_codegen::target::{FILE, Targets};
 use fc_diff::release::{DIRECTORY, Releases};
 use fc_diff::{Packages, Version};
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::Places;
+use fc_spec::index::Definitions;
 use fc_spec::lint::{self, faults, lint, waive};
 use fc_spec::model::Model;
 use fc_spec::source::Sources;
@@ -86,7 +86,7 @@ impl Project {
         &self,
         model: &Model,
         today: &str,
-        places: impl FnOnce() -> &'p Places,
+        places: impl FnOnce() -> &'p Definitions,
     ) -> Faults {
         if !self.lint.faults.is_empty() {
             return Faults::new();

@@ -13,9 +13,12 @@ pub fn references(
     with_own: bool,
 ) -> Option<Vec<Location>> {
     let item = meant(snapshot, at)?.item;
-    let own = snapshot.places().get(&item).filter(|_| with_own);
+    let own = snapshot.definitions().get(&item).filter(|_| with_own);
     let own = own.map(|place| place.key);
-    let uses = snapshot.uses().of(&item).map(|sought| sought.span);
+    let uses = snapshot
+        .references()
+        .of(&item)
+        .map(|reference| reference.span);
     let spans = own.into_iter().chain(uses);
     Some(spans.filter_map(|span| snapshot.location(span)).collect())
 }

@@ -16,7 +16,7 @@ pub fn prepare_rename(
     at: (FileId, usize),
 ) -> Option<PrepareRenamePlaceholder> {
     let meant = meant(snapshot, at)?;
-    let place = snapshot.places().get(&meant.item)?;
+    let place = snapshot.definitions().get(&meant.item)?;
     let item = (&meant.item, place);
     let name = name(snapshot, &meant.item);
     fc_spec::rename::rename(snapshot.index(), item, &name)?;
@@ -27,7 +27,7 @@ pub fn prepare_rename(
 }
 
 /// Returns the name of an item in code. For a field this is not the wire key.
-fn name(snapshot: &Snapshot, item: &fc_spec::index::Item) -> String {
+fn name(snapshot: &Snapshot, item: &fc_spec::index::DefId) -> String {
     let owner = item.owner.as_deref();
     let owner = owner.and_then(|owner| snapshot.known().analysis().types().named(owner));
     let field = owner.and_then(|owner| match &owner.shape {
@@ -48,7 +48,7 @@ pub fn rename(
 ) -> Result<WorkspaceEdit, String> {
     let lang = snapshot.settings.lang;
     let changes = meant(snapshot, at).and_then(|meant| {
-        let place = snapshot.places().get(&meant.item)?;
+        let place = snapshot.definitions().get(&meant.item)?;
         fc_spec::rename::rename(snapshot.index(), (&meant.item, place), new)
     });
     let changes = changes.ok_or_else(|| {

@@ -5,7 +5,9 @@ use crate::settings::Settings;
 use fc_codegen::check::check_trees;
 use fc_diff::{Against, Finding, diff_since, waive};
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{Index, Item, Place, Places, Site, Uses, described, site_at};
+use fc_spec::index::{
+    DefId, DefSite, Definitions, Index, Occurrence, References, described, occurrence_at,
+};
 use fc_spec::load::{Partial, Trees};
 use fc_spec::model::{Group, Model, Operation, RangeUse, Text, Types};
 use fc_spec::source::{FileId, SourceFile, Sources, Span};
@@ -39,8 +41,8 @@ pub struct State {
     unread: Faults,
     today: String,
     analysis: OnceLock<Analysis>,
-    places: OnceLock<Places>,
-    uses: OnceLock<Uses>,
+    places: OnceLock<Definitions>,
+    uses: OnceLock<References>,
     findings: OnceLock<Vec<Finding>>,
 }
 
@@ -65,7 +67,7 @@ impl State {
             if let Ok(model) = &checked.read
                 && !faults.has_errors()
             {
-                let places = || self.places();
+                let places = || self.definitions();
                 let linted = self.project.linted(model, &self.today, places);
                 faults.extend(linted.iter().cloned());
                 faults.sort();
@@ -79,12 +81,12 @@ impl State {
     }
 
     /// Returns the place of each definition.
-    pub fn places(&self) -> &Places {
-        self.places.get_or_init(|| self.index.places())
+    pub fn definitions(&self) -> &Definitions {
+        self.places.get_or_init(|| self.index.definitions())
     }
 
     /// Returns the title of a definition. Operations and types take it from the model, other kinds from the file.
-    pub fn title(&self, item: &Item, place: &Place) -> Option<Text> {
+    pub fn title(&self, item: &DefId, place: &DefSite) -> Option<Text> {
         if item.is_operation() {
             let mut operations = self.analysis().operations().iter();
             let operation = operations.find(|it| it.name == item.name)?;
@@ -178,15 +180,15 @@ impl Snapshot {
 
     /// Returns the place of each definition.
     #[must_use]
-    pub fn places(&self) -> &Places {
-        self.state.places()
+    pub fn definitions(&self) -> &Definitions {
+        self.state.definitions()
     }
 
     /// Returns the places that name each definition.
     #[must_use]
-    pub fn uses(&self) -> &Uses {
+    pub fn references(&self) -> &References {
         let uses = &self.state.uses;
-        uses.get_or_init(|| self.state.index.uses())
+        uses.get_or_init(|| self.state.index.references())
     }
 
     /// Returns this state if it is checked and all its files could be parsed, otherwise the last earlier state of that
@@ -281,10 +283,10 @@ impl Snapshot {
     pub fn at<T>(
         &self,
         (file, offset): (FileId, usize),
-        then: impl FnOnce(&Site<'_>) -> Option<T>,
+        then: impl FnOnce(&Occurrence<'_>) -> Option<T>,
     ) -> Option<T> {
         let tree = self.trees().tree(file)?;
-        then(&site_at(tree.root(), offset)?)
+        then(&occurrence_at(tree.root(), offset)?)
     }
 
     /// Returns replacements as a workspace edit. The edit names the version of each open file, so that the client

@@ -1,7 +1,7 @@
 //! Symbols: the outline of a file, and search by name in the spec.
 
 use crate::snapshot::Snapshot;
-use fc_spec::index::{Item, Place};
+use fc_spec::index::{DefId, DefSite};
 use fc_spec::source::{FileId, Span};
 use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolKind, WorkspaceSymbol};
 use std::collections::BTreeMap;
@@ -13,8 +13,8 @@ const FOUND: usize = 200;
 #[must_use]
 pub fn document_symbols(snapshot: &Snapshot, file: FileId) -> Vec<DocumentSymbol> {
     // If one key defines an operation or field and a type made from it, the operation or field wins.
-    let mut own: BTreeMap<(usize, usize), (&Item, &Place)> = BTreeMap::new();
-    for (item, place) in snapshot.places().in_file(file) {
+    let mut own: BTreeMap<(usize, usize), (&DefId, &DefSite)> = BTreeMap::new();
+    for (item, place) in snapshot.definitions().in_file(file) {
         // At the same key, the longer definition comes first and contains the shorter one.
         let key = (place.key.start, usize::MAX - place.whole.end);
         let known = own.entry(key).or_insert((item, place));
@@ -46,7 +46,7 @@ fn close(open: &mut Vec<(usize, DocumentSymbol)>, top: &mut Vec<DocumentSymbol>,
 }
 
 #[allow(deprecated, reason = "a field of the protocol's that has to be named")]
-fn symbol(snapshot: &Snapshot, item: &Item, place: &Place) -> DocumentSymbol {
+fn symbol(snapshot: &Snapshot, item: &DefId, place: &DefSite) -> DocumentSymbol {
     DocumentSymbol {
         name: item.name.clone(),
         detail: Some(item.kind.to_owned()),
@@ -60,7 +60,7 @@ fn symbol(snapshot: &Snapshot, item: &Item, place: &Place) -> DocumentSymbol {
 }
 
 /// Returns the key of a definition. A list item has no key, so the first line represents it.
-fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
+fn first_line(snapshot: &Snapshot, place: &DefSite) -> Span {
     let key = place.key;
     let text = snapshot.sources().slice(key);
     let line = text.lines().next().map_or(0, str::len);
@@ -71,7 +71,7 @@ fn first_line(snapshot: &Snapshot, place: &Place) -> Span {
 #[must_use]
 pub fn workspace_symbols(snapshot: &Snapshot, query: &str) -> Vec<WorkspaceSymbol> {
     let query = query.to_lowercase();
-    let places = snapshot.places().iter();
+    let places = snapshot.definitions().iter();
     let found = places.filter(|(item, _)| item.name.to_lowercase().contains(&query));
     let found = found.filter_map(|(item, place)| {
         let location = snapshot.location(first_line(snapshot, place))?;
@@ -89,7 +89,7 @@ pub fn workspace_symbols(snapshot: &Snapshot, query: &str) -> Vec<WorkspaceSymbo
     found.take(FOUND).collect()
 }
 
-fn kind(item: &Item) -> SymbolKind {
+fn kind(item: &DefId) -> SymbolKind {
     if item.is_operation() {
         SymbolKind::Function
     } else if item.is_type() {

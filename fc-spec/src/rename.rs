@@ -2,11 +2,11 @@
 //!
 //! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
 
-use crate::index::{Index, Item, Place, described, entry_at};
+use crate::index::{DefId, DefSite, Index, described, entry_at};
 use crate::language::grammar::{
     COMMON, EnumValue, EnvelopeField, FIELD, FIELD_FORMS, Field, HeaderField, TEXT, Table,
 };
-use crate::load::written;
+use crate::load::yaml_scalar;
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Entry, Node};
 
@@ -17,7 +17,7 @@ use crate::syntax::{Entry, Node};
 #[must_use]
 pub fn rename(
     index: &Index,
-    (item, place): (&Item, &Place),
+    (item, place): (&DefId, &DefSite),
     new: &str,
 ) -> Option<Vec<(Span, String)>> {
     let tree = index.trees().tree(place.key.file)?;
@@ -28,13 +28,16 @@ pub fn rename(
     } else if entry.key.as_str() == Some(&item.name) {
         changes.push((entry.key.span(), new.to_owned()));
     }
-    let uses = index.uses();
-    changes.extend(uses.of(item).map(|sought| (sought.span, new.to_owned())));
+    let uses = index.references();
+    changes.extend(
+        uses.of(item)
+            .map(|reference| (reference.span, new.to_owned())),
+    );
     (!changes.is_empty()).then_some(changes)
 }
 
 /// The keys of a thing whose own key is sent, so that its name stands beside it.
-fn sent(item: &Item) -> Option<&'static Table> {
+fn sent(item: &DefId) -> Option<&'static Table> {
     let sent = [
         Field::TABLE,
         EnvelopeField::TABLE,
@@ -101,7 +104,7 @@ fn longhand(index: &Index, file: &SourceFile, node: Node<'_>, pair: &str) -> Opt
     let span = node.span();
     let short = file.text.get(span.start..span.end)?;
     let named = short.trim_matches(['[', ']', '?', ' ', '"', '\'']);
-    let places = index.places();
+    let places = index.definitions();
     let mut named = places.named(named);
     let (_, place) = named.find(|(item, _)| item.is_type())?;
     let (title, _) = described(index.trees(), place)?;
@@ -111,7 +114,7 @@ fn longhand(index: &Index, file: &SourceFile, node: Node<'_>, pair: &str) -> Opt
     } else {
         short.to_owned()
     };
-    let (zh, en) = (written(&title.zh), written(&title.en));
+    let (zh, en) = (yaml_scalar(&title.zh), yaml_scalar(&title.en));
     Some(format!(
         "{{ {}: {ty}, {pair}, {}: {zh}, {}: {en} }}",
         FIELD.r#type.name, TEXT.zh.name, TEXT.en.name

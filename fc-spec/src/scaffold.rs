@@ -2,8 +2,9 @@
 
 use crate::diagnostic::Faults;
 use crate::format::edited;
+use crate::language::Cursor;
 use crate::language::grammar::FILE;
-use crate::load::{self, TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
+use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Lang, Languages, Location, Model, Operation, RangeUse, Text};
 use crate::source::{Edits, FileId, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Node, parse};
@@ -318,7 +319,7 @@ impl Place {
     /// Where a section begins that a file does not have yet: above the first one that comes later in the order of the
     /// grammar, and above what is said of that one.
     fn of_section(source: &SourceFile, root: Node<'_>, section: &str) -> Self {
-        let order = load::inside(root, &mut Faults::new());
+        let order = Cursor::file(root);
         let rank = order.rank(section);
         let next = root.entries().find(|entry| order.rank(entry.name()) > rank);
         let at = next.map(|next| {

@@ -137,9 +137,9 @@
 //! `section.<number>`.
 
 mod fields;
-mod frozen;
+mod release_dump;
 
-pub use frozen::frozen;
+pub use release_dump::release_dump;
 
 use crate::sample::Samples;
 use fc_spec::model::{

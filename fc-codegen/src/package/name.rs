@@ -2,7 +2,7 @@
 
 use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
-use fc_spec::index::{Item, Places};
+use fc_spec::index::{DefId, Definitions};
 use fc_spec::model::Text;
 use fc_spec::source::Span;
 use fc_spec::text;
@@ -93,8 +93,8 @@ impl<'m> Named<'m> {
     }
 
     /// Where its name stands in the spec.
-    fn span(&self, places: &Places) -> Option<Span> {
-        let item = Item {
+    fn span(&self, places: &Definitions) -> Option<Span> {
+        let item = DefId {
             kind: self.kind,
             owner: self.owner.map(str::to_owned),
             name: self.name.to_owned(),
@@ -106,7 +106,7 @@ impl<'m> Named<'m> {
 impl Clash<'_> {
     /// As a fault of the spec; `None` of a model that has been read from a dump, which has no places.
     #[must_use]
-    pub fn fault(&self, places: &Places) -> Option<Diagnostic> {
+    pub fn fault(&self, places: &Definitions) -> Option<Diagnostic> {
         let span = self.who.span(places)?;
         let Self {
             language, spelling, ..

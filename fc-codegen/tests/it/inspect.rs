@@ -250,7 +250,7 @@ fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
             generate(&read, &targets).expect("made") == generate(&model, &targets).expect("made")
         );
         assert!(inspect::json(&read) == text);
-        let kept = Dump::read(&inspect::frozen(&model)).expect("a dump");
+        let kept = Dump::read(&inspect::release_dump(&model)).expect("a dump");
         assert!(inspect::json(&kept) == text);
     }
 }

@@ -9,7 +9,7 @@ use fc_codegen::package::language::{
     CPP, JAVA, KOTLIN, Language, PYTHON, RUST, RUST_WITH_IDS, Role, TYPESCRIPT,
 };
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::index::places;
+use fc_spec::index::definitions;
 use fc_spec::load::load;
 use fc_spec::model::Lang;
 use fc_spec::source::Sources;
@@ -26,7 +26,7 @@ fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
         "{}",
         render(&faults, &sources, Format::Text, Lang::En)
     );
-    let places = places(&sources);
+    let places = definitions(&sources);
     let model = loaded.model().expect("it has no errors");
     let clashes = clashes(&model, &Language::ALL);
     let say = |clash: &fc_codegen::package::name::Clash<'_>| {

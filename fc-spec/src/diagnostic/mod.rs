@@ -14,6 +14,7 @@ pub use suggest::nearest;
 
 use crate::model::Text;
 use crate::source::Span;
+use crate::text;
 
 /// The severity of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -130,6 +131,19 @@ impl Diagnostic {
             elsewhere: Vec::new(),
         });
         self
+    }
+
+    /// Proposes a name with a similar spelling for the primary place. Without one, adds the note.
+    pub(crate) fn suggest(self, near: Option<&str>, otherwise: Option<Text>) -> Self {
+        let span = self.primary.span;
+        match (near, otherwise) {
+            (Some(near), _) => {
+                let message = text!("是否想写 `{near}`？", "did you mean `{near}`?");
+                self.fix(span, near, message)
+            }
+            (None, Some(note)) => self.note(note),
+            (None, None) => self,
+        }
     }
 
     /// Adds another place with the same replacement to each fix.

@@ -1,7 +1,7 @@
 //! Mappings and lists in brackets on one line.
 
 use super::{order, scalar};
-use crate::load::Inside;
+use crate::language::Cursor;
 use crate::syntax::{Node, NodeKind};
 
 /// The maximum number of columns of a line with brackets.
@@ -32,9 +32,9 @@ pub(super) fn may_close(node: Node<'_>, text: &str) -> bool {
 
 /// Returns `true` if a node may be on this line, after `before` columns. Values of the protocol are rows of a table,
 /// and a list of scalars is one unit. They have no limit, because more lines would not make them clearer.
-pub(super) fn fits(node: Node<'_>, inside: Inside, line: &str, before: usize) -> bool {
+pub(super) fn fits(node: Node<'_>, cursor: Cursor, line: &str, before: usize) -> bool {
     let is_scalar = |item: Node<'_>| item.as_scalar().is_some() || item.is_null();
-    inside.is_free()
+    cursor.is_free()
         || (node.as_sequence().is_some() && node.items().all(is_scalar))
         || before + columns(line) <= COLUMNS
 }
@@ -61,22 +61,22 @@ pub(super) fn columns(text: &str) -> usize {
 }
 
 /// Returns a node on one line, with its declared keys in order.
-pub(super) fn line(node: Node<'_>, inside: Inside, text: &str) -> String {
+pub(super) fn line(node: Node<'_>, cursor: Cursor, text: &str) -> String {
     match node.kind() {
         NodeKind::Null | NodeKind::Scalar(_) => scalar::short(node, text),
         NodeKind::Sequence(items) => {
             let items: Vec<_> = items
-                .map(|item| line(item, inside.item(item), text))
+                .map(|item| line(item, cursor.item(item), text))
                 .collect();
             format!("[{}]", items.join(", "))
         }
         NodeKind::Mapping(entries) => {
             let mut entries: Vec<_> = entries.collect();
-            order::sort(&mut entries, inside, |entry| Some(entry.key));
+            order::sort(&mut entries, cursor, |entry| Some(entry.key));
             let entries: Vec<_> = entries
                 .into_iter()
                 .map(|entry| {
-                    let value = line(entry.value, inside.under(entry.name(), entry.value), text);
+                    let value = line(entry.value, cursor.under(entry.name(), entry.value), text);
                     format!("{}: {value}", scalar::short(entry.key, text))
                 })
                 .collect();

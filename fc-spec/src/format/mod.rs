@@ -16,7 +16,8 @@ mod same;
 mod scalar;
 
 use crate::diagnostic::Faults;
-use crate::load::inside;
+use crate::language::Cursor;
+use crate::load::check_root;
 use crate::source::{Edits, FileId, SourceFile, changed_lines};
 use crate::syntax::parse;
 
@@ -45,7 +46,8 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
     let Some(tree) = tree.filter(|_| !faults.has_errors()) else {
         return Err(Refused::Faults(faults));
     };
-    let top = inside(tree.root(), &mut faults);
+    let top = Cursor::file(tree.root());
+    check_root(tree.root(), &mut faults);
     order::check(tree.root(), top, &mut faults);
     if faults.has_errors() {
         return Err(Refused::Faults(faults));

@@ -4,7 +4,8 @@ use super::block::{Block, Row, Value, opened};
 use super::comments::Line;
 use super::{flow, scalar};
 use crate::diagnostic::Faults;
-use crate::load::Inside;
+use crate::language::Cursor;
+use crate::load::check_keys;
 use crate::source::SourceFile;
 use crate::syntax::Node;
 
@@ -12,22 +13,22 @@ use crate::syntax::Node;
 pub(super) const LEVEL: usize = 2;
 
 /// Reports every key that the language does not have.
-pub(super) fn check(node: Node<'_>, inside: Inside, faults: &mut Faults) {
-    inside.check(node, faults);
+pub(super) fn check(node: Node<'_>, cursor: Cursor, faults: &mut Faults) {
+    check_keys(cursor, node, faults);
     for entry in node.entries() {
-        check(entry.value, inside.under(entry.name(), entry.value), faults);
+        check(entry.value, cursor.under(entry.name(), entry.value), faults);
     }
     for item in node.items() {
-        check(item, inside.item(item), faults);
+        check(item, cursor.item(item), faults);
     }
 }
 
 /// Sorts items by the order of their keys in the grammar, if the grammar declares the keys.
-pub(super) fn sort<'t, T>(things: &mut [T], inside: Inside, key: impl Fn(&T) -> Option<Node<'t>>) {
-    if inside.is_declared() {
+pub(super) fn sort<'t, T>(things: &mut [T], cursor: Cursor, key: impl Fn(&T) -> Option<Node<'t>>) {
+    if cursor.is_declared() {
         things.sort_by_key(|thing| {
             let name = key(thing).and_then(Node::as_str);
-            name.and_then(|name| inside.rank(name))
+            name.and_then(|name| cursor.rank(name))
                 .unwrap_or(usize::MAX)
         });
     }
@@ -36,16 +37,16 @@ pub(super) fn sort<'t, T>(things: &mut [T], inside: Inside, key: impl Fn(&T) -> 
 /// Sorts the rows of a mapping or list at column `indent`, and opens brackets that do not fit.
 pub(super) fn arrange<'t>(
     block: &mut Block<'t>,
-    inside: Inside,
+    cursor: Cursor,
     indent: usize,
     file: &'t SourceFile,
 ) {
     let text = &file.text;
-    sort(&mut block.rows, inside, |row| row.key);
+    sort(&mut block.rows, cursor, |row| row.key);
     for row in &mut block.rows {
         let within = |value| match row.key.and_then(Node::as_str) {
-            Some(name) => inside.under(name, value),
-            None => inside.item(value),
+            Some(name) => cursor.under(name, value),
+            None => cursor.item(value),
         };
         if let Value::Flow(node) = row.value {
             let key = row.key.map(|key| scalar::short(key, text));

@@ -4,11 +4,11 @@ use super::block::{Block, Row, Value};
 use super::comments::Line;
 use super::order::{Head, LEVEL};
 use super::{flow, scalar};
-use crate::load::Inside;
+use crate::language::Cursor;
 use crate::syntax::{Node, Style};
 
 /// Returns the text of a file whose rows are sorted.
-pub(super) fn print(head: &Head<'_>, root: &Block<'_>, inside: Inside, text: &str) -> String {
+pub(super) fn print(head: &Head<'_>, root: &Block<'_>, cursor: Cursor, text: &str) -> String {
     let mut printer = Printer {
         text,
         out: String::with_capacity(text.len()),
@@ -20,7 +20,7 @@ pub(super) fn print(head: &Head<'_>, root: &Block<'_>, inside: Inside, text: &st
     if head.has_gap {
         printer.gap();
     }
-    printer.sections(root, inside);
+    printer.sections(root, cursor);
     printer.out
 }
 
@@ -34,11 +34,11 @@ struct Printer<'t> {
 
 impl Printer<'_> {
     /// Prints the top level of a file. A blank line separates two keys, unless both are on one line.
-    fn sections(&mut self, root: &Block<'_>, inside: Inside) {
+    fn sections(&mut self, root: &Block<'_>, cursor: Cursor) {
         let mut above_is_long = false;
         for (index, row) in root.rows.iter().enumerate() {
             let (start, may_gap) = (self.out.len(), self.may_gap);
-            self.row(row, inside, 0, false);
+            self.row(row, cursor, 0, false);
             let printed = self.out.get(start..).unwrap_or_default();
             let is_long = printed.trim_matches('\n').contains('\n');
             let needs_gap = index > 0 && may_gap && !printed.starts_with('\n');
@@ -51,15 +51,15 @@ impl Printer<'_> {
     }
 
     /// Prints a block. With `shared`, its first row continues the current line.
-    fn block(&mut self, block: &Block<'_>, inside: Inside, indent: usize, mut shared: bool) {
+    fn block(&mut self, block: &Block<'_>, cursor: Cursor, indent: usize, mut shared: bool) {
         for row in &block.rows {
-            self.row(row, inside, indent, shared);
+            self.row(row, cursor, indent, shared);
             shared = false;
         }
         self.lines(&block.tail, indent);
     }
 
-    fn row(&mut self, row: &Row<'_>, inside: Inside, indent: usize, shared: bool) {
+    fn row(&mut self, row: &Row<'_>, cursor: Cursor, indent: usize, shared: bool) {
         if !shared {
             self.lines(&row.above, indent);
             if row.blank {
@@ -68,8 +68,8 @@ impl Printer<'_> {
             self.indent(indent);
         }
         let within = |value| match row.key.and_then(Node::as_str) {
-            Some(name) => inside.under(name, value),
-            None => inside.item(value),
+            Some(name) => cursor.under(name, value),
+            None => cursor.item(value),
         };
         match row.key {
             Some(key) => {
@@ -101,12 +101,12 @@ impl Printer<'_> {
 
     /// Prints a value that is one piece. A comment goes on the first line of a block scalar, or on the last line of any
     /// other value.
-    fn leaf(&mut self, node: Node<'_>, row: &Row<'_>, inside: Inside, indent: usize) {
+    fn leaf(&mut self, node: Node<'_>, row: &Row<'_>, cursor: Cursor, indent: usize) {
         let scalar = node.as_scalar();
         let written = match scalar {
             Some(_) => scalar::laid_out(row.key, node, self.text, indent + LEVEL),
             None if node.is_null() => scalar::written(node, self.text).to_owned(),
-            None => flow::line(node, inside, self.text),
+            None => flow::line(node, cursor, self.text),
         };
         if !written.is_empty() {
             self.out.push(' ');

@@ -2,19 +2,20 @@
 //!
 //! It reads each file alone, in sound and unsound specs, and keeps its results for unchanged files.
 
-mod places;
-mod site;
-mod uses;
+mod definitions;
+mod references;
 
 use crate::load::Trees;
 use crate::source::{FileId, Sources};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::sync::{Arc, OnceLock};
 
-pub use places::{Item, Place, Places};
-pub(crate) use site::entry_at;
-pub use site::{OtherKey, Role, Site, Sought, described, site_at, sites};
-pub use uses::Uses;
+pub use crate::language::{Occurrence, OtherKey, Reference, Role, occurrence_at, visit};
+use definitions::FileDefinitions;
+pub(crate) use definitions::entry_at;
+pub use definitions::{DefId, DefSite, Definitions, described};
+use references::FileReferences;
+pub use references::References;
 
 /// The files of a spec as trees, with the places and names found in each.
 #[derive(Clone, Debug, Default)]
@@ -26,20 +27,20 @@ pub struct Index {
 /// The places and names in one file.
 #[derive(Debug, Default)]
 struct FileIndex {
-    own: OnceLock<Arc<places::Own>>,
-    named: OnceLock<Arc<uses::Named>>,
+    definitions: OnceLock<Arc<FileDefinitions>>,
+    references: OnceLock<Arc<FileReferences>>,
 }
 
 /// Where each thing of a spec is written.
 #[must_use]
-pub fn places(sources: &Sources) -> Places {
-    Index::new(Trees::new(sources)).places()
+pub fn definitions(sources: &Sources) -> Definitions {
+    Index::new(Trees::new(sources)).definitions()
 }
 
 /// Every place at which a thing of a spec is named, as far as its files can be read as YAML.
 #[must_use]
-pub fn uses(sources: &Sources) -> Uses {
-    Index::new(Trees::new(sources)).uses()
+pub fn references(sources: &Sources) -> References {
+    Index::new(Trees::new(sources)).references()
 }
 
 impl Index {
@@ -71,16 +72,19 @@ impl Index {
 
     /// Where each thing is written.
     #[must_use]
-    pub fn places(&self) -> Places {
-        Places::of_files(self.each(|file| &file.own, |id| self.trees.draft_of(id, places::own)))
+    pub fn definitions(&self) -> Definitions {
+        Definitions::of_files(self.each(
+            |file| &file.definitions,
+            |id| self.trees.draft_of(id, definitions::of_file),
+        ))
     }
 
     /// Every place at which a thing is named.
     #[must_use]
-    pub fn uses(&self) -> Uses {
-        Uses::of_files(self.each(
-            |file| &file.named,
-            |id| self.trees.tree(id).as_ref().map(uses::named),
+    pub fn references(&self) -> References {
+        References::of_files(self.each(
+            |file| &file.references,
+            |id| self.trees.tree(id).as_ref().map(references::of_file),
         ))
     }
 

@@ -10,7 +10,7 @@ pub(super) fn of(key: &AnyKey) -> Option<String> {
 
 /// A value of a kind of which all are alike. None of what is made of keys, which is shown with its part.
 fn any(kind: &Kind) -> Option<String> {
-    let value = match kind {
+    let value = match kind.form() {
         Kind::Bool => "true",
         Kind::Code => "0x0A01",
         Kind::Date => "2024-05-06",

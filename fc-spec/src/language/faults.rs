@@ -73,6 +73,7 @@ fn sorted(mut found: Vec<FaultCode>) -> Vec<FaultCode> {
 }
 
 fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
+    let kind = kind.form();
     let own: &[FaultCode] = match kind {
         Kind::Text | Kind::Scalar | Kind::Json => &[FaultCode::TextCut],
         Kind::Bool => &[FaultCode::BadBool],
@@ -95,12 +96,12 @@ fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
         Kind::WireKey => &[],
         Kind::Body => BODY,
         // Of what it holds, its own part tells.
-        Kind::Map(_) | Kind::ByKey { .. } => return,
+        Kind::Map(_) | Kind::ByKey { .. } | Kind::Ref { .. } => return,
         Kind::Either(kinds) => return kinds.iter().for_each(|kind| of_kind(kind, found)),
         Kind::List { of, min, max } => {
             of_kind(of, found);
             let is_of_words = matches!(
-                of,
+                of.form(),
                 Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
             );
             add(found, true, &[FaultCode::WrongKind]);
@@ -115,7 +116,7 @@ fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
         Kind::Entries { key, value, min } => {
             of_kind(key, found);
             of_kind(value, found);
-            let is_number = matches!(key, Kind::Int { .. } | Kind::Scalar);
+            let is_number = matches!(key.form(), Kind::Int { .. } | Kind::Scalar);
             add(found, true, &[FaultCode::WrongKind]);
             add(found, is_number, &[FaultCode::DuplicateNumber]);
             return add(found, *min > 0, &[FaultCode::ListLength]);

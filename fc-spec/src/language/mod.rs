@@ -4,15 +4,19 @@
 //! All of this depends on the language alone, not on any spec.
 
 pub(crate) mod ambiguous_scalar;
+mod cursor;
 mod example;
 mod faults;
 pub(crate) mod grammar;
+mod occurrence;
 mod reference;
 pub(crate) mod scalar;
 mod schema;
 
+pub(crate) use cursor::Cursor;
+pub(crate) use occurrence::references;
+pub use occurrence::{Occurrence, OtherKey, Reference, Role, occurrence_at, visit};
 #[cfg(test)]
 pub(crate) use reference::tables;
-pub(crate) use reference::words;
 pub use reference::{Key, Part, Takes, Word, reference};
 pub use schema::schema;

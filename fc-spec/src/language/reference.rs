@@ -226,6 +226,7 @@ fn takes(kind: &Kind) -> Vec<Takes> {
 /// What stands there, where no part and no word says it.
 fn describe(kind: &Kind) -> Text {
     let (en, zh) = match kind {
+        Kind::Ref { name, .. } => return describe(name),
         Kind::Text => ("text", "文本"),
         Kind::Bool => ("`true` or `false`", "`true` 或 `false`"),
         Kind::Int { min, .. } if *min == i64::MIN.into() => ("integer", "整数"),

@@ -124,6 +124,7 @@ impl Definitions {
 
     fn kind(&mut self, kind: &'static Kind) -> Value {
         match kind {
+            Kind::Ref { name, .. } => self.kind(name),
             Kind::Text | Kind::WireKey => object([("type", string("string"))]),
             Kind::Bool => object([("type", string("boolean"))]),
             Kind::Int { min, max } => integer(*min, *max),
@@ -170,7 +171,7 @@ impl Definitions {
 
     fn entries(&mut self, key: &Kind, value: &'static Kind, min: usize) -> Value {
         let mut entries = vec![entry("type", string("object"))];
-        let names = match key {
+        let names = match key.form() {
             Kind::Name => Some(SNAKE),
             Kind::TypeName => Some(PASCAL),
             Kind::ConflictId => Some(CONFLICT_ID),
@@ -303,6 +304,7 @@ impl Definitions {
 /// What JSON calls the values of a kind.
 fn json_types(kind: &Kind) -> &'static [&'static str] {
     match kind {
+        Kind::Ref { name, .. } => json_types(name),
         Kind::Bool => &["boolean"],
         Kind::Int { .. } | Kind::Code => &["integer"],
         Kind::Number => &["number"],

@@ -1,7 +1,7 @@
 //! What a rule has found.
 
 use super::rule::Rule;
-use crate::index::Item;
+use crate::index::DefId;
 use crate::model::{Text, Waiver, fingerprint};
 
 /// Something that a rule objects to.
@@ -12,11 +12,11 @@ pub struct Finding {
     /// Id of the house rule, where [`rule`](Self::rule) is the one that stands for all of them.
     pub house: Option<String>,
     /// What it is about.
-    pub item: Item,
+    pub item: DefId,
     /// What is wrong, in one sentence.
     pub message: Text,
     /// What else there is to see, and why.
-    pub also: Vec<(Item, Text)>,
+    pub also: Vec<(DefId, Text)>,
     /// What to do.
     pub note: Option<Text>,
     /// What tells two findings about one thing apart, whatever is written of it elsewhere.
@@ -27,7 +27,7 @@ pub struct Finding {
 
 impl Finding {
     /// About a thing.
-    pub(super) fn new(rule: &'static Rule, item: impl Into<Item>, message: Text) -> Self {
+    pub(super) fn new(rule: &'static Rule, item: impl Into<DefId>, message: Text) -> Self {
         Self {
             rule,
             house: None,
@@ -41,7 +41,7 @@ impl Finding {
     }
 
     /// Another thing that shows it.
-    pub(super) fn with(mut self, item: Item, text: Text) -> Self {
+    pub(super) fn with(mut self, item: DefId, text: Text) -> Self {
         self.also.push((item, text));
         self
     }

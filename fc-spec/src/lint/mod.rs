@@ -9,11 +9,11 @@
 
 mod docs;
 mod finding;
-mod house;
 mod minimal;
 mod path;
 mod place;
 mod predicate;
+mod project_rules;
 mod rule;
 mod search;
 mod settings;
@@ -21,7 +21,6 @@ mod standard;
 mod sunset;
 mod waive;
 mod wire;
-mod written;
 
 pub use finding::Finding;
 pub use place::faults;
@@ -39,7 +38,7 @@ const RULES: &[&[Rule]] = &[
     docs::RULES,
     wire::RULES,
     sunset::RULES,
-    house::RULES,
+    project_rules::RULES,
 ];
 
 /// What the rules find in a model on a day, `YYYY-MM-DD`, those of the project included: of any level, since a waiver is not unused
@@ -58,6 +57,6 @@ pub fn lint(model: &Model, settings: &Settings, today: &str) -> Vec<Finding> {
         find(&mut search);
         findings.append(&mut search.found);
     }
-    findings.append(&mut house::find(model, settings.house()));
+    findings.append(&mut project_rules::find(model, settings.house()));
     findings
 }

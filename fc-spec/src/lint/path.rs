@@ -1,6 +1,6 @@
 //! Which paths the dump of a thing has, by the schema of the dump.
 
-use super::house::GROUPS;
+use super::project_rules::GROUPS;
 use crate::language::grammar as language;
 use crate::model::{EnumValue, Field, Group, Operation, TypeDef, Variant};
 use schemars::{Schema, schema_for};

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::rule::Level;
 use super::settings::Settings;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::index::{Item, Places};
+use crate::index::{DefId, Definitions};
 use crate::source::{FileId, Span};
 use crate::text;
 use std::borrow::Borrow;
@@ -12,7 +12,7 @@ use std::borrow::Borrow;
 /// What is to be shown of the findings: those that no waiver accepts and whose level is not off, in the order of their places. Places
 /// are only asked for if there is anything to be shown.
 #[must_use]
-pub fn faults<P: Borrow<Places>>(
+pub fn faults<P: Borrow<Definitions>>(
     findings: &[Finding],
     settings: &Settings,
     places: impl FnOnce() -> P,
@@ -32,7 +32,7 @@ pub fn faults<P: Borrow<Places>>(
     faults
 }
 
-fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
+fn fault(finding: &Finding, level: Level, places: &Definitions) -> Diagnostic {
     let code = FaultCode::Lint(&finding.rule.code);
     let message = match &finding.house {
         Some(id) => text!("{text}（{id}）", "{text} ({id})", text = finding.message),
@@ -57,7 +57,7 @@ fn fault(finding: &Finding, level: Level, places: &Places) -> Diagnostic {
 }
 
 /// Where a thing is written. All that a model has is in the files that it was read from.
-fn span(item: &Item, places: &Places) -> Span {
+fn span(item: &DefId, places: &Definitions) -> Span {
     let place = places.get(item);
     place.map_or(Span::point(FileId(0), 0), |place| place.key)
 }

@@ -2,7 +2,7 @@
 
 use super::Finding;
 use super::rule::Rule;
-use crate::index::Item;
+use crate::index::DefId;
 use crate::language::grammar as language;
 use crate::model::{
     EnumValue, Field, Group, Kind, Model, Operation, StructType, Text, TypeDef, TypeShape, Variant,
@@ -22,7 +22,7 @@ pub(super) struct Search<'m> {
 
 impl<'m> Search<'m> {
     /// Reports what is wrong with a thing.
-    pub fn report(&mut self, item: impl Into<Item>, message: Text) {
+    pub fn report(&mut self, item: impl Into<DefId>, message: Text) {
         self.add(Finding::new(self.rule, item, message));
     }
 
@@ -112,7 +112,7 @@ pub(super) enum Subject<'m> {
     Variant(&'m TypeDef, &'m Variant),
 }
 
-impl From<Subject<'_>> for Item {
+impl From<Subject<'_>> for DefId {
     fn from(subject: Subject<'_>) -> Self {
         match subject {
             Subject::Group(group) => of_group(group),
@@ -125,19 +125,19 @@ impl From<Subject<'_>> for Item {
     }
 }
 
-fn item(kind: &'static str, owner: Option<&str>, name: &str) -> Item {
-    Item {
+fn item(kind: &'static str, owner: Option<&str>, name: &str) -> DefId {
+    DefId {
         kind,
         owner: owner.map(str::to_owned),
         name: name.to_owned(),
     }
 }
 
-pub(super) fn of_group(group: &Group) -> Item {
+pub(super) fn of_group(group: &Group) -> DefId {
     item(language::Group::TABLE.name, None, &group.id)
 }
 
-pub(super) fn of_operation(operation: &Operation) -> Item {
+pub(super) fn of_operation(operation: &Operation) -> DefId {
     let kind = match operation.kind() {
         Kind::Command => language::Command::TABLE.name,
         Kind::Report => language::Report::TABLE.name,
@@ -146,7 +146,7 @@ pub(super) fn of_operation(operation: &Operation) -> Item {
     item(kind, None, &operation.name)
 }
 
-pub(super) fn of_type(ty: &TypeDef) -> Item {
+pub(super) fn of_type(ty: &TypeDef) -> DefId {
     let kind = match &ty.shape {
         TypeShape::Struct(_) => language::Struct::TABLE.name,
         TypeShape::Enum(_) => language::Enum::TABLE.name,
@@ -155,19 +155,19 @@ pub(super) fn of_type(ty: &TypeDef) -> Item {
     item(kind, None, &ty.name)
 }
 
-pub(super) fn of_field(ty: &TypeDef, field: &Field) -> Item {
+pub(super) fn of_field(ty: &TypeDef, field: &Field) -> DefId {
     item(language::Field::TABLE.name, Some(&ty.name), &field.wire)
 }
 
-pub(super) fn of_value(ty: &TypeDef, value: &EnumValue) -> Item {
+pub(super) fn of_value(ty: &TypeDef, value: &EnumValue) -> DefId {
     item(language::EnumValue::TABLE.name, Some(&ty.name), &value.name)
 }
 
-pub(super) fn of_variant(ty: &TypeDef, variant: &Variant) -> Item {
+pub(super) fn of_variant(ty: &TypeDef, variant: &Variant) -> DefId {
     let kind = language::NamedVariant::TABLE.name;
     item(kind, Some(&ty.name), &variant.name)
 }
 
-pub(super) fn of_waiver(id: &str) -> Item {
+pub(super) fn of_waiver(id: &str) -> DefId {
     item(language::Waiver::TABLE.name, None, id)
 }

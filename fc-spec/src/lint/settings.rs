@@ -13,7 +13,7 @@
 //!       require: { accepted: present }
 //! ```
 
-use super::house::{HouseRule, SETTINGS};
+use super::project_rules::{HouseRule, SETTINGS};
 use super::rule::{Category, Level, Rule};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::model::Text;

@@ -1,7 +1,7 @@
 //! Waivers applied: which findings the owner has accepted, and which waivers accept nothing.
 
 use super::finding::Finding;
-use super::house::{WAIVER_OVER, WAIVER_UNUSED};
+use super::project_rules::{WAIVER_OVER, WAIVER_UNUSED};
 use super::search::of_waiver;
 use crate::model::Waiver;
 use crate::text;

@@ -4,6 +4,7 @@
 //! and is left out or flagged, so that checks find only what is new.
 
 use crate::diagnostic::Faults;
+use crate::language::Occurrence;
 use crate::language::grammar::{Form, Key};
 use crate::model::{
     Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
@@ -15,16 +16,16 @@ use crate::source::Span;
 use crate::syntax::Node;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Where something stands.
+/// The nodes of a file that an item is read from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<'a> {
+pub(crate) struct Origin<'a> {
     /// What names it: its key, or the list item itself.
     pub key: Node<'a>,
     /// What it says.
     pub node: Node<'a>,
 }
 
-impl Place<'_> {
+impl Origin<'_> {
     /// Span of its name.
     pub fn name(self) -> Span {
         self.key.span()
@@ -42,13 +43,13 @@ impl Place<'_> {
     }
 }
 
-/// A model item and its place.
+/// A model item with its origin.
 #[derive(Clone, Debug)]
-pub(crate) struct Placed<'a, T> {
+pub(crate) struct Sourced<'a, T> {
     /// The item.
     pub item: T,
-    /// Its place.
-    pub place: Place<'a>,
+    /// Its origin.
+    pub origin: Origin<'a>,
 }
 
 /// A type and the places of what it is made of.
@@ -57,8 +58,8 @@ pub(crate) struct TypeDraft<'a> {
     /// The type. Every struct has the same number of fields as `parts`, every enum of values,
     /// every one-of of variants.
     pub def: TypeDef,
-    /// Its place; that of the operation, the field or the variant for a made type.
-    pub place: Place<'a>,
+    /// Its origin; that of the operation, the field or the variant for a made type.
+    pub origin: Origin<'a>,
     /// Places of its fields, values or variants.
     pub parts: Vec<Part<'a>>,
 }
@@ -66,8 +67,8 @@ pub(crate) struct TypeDraft<'a> {
 /// The place of a field, value or variant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
-    /// The place.
-    pub place: Place<'a>,
+    /// The origin.
+    pub origin: Origin<'a>,
     /// Where its type stands; the name where it has none of its own (an inline object).
     pub ty: Span,
     /// Whether it is too broken to be checked further.
@@ -79,22 +80,22 @@ pub(crate) struct Part<'a> {
 /// `frame:`.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameDraft<'a> {
-    pub place: Place<'a>,
+    pub origin: Origin<'a>,
     pub byte_order: ByteOrder,
-    pub header: Vec<Placed<'a, HeaderField>>,
+    pub header: Vec<Sourced<'a, HeaderField>>,
     pub request_head: Vec<u8>,
     pub response_head: Vec<u8>,
-    pub kinds: Vec<Placed<'a, FrameKind>>,
-    pub encodings: Vec<Placed<'a, Encoding>>,
+    pub kinds: Vec<Sourced<'a, FrameKind>>,
+    pub encodings: Vec<Sourced<'a, Encoding>>,
     pub data: Text,
 }
 
 /// `envelope:`.
 #[derive(Clone, Debug)]
 pub(crate) struct EnvelopeDraft<'a> {
-    pub place: Place<'a>,
-    pub request: Vec<Placed<'a, EnvelopeField>>,
-    pub response: Vec<Placed<'a, EnvelopeField>>,
+    pub origin: Origin<'a>,
+    pub request: Vec<Sourced<'a, EnvelopeField>>,
+    pub response: Vec<Sourced<'a, EnvelopeField>>,
 }
 
 /// `availability:`.
@@ -102,15 +103,15 @@ pub(crate) struct EnvelopeDraft<'a> {
 pub(crate) struct AvailabilityDraft<'a> {
     /// Whether it cannot be told what is declared.
     pub is_broken: bool,
-    pub audiences: Vec<Placed<'a, Declared>>,
-    pub hardware: Vec<Placed<'a, Declared>>,
-    pub releases: Vec<Placed<'a, Declared>>,
+    pub audiences: Vec<Sourced<'a, Declared>>,
+    pub hardware: Vec<Sourced<'a, Declared>>,
+    pub releases: Vec<Sourced<'a, Declared>>,
 }
 
 impl AvailabilityDraft<'_> {
     /// Without the places.
     pub fn model(self) -> Availability {
-        let items = |placed: Vec<Placed<'_, Declared>>| {
+        let items = |placed: Vec<Sourced<'_, Declared>>| {
             placed.into_iter().map(|placed| placed.item).collect()
         };
         Availability {
@@ -126,8 +127,8 @@ impl AvailabilityDraft<'_> {
 pub(crate) struct AnswerDraft<'a> {
     /// The answer.
     pub item: Answer,
-    /// Its place.
-    pub place: Place<'a>,
+    /// Its origin.
+    pub origin: Origin<'a>,
     /// The mapping that holds it, where the paths of what it is about begin.
     pub holder: Node<'a>,
 }
@@ -137,43 +138,45 @@ pub(crate) struct AnswerDraft<'a> {
 pub(crate) struct Draft<'a> {
     /// Languages in which each text is required.
     pub texts: Languages,
-    pub protocol: Option<Placed<'a, Protocol>>,
-    pub transport: Option<Placed<'a, Transport>>,
+    pub protocol: Option<Sourced<'a, Protocol>>,
+    pub transport: Option<Sourced<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,
     /// `json:`.
     pub json: Option<BTreeMap<JsonRule, Text>>,
     pub envelope: Option<EnvelopeDraft<'a>>,
     /// Place of `results:`.
-    pub results_place: Option<Place<'a>>,
-    pub results: Vec<Placed<'a, ResultCode>>,
-    pub calls: Option<Placed<'a, CallDefaults>>,
+    pub results_place: Option<Origin<'a>>,
+    pub results: Vec<Sourced<'a, ResultCode>>,
+    pub calls: Option<Sourced<'a, CallDefaults>>,
     /// `ack:`.
     pub default_ack: Option<Ack>,
-    pub limits: Option<Placed<'a, Limits>>,
+    pub limits: Option<Sourced<'a, Limits>>,
     /// Whether `codes:` is there and sound.
     pub codes_known: bool,
-    pub ranges: Vec<Placed<'a, CodeRange>>,
-    pub retired: Vec<Placed<'a, RetiredCode>>,
-    pub groups: Vec<Placed<'a, Group>>,
-    pub operations: Vec<Placed<'a, Operation>>,
+    pub ranges: Vec<Sourced<'a, CodeRange>>,
+    pub retired: Vec<Sourced<'a, RetiredCode>>,
+    pub groups: Vec<Sourced<'a, Group>>,
+    pub operations: Vec<Sourced<'a, Operation>>,
     pub types: Vec<TypeDraft<'a>>,
-    pub tables: Vec<Placed<'a, Table>>,
-    pub entities: Vec<Placed<'a, Entity>>,
-    pub coordinates: Vec<Placed<'a, CoordinateSystem>>,
-    pub stores: Vec<Placed<'a, Store>>,
+    pub tables: Vec<Sourced<'a, Table>>,
+    pub entities: Vec<Sourced<'a, Entity>>,
+    pub coordinates: Vec<Sourced<'a, CoordinateSystem>>,
+    pub stores: Vec<Sourced<'a, Store>>,
     pub availability: AvailabilityDraft<'a>,
-    pub glossary: Vec<Placed<'a, Term>>,
-    pub waivers: Vec<Placed<'a, Waiver>>,
-    pub sections: Vec<Placed<'a, MissingSection>>,
+    pub glossary: Vec<Sourced<'a, Term>>,
+    pub waivers: Vec<Sourced<'a, Waiver>>,
+    pub sections: Vec<Sourced<'a, MissingSection>>,
     /// Whether `sections:` is there and sound.
     pub sections_known: bool,
-    pub conflicts: Vec<Placed<'a, Conflict>>,
+    pub conflicts: Vec<Sourced<'a, Conflict>>,
     pub answers: Vec<AnswerDraft<'a>>,
     /// Made of the answers and of what is lost, once that is known.
     pub questions: Vec<Question>,
     /// Whether there is an answer that does not say what it answers, or how.
     pub broken_answers: bool,
-    pub changes: Vec<Placed<'a, Change>>,
+    pub changes: Vec<Sourced<'a, Change>>,
+    /// Values and keys that name a thing.
+    pub references: Vec<Occurrence<'a>>,
     /// First type of each name; filled when all are lowered.
     pub type_index: HashMap<String, usize>,
     /// Types of which faults leave open what they are.
@@ -190,20 +193,30 @@ impl<'a> Draft<'a> {
     pub fn note_doubtful(&mut self, faults: &Faults) {
         let places: HashSet<Span> = faults.iter().map(|fault| fault.primary.span).collect();
         for (index, ty) in self.types.iter().enumerate() {
-            let entry = ty.place.name().to(ty.place.node.span());
+            let entry = ty.origin.name().to(ty.origin.node.span());
             let mut hidden = faults.hidden().iter();
             let is_cut = hidden.any(|text| {
                 text.file == entry.file && entry.start <= text.start && text.end <= entry.end
             });
             let is_second = self.type_index.get(&ty.def.name) != Some(&index);
-            let is_faulty = places.contains(&ty.place.name())
-                || ty.place.node.entries().any(|entry| {
+            let is_faulty = places.contains(&ty.origin.name())
+                || ty.origin.node.entries().any(|entry| {
                     places.contains(&entry.key.span()) || places.contains(&entry.value.span())
                 });
             if is_second || is_faulty || is_cut {
                 self.doubtful.insert(ty.def.name.clone());
             }
         }
+    }
+
+    /// Returns the values and keys that name a thing of these kinds, each with the name.
+    pub fn references_to(
+        &self,
+        kinds: &'static [&'static str],
+    ) -> impl Iterator<Item = (&Occurrence<'a>, &'a str)> {
+        let references = self.references.iter();
+        let references = references.filter(move |it| it.names() == kinds);
+        references.filter_map(|it| Some((it, it.node.as_str()?)))
     }
 
     /// The type of this name.

@@ -10,14 +10,13 @@
 //! **Architecture invariant.** No step stops at a fault and none reports what an earlier one has
 //! reported: all faults of a spec show up in one run.
 
+mod answer_edit;
+mod answer_scope;
 mod check;
-mod consequence;
 pub(crate) mod draft;
-mod edit;
 #[cfg(test)]
 mod examples;
-mod govern;
-mod inside;
+mod follow_ups;
 mod lower;
 mod partial;
 mod process;
@@ -34,13 +33,14 @@ use crate::model::Languages;
 use crate::source::Sources;
 use draft::Draft;
 
-pub use partial::{Loaded, Partial};
+pub use crate::model::Partial;
+pub use partial::Loaded;
 pub use settle::{Said, SettleError, Settled, settle};
 pub use trees::Trees;
 
 pub(crate) use crate::names::is_snake as is_operation_name;
-pub(crate) use edit::text as written;
-pub(crate) use inside::{Inside, inside};
+pub(crate) use answer_edit::text as yaml_scalar;
+pub(crate) use shape::{check_keys, check_root};
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// Reads a spec whose texts are in both languages: what it says, as far as it can be read, and all of its faults.

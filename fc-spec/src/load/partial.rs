@@ -1,13 +1,7 @@
 //! What could be read of a spec, whether or not it has faults.
 
-use super::draft::{Draft, Placed};
-use crate::model::{
-    Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
-    Envelope, Frame, FrameKinds, Group, JsonRule, Limits, MissingSection, Model, Operation,
-    Protocol, Question, RangeUse, ResultCode, RetiredCode, Store, Table, Term, Text, Transport,
-    TypeDef, TypeShape, Types, Waiver, link, next_code,
-};
-use std::collections::BTreeMap;
+use super::draft::{Draft, Sourced};
+use crate::model::{Envelope, Frame, FrameKinds, Model, Partial, TypeDef, TypeShape, Types, link};
 
 /// What loading a spec comes to. Its faults are told apart from it, since a spec with faults has all of this, too.
 #[derive(Clone, Debug)]
@@ -38,110 +32,6 @@ impl Loaded {
         } else {
             Err(Box::new(self.partial))
         }
-    }
-}
-
-/// What could be read of a spec: a [`Model`] as far as it goes.
-///
-/// A section that is missing or malformed is not here, nor is a field whose type is not known. All that is here has
-/// its texts as they are written, and its references are linked. It has passed no check, so that nothing can be made
-/// of it: types may hold themselves, and two operations may have one code.
-#[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "they are those of `Model`")]
-pub struct Partial {
-    pub protocol: Option<Protocol>,
-    pub transport: Option<Transport>,
-    pub frame: Option<Frame>,
-    pub json: Option<BTreeMap<JsonRule, Text>>,
-    pub envelope: Option<Envelope>,
-    pub results: Vec<ResultCode>,
-    pub calls: Option<CallDefaults>,
-    pub limits: Option<Limits>,
-    pub ranges: Vec<CodeRange>,
-    pub retired: Vec<RetiredCode>,
-    pub groups: Vec<Group>,
-    pub operations: Vec<Operation>,
-    pub types: Types,
-    pub tables: Vec<Table>,
-    pub entities: Vec<Entity>,
-    pub coordinates: Vec<CoordinateSystem>,
-    pub stores: Vec<Store>,
-    pub availability: Availability,
-    pub glossary: Vec<Term>,
-    pub waivers: Vec<Waiver>,
-    pub missing_sections: Vec<MissingSection>,
-    pub conflicts: Vec<Conflict>,
-    pub answers: Vec<Answer>,
-    pub questions: Vec<Question>,
-    pub changes: Vec<Change>,
-}
-
-impl Partial {
-    /// The model, or all of this again where a section is missing, which has been reported.
-    fn whole(self) -> Result<Model, Box<Self>> {
-        match self {
-            Self {
-                protocol: Some(protocol),
-                transport: Some(transport),
-                frame: Some(frame),
-                json: Some(json),
-                envelope: Some(envelope),
-                results,
-                calls: Some(calls),
-                limits: Some(limits),
-                ranges,
-                retired,
-                groups,
-                operations,
-                types,
-                tables,
-                entities,
-                coordinates,
-                stores,
-                availability,
-                glossary,
-                waivers,
-                missing_sections,
-                conflicts,
-                answers,
-                questions,
-                changes,
-            } => Ok(Model {
-                protocol,
-                transport,
-                frame,
-                json,
-                envelope,
-                results,
-                calls,
-                limits,
-                ranges,
-                retired,
-                groups,
-                operations,
-                types,
-                tables,
-                entities,
-                coordinates,
-                stores,
-                availability,
-                glossary,
-                waivers,
-                missing_sections,
-                conflicts,
-                answers,
-                questions,
-                changes,
-            }),
-            partial => Err(Box::new(partial)),
-        }
-    }
-
-    /// Returns the code that the next operation of a group gets from the ranges of this use; of any group for `None`.
-    #[must_use]
-    pub fn next_code(&self, usage: RangeUse, group: Option<&str>) -> Option<u16> {
-        let (operations, retired) = (self.operations.iter(), self.retired.iter());
-        next_code(operations, retired, self.ranges.iter(), usage, group)
     }
 }
 
@@ -216,7 +106,7 @@ fn known(mut def: TypeDef, mut broken: impl FnMut() -> bool) -> TypeDef {
     def
 }
 
-fn items<T>(placed: Vec<Placed<'_, T>>) -> Vec<T> {
+fn items<T>(placed: Vec<Sourced<'_, T>>) -> Vec<T> {
     shrunk(placed.into_iter().map(|placed| placed.item))
 }
 

@@ -1,8 +1,8 @@
 //! The questions for the owner: what the spec asks or decides, and what the source has lost without anybody asking.
 
-use super::draft::{AnswerDraft, Draft, Placed};
-use super::edit::{Silence, Writing};
-use super::govern::{Found, Governed, governed, is_doubt};
+use super::answer_edit::{AnswerEditor, Blank};
+use super::answer_scope::{CoveredFact, Found, covered_facts, is_doubt};
+use super::draft::{AnswerDraft, Draft, Sourced};
 use crate::language::grammar::FILE;
 use crate::model::{
     self, AnswerKind, BodyState, Direction, Fact, Impact, Operation, Question, Severity, Subject,
@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 
 /// All of them, the most pressing first.
 pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
-    let writing = || Writing::new(sources, draft.texts, &Silence);
+    let editor = || AnswerEditor::new(sources, draft.texts, &Blank);
     let mut asked: HashSet<(&str, Fact)> = HashSet::new();
     let mut questions = Vec::new();
     let severities: HashMap<&str, Severity> = draft
@@ -23,9 +23,9 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
         .map(|conflict| (conflict.item.id.as_str(), conflict.item.severity))
         .collect();
     for answer in &draft.answers {
-        let governed: Vec<_> = governed(draft, answer).collect();
+        let covered: Vec<_> = covered_facts(draft, answer).collect();
         if let Subject::Operation(name) = &answer.item.subject {
-            asked.extend(governed.iter().filter_map(|governed| match governed.found {
+            asked.extend(covered.iter().filter_map(|covered| match covered.found {
                 Found::Fact(fact, ..) => Some((name.as_str(), fact)),
                 _ => None,
             }));
@@ -34,7 +34,7 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
             answer.item.kind,
             AnswerKind::Question | AnswerKind::Decision
         ) {
-            let mut question = of_answer(answer, &governed, &severities, writing());
+            let mut question = of_answer(answer, &covered, &severities, editor());
             if question.ids.is_empty() {
                 question.id = format!("{}.{}", place(draft, &question.subject), question.id);
             }
@@ -49,7 +49,7 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
                 && !asked.contains(&(operation.item.name.as_str(), fact))
             {
                 let text = draft.texts.limit(ask(&operation.item, fact, state));
-                questions.push(of_loss(operation, fact, state, text, writing()));
+                questions.push(of_loss(operation, fact, state, text, editor()));
             }
         }
     }
@@ -66,13 +66,13 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
 
 fn of_answer(
     answer: &AnswerDraft<'_>,
-    governed: &[Governed<'_>],
+    covered: &[CoveredFact<'_>],
     severities: &HashMap<&str, Severity>,
-    mut edit: Writing<'_>,
+    mut edit: AnswerEditor<'_>,
 ) -> Question {
     let item = &answer.item;
-    let facts = governed.iter().map(|governed| match governed.found {
-        Found::Fact(fact, ..) => match BodyState::named(governed.meanwhile()) {
+    let facts = covered.iter().map(|covered| match covered.found {
+        Found::Fact(fact, ..) => match BodyState::named(covered.meanwhile()) {
             Some(before) => impact(fact, before),
             None => Impact::Doubtful,
         },
@@ -83,13 +83,13 @@ fn of_answer(
         _ => facts.min().unwrap_or(Impact::Behaviour),
     };
     if item.confirmed.is_none() {
-        edit.settle_answer(answer, governed);
+        edit.settle_answer(answer, covered);
     }
     let severities = item.ids.iter().filter_map(|id| severities.get(id.as_str()));
     Question {
         id: match (item.ids.first(), item.about.first()) {
             (Some(id), _) => id.clone(),
-            (None, Some(governed)) => governed.path.clone(),
+            (None, Some(covered)) => covered.path.clone(),
             (None, None) => String::new(),
         },
         ids: item.ids.clone(),
@@ -108,11 +108,11 @@ fn of_answer(
 
 /// What is asked of a fact of which the spec is in doubt and of which nothing else asks.
 fn of_loss(
-    operation: &Placed<'_, Operation>,
+    operation: &Sourced<'_, Operation>,
     fact: Fact,
     state: BodyState,
     text: Text,
-    mut edit: Writing<'_>,
+    mut edit: AnswerEditor<'_>,
 ) -> Question {
     let item = &operation.item;
     edit.settle_loss(operation, fact, state, &text);

@@ -1,7 +1,7 @@
 //! What the spec leaves to be derived: filled in where names can be looked up.
 
+use super::answer_scope::{Found, covered_facts};
 use super::draft::Draft;
-use super::govern::{Found, governed};
 use super::process;
 use crate::language::grammar::REPORT;
 use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
@@ -41,7 +41,7 @@ fn resolve_acks(draft: &mut Draft<'_>) {
         calls.item.ack = default;
     }
     for operation in &mut draft.operations {
-        let has_own = REPORT.ack.of(operation.place.node).is_some();
+        let has_own = REPORT.ack.of(operation.origin.node).is_some();
         if let (Exchange::Report { ack, .. }, false) = (&mut operation.item.exchange, has_own) {
             *ack = default;
         }
@@ -90,10 +90,10 @@ fn resolve_confirmed(draft: &mut Draft<'_>) {
     for answer in &draft.answers {
         if let (Some(_), Subject::Operation(name)) = (&answer.item.confirmed, &answer.item.subject)
         {
-            for governed in governed(draft, answer) {
-                if let Found::Fact(fact, state, _) = governed.found
+            for covered in covered_facts(draft, answer) {
+                if let Found::Fact(fact, state, _) = covered.found
                     && (matches!(state, BodyState::Stated | BodyState::Free)
-                        || !governed.has_to_change())
+                        || !covered.has_to_change())
                 {
                     confirmed.push((name.clone(), fact));
                 }

@@ -1,9 +1,10 @@
 //! The top keys of all files: which may stand where, and how often.
 
-use super::draft::Place;
+use super::draft::Origin;
 use super::shape;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{self, FILE, File, GROUP};
+use crate::language::{Cursor, Occurrence, references};
 use crate::model::{Languages, Text};
 use crate::source::Span;
 use crate::syntax::{self, Entry, Node};
@@ -35,9 +36,11 @@ pub(super) struct Section<'a> {
     /// The key.
     pub name: &'static str,
     /// Its place.
-    pub place: Place<'a>,
+    pub origin: Origin<'a>,
     /// Group of the file.
     pub group: Option<&'a str>,
+    /// Values and keys in it that name a thing.
+    pub references: Vec<Occurrence<'a>>,
     /// Whether its shape is sound.
     pub clean: bool,
 }
@@ -81,7 +84,7 @@ fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faul
     let mut sections = Vec::new();
     let mut faults = Faults::new();
     tree.gaps.iter().for_each(|gap| faults.leave_out(*gap));
-    check_file(tree, texts, &mut faults);
+    check_file(tree, &mut faults);
     let group = GROUP.id.of(FILE.group.of(tree.root()));
     for entry in tree.root().entries() {
         if let Some(key) = File::TABLE.key(entry.name()) {
@@ -91,11 +94,12 @@ fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faul
             }
             sections.push(Section {
                 name: key.name,
-                place: Place {
+                origin: Origin {
                     key: entry.key,
                     node: entry.value,
                 },
                 group: group.and_then(Node::as_str),
+                references: references(key, entry.value),
                 clean: (faults.errors(), faults.hidden().len()) == before
                     && !entry.value.lacks(tree.gaps, entry.key.span()),
             });
@@ -110,18 +114,11 @@ fn holds_operations(tree: &Parsed<'_>) -> bool {
     parts.nth(1) == Some("commands")
 }
 
-fn check_file(tree: &Parsed<'_>, texts: Languages, faults: &mut Faults) {
+fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
     let Some(entries) = tree.root().as_mapping() else {
-        shape::check_kind(
-            &grammar::Kind::Map(File::TABLE),
-            tree.root(),
-            tree.root().span(),
-            texts,
-            faults,
-        );
-        return;
+        return shape::check_root(tree.root(), faults);
     };
-    shape::unknown_keys(File::TABLE, tree.root(), faults);
+    shape::check_keys(Cursor::file(tree.root()), tree.root(), faults);
     let grouped = |entry: &Entry<'_>| grammar::GROUPED.contains(&entry.name());
     if !holds_operations(tree) {
         for entry in entries.filter(grouped) {
@@ -168,7 +165,7 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
         if !once.any(|name| *name == section.name) {
             return true;
         }
-        let span = section.place.name();
+        let span = section.origin.name();
         let Some(earlier) = first.get(section.name) else {
             first.insert(section.name, span);
             return true;

@@ -1,8 +1,8 @@
 //! Writing down what the owner says.
 
-use super::draft::{Draft, Placed};
-use super::edit::{Word, Writing};
-use super::govern::{Found, Governed, governed};
+use super::answer_edit::{AnswerEditor, OwnerInput};
+use super::answer_scope::{CoveredFact, Found, covered_facts};
+use super::draft::{Draft, Sourced};
 use crate::diagnostic::{Faults, nearest};
 use crate::format::{Edited, edited};
 use crate::model::{
@@ -174,7 +174,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
     }
     let about: Vec<&str> = question.about.iter().map(|it| it.path.as_str()).collect();
     for (path, _) in &said.values {
-        if !about.iter().any(|governed| is_end_of(path, governed)) {
+        if !about.iter().any(|covered| is_end_of(path, covered)) {
             return Err(SettleError::NotAbout {
                 id: question.id.clone(),
                 path: path.clone(),
@@ -183,7 +183,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
         }
     }
     let word = Spoken(said);
-    let mut writing = Writing::new(sources, draft.texts, &word);
+    let mut editor = AnswerEditor::new(sources, draft.texts, &word);
     let mut missing = Vec::new();
     let mut ask_for = |path: &str| {
         if word.value(path).is_none() {
@@ -198,23 +198,23 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
     // An answer and an operation do not have one place.
     let mut answers = draft.answers.iter();
     if let Some(answer) = answers.find(|answer| answer.item.location == question.location) {
-        let governed: Vec<_> = governed(draft, answer).collect();
-        for governed in governed.iter().filter(|governed| governed.has_to_be_said()) {
-            ask_for(governed.path.as_str().unwrap_or_default());
+        let covered: Vec<_> = covered_facts(draft, answer).collect();
+        for covered in covered.iter().filter(|covered| covered.has_to_be_said()) {
+            ask_for(covered.path.as_str().unwrap_or_default());
         }
-        let is_fact = |governed: &Governed<'_>| matches!(governed.found, Found::Fact(..));
-        if governed.iter().any(is_fact) && !writing.has_lines(answer.holder) {
+        let is_fact = |covered: &CoveredFact<'_>| matches!(covered.found, Found::Fact(..));
+        if covered.iter().any(is_fact) && !editor.has_lines(answer.holder) {
             return Err(layout(&question.location));
         }
-        writing.settle_answer(answer, &governed);
+        editor.settle_answer(answer, &covered);
     } else if let Some((operation, fact, state)) = lost(draft, question) {
         if state == BodyState::Open {
             ask_for(fact.name());
         }
-        if !writing.has_lines(operation.place.node) {
+        if !editor.has_lines(operation.origin.node) {
             return Err(layout(&question.location));
         }
-        writing.settle_loss(operation, fact, state, &question.text);
+        editor.settle_loss(operation, fact, state, &question.text);
     }
     if !missing.is_empty() {
         return Err(SettleError::Missing {
@@ -222,10 +222,10 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
             paths: missing,
         });
     }
-    let file = writing.edits.place();
+    let file = editor.edits.place();
     let file = file.and_then(|span| sources.get(span.file));
     let (path, text, diff) = file.map_or_else(Default::default, |file| {
-        let Edited { text, diff } = edited(file, &writing.edits);
+        let Edited { text, diff } = edited(file, &editor.edits);
         (file.path.clone(), text, diff)
     });
     Ok(Settled {
@@ -266,7 +266,7 @@ fn find<'q>(questions: &'q [Question], id: &str) -> Result<&'q Question, SettleE
 fn lost<'d, 'a>(
     draft: &'d Draft<'a>,
     question: &Question,
-) -> Option<(&'d Placed<'a, Operation>, Fact, BodyState)> {
+) -> Option<(&'d Sourced<'a, Operation>, Fact, BodyState)> {
     let Subject::Operation(name) = &question.subject else {
         return None;
     };
@@ -279,7 +279,7 @@ fn lost<'d, 'a>(
 /// What the owner says, for the facts of one question.
 struct Spoken<'s>(&'s Said);
 
-impl Word for Spoken<'_> {
+impl OwnerInput for Spoken<'_> {
     /// Of several that fit, the one that says most of the path.
     fn value(&self, path: &str) -> Option<String> {
         let fitting = self.0.values.iter().filter(|(end, _)| is_end_of(end, path));

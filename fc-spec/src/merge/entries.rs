@@ -2,8 +2,8 @@
 
 use super::value::Value;
 use super::{Above, Lines, Merge, last_line};
+use crate::language::Cursor;
 use crate::language::grammar::{CHOICE, FIELD_KIND};
-use crate::load::Inside;
 use crate::syntax::{Entry, Node, Scalar};
 
 /// An entry of the result.
@@ -26,12 +26,12 @@ enum Bond {
 }
 
 /// Returns `None` if the order of the entries has a meaning.
-fn bond(above: Above<'_>, inside: Inside) -> Option<Bond> {
-    match (above, inside) {
+fn bond(above: Above<'_>, cursor: Cursor) -> Option<Bond> {
+    match (above, cursor) {
         (Above::File, _) => Some(Bond::None),
-        (_, Inside::Declared(_)) => Some(Bond::OneThing),
-        (Above::Keys(key, _), Inside::Chosen(kind)) => {
-            let is_ordered = std::ptr::eq(kind, &raw const FIELD_KIND)
+        (_, Cursor::Declared(_)) => Some(Bond::OneThing),
+        (Above::Keys(key, _), Cursor::Chosen { value, .. }) => {
+            let is_ordered = std::ptr::eq(value, &raw const FIELD_KIND)
                 || key.as_str() == Some(CHOICE.one_of.name);
             (!is_ordered).then_some(Bond::None)
         }
@@ -44,12 +44,12 @@ impl<'t> Merge<'t> {
     pub(super) fn entries(
         &mut self,
         above: Above<'t>,
-        inside: Inside,
+        cursor: Cursor,
         base: Option<Node<'t>>,
         ours: Node<'t>,
         theirs: Node<'t>,
     ) -> Option<Value<'t>> {
-        let bond = bond(above, inside)?;
+        let bond = bond(above, cursor)?;
         let base: Vec<_> = base.into_iter().flat_map(Node::entries).collect();
         let ours: Vec<_> = ours.as_mapping()?.collect();
         let theirs: Vec<_> = theirs.as_mapping()?.collect();
@@ -71,7 +71,7 @@ impl<'t> Merge<'t> {
                 [None, None] if bond == Bond::None => Value::of(entry.value),
                 [base, Some(their)] => {
                     let theirs = (their, their_lines(self, &theirs, their_head, their));
-                    self.of_both(bond, inside, base, (*entry, lines), theirs)?
+                    self.of_both(bond, cursor, base, (*entry, lines), theirs)?
                 }
                 // Theirs has removed an entry that ours has not changed.
                 [Some(base), None] if bond == Bond::None && same(base, *entry) => {
@@ -136,7 +136,7 @@ impl<'t> Merge<'t> {
     fn of_both(
         &mut self,
         bond: Bond,
-        inside: Inside,
+        cursor: Cursor,
         base: Option<Entry<'t>>,
         (ours, lines): (Entry<'t>, Lines),
         (theirs, their_lines): (Entry<'t>, Lines),
@@ -150,14 +150,14 @@ impl<'t> Merge<'t> {
             self.edits.replace(lines.span(self.ours)?, text);
             return Some(Value::of(theirs.value));
         }
-        let inside = inside.under(ours.name(), ours.value);
+        let cursor = cursor.under(ours.name(), ours.value);
         let values = [
             base.map(|it| it.value),
             Some(ours.value),
             Some(theirs.value),
         ];
         let above = Above::Keys(ours.key, theirs.key);
-        self.both(above, ours.name(), inside, values)
+        self.both(above, ours.name(), cursor, values)
     }
 }
 

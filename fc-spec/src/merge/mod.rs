@@ -13,7 +13,7 @@ mod value;
 
 use crate::diagnostic::Faults;
 use crate::format::format;
-use crate::load::{Inside, inside};
+use crate::language::Cursor;
 use crate::source::{Edits, FileId, SourceFile, Span};
 use crate::syntax::{Node, Tree, parse};
 use value::Value;
@@ -39,7 +39,7 @@ pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
         theirs: &theirs,
         edits: Edits::default(),
     };
-    let root = inside(our_tree.root(), &mut Faults::new());
+    let root = Cursor::file(our_tree.root());
     let roots = [base_tree.root(), our_tree.root(), their_tree.root()];
     let [base_root, our_root, their_root] = roots;
     let meant = merge.entries(Above::File, root, Some(base_root), our_root, their_root)?;
@@ -101,16 +101,16 @@ impl<'t> Merge<'t> {
         &mut self,
         above: Above<'t>,
         key: &str,
-        inside: Inside,
+        cursor: Cursor,
         [base, ours, theirs]: [Option<Node<'t>>; 3],
     ) -> Option<Value<'t>> {
         let (ours, theirs) = (ours?, theirs?);
         if !is_block(self.ours, ours) || !is_block(self.theirs, theirs) {
             return None;
         }
-        match inside {
-            Inside::Items(_) => self.items(above, key, base, ours, theirs),
-            _ => self.entries(above, inside, base, ours, theirs),
+        match cursor {
+            Cursor::Items(_) => self.items(above, key, base, ours, theirs),
+            _ => self.entries(above, cursor, base, ours, theirs),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! `availability:` and `available:`: for whom a thing is, on which machines and in which releases.
 
-use super::types::{Types, Unlinked};
-use super::{Location, Operation, Text, TypeShape};
+use super::{Location, Text};
 use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,25 +40,6 @@ impl Availability {
     #[must_use]
     pub fn series(&self, name: &str) -> Option<&Declared> {
         find(&self.releases, name)
-    }
-
-    /// Everything in this model that says for whom it is has declared words.
-    pub(super) fn check(&self, operations: &[Operation], types: &Types) -> Result<(), Unlinked> {
-        for (user, available) in each(operations, types) {
-            let audiences = available.audiences.iter();
-            let audience = audiences.filter(|name| self.audience(name).is_none());
-            let machine = available.hardware.iter();
-            let machine = machine.filter(|name| self.machine(name).is_none());
-            let series = available.from.keys().chain(available.until.keys());
-            let series = series.filter(|name| self.series(name).is_none());
-            let audience = audience.map(|name| format!("the audience `{name}`"));
-            let machine = machine.map(|name| format!("the hardware `{name}`"));
-            let series = series.map(|name| format!("the releases `{name}`"));
-            if let Some(missing) = audience.chain(machine).chain(series).next() {
-                return Err(Unlinked { missing, user });
-            }
-        }
-        Ok(())
     }
 }
 
@@ -111,40 +91,4 @@ impl Available {
 
 fn find<'d>(declared: &'d [Declared], name: &str) -> Option<&'d Declared> {
     declared.iter().find(|declared| declared.name == name)
-}
-
-/// All that is not for everyone, and what it is called in a message.
-fn each<'m>(
-    operations: &'m [Operation],
-    types: &'m Types,
-) -> impl Iterator<Item = (String, &'m Available)> {
-    let operations = operations.iter();
-    let operations =
-        operations.filter_map(|it| Some((format!("`{}`", it.name), it.available.as_ref()?)));
-    let parts = types.iter().flat_map(|ty| {
-        let part = |name: &str, available: Option<&'m Available>| {
-            Some((format!("`{}.{name}`", ty.name), available?))
-        };
-        let parts: Vec<_> = match &ty.shape {
-            TypeShape::Struct(shape) => {
-                let fields = shape.fields.iter();
-                let parts = fields.filter_map(|it| part(&it.wire, it.details().available.as_ref()));
-                parts.collect()
-            }
-            TypeShape::Enum(shape) => {
-                let values = shape.values.iter();
-                values
-                    .filter_map(|it| part(&it.name, it.available.as_ref()))
-                    .collect()
-            }
-            TypeShape::OneOf(choice) => {
-                let variants = choice.variants.iter();
-                variants
-                    .filter_map(|it| part(&it.name, it.available.as_ref()))
-                    .collect()
-            }
-        };
-        parts
-    });
-    operations.chain(parts)
 }

@@ -2,79 +2,9 @@
 //!
 //! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
 
-use super::{
-    Answer, Availability, CallDefaults, Change, CodeRange, Condition, Conflict, CoordinateSystem,
-    Entity, Envelope, Frame, Group, JsonRule, Limits, MissingSection, Model, Operation, Protocol,
-    Question, ResultCode, RetiredCode, Store, Table, Term, Text, Transport, TypeShape, Types,
-    Unlinked, Waiver,
-};
+use super::{Condition, Dump, Model, Text, TypeShape, Unlinked};
 use crate::{names, text};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashSet};
-
-/// What the generator knows of a protocol, for other programs.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct Dump {
-    /// Counts up when a key changes its meaning or goes. A key that is new in a format has a default.
-    pub format: u32,
-    /// The protocol as a whole, and what lies below its messages.
-    protocol: Below,
-    /// Groups of operations, in the order of their files' names.
-    groups: Vec<Group>,
-    /// Commands, reports and streams, by group, in the order of the files.
-    operations: Vec<Operation>,
-    /// Declared types and those made for bodies, as they stand in the spec.
-    types: Types,
-    /// By number.
-    result_codes: Vec<ResultCode>,
-    /// By number, both ends included.
-    ranges: Vec<CodeRange>,
-    /// By number.
-    retired_codes: Vec<RetiredCode>,
-    /// Published tables of constants.
-    tables: Vec<Table>,
-    /// What the ids in bodies stand for.
-    entities: Vec<Entity>,
-    /// In which positions are given.
-    coordinates: Vec<CoordinateSystem>,
-    /// Where things are kept.
-    stores: Vec<Store>,
-    /// Audiences, lines of machines and series of releases.
-    availability: Availability,
-    /// The words of the protocol and what they mean.
-    glossary: Vec<Term>,
-    /// Findings that are accepted for a time.
-    #[serde(default)]
-    waivers: Vec<Waiver>,
-    /// What the source lacks or contradicts.
-    conflicts: Vec<Conflict>,
-    /// What the spec answers to that.
-    answers: Vec<Answer>,
-    /// What only the owner of the protocol can say, the most pressing first.
-    questions: Vec<Question>,
-    /// Sections of the source of which nothing is left.
-    lost_sections: Vec<MissingSection>,
-    /// Of the protocol as a whole.
-    changes: Vec<Change>,
-}
-
-/// The protocol as a whole, and what lies below its messages.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Protocol")]
-struct Below {
-    #[serde(flatten)]
-    protocol: Protocol,
-    #[serde(flatten)]
-    transport: Transport,
-    frame: Frame,
-    /// What is done where JSON leaves it open, by rule.
-    json: BTreeMap<JsonRule, Text>,
-    /// The keys beside those of a message.
-    envelope: Envelope,
-    calls: CallDefaults,
-    limits: Limits,
-}
+use serde::Deserialize;
 
 /// Why a text is no dump that can be used.
 #[derive(Debug)]
@@ -138,42 +68,6 @@ impl std::error::Error for DumpError {
     }
 }
 
-impl From<&Model> for Dump {
-    fn from(model: &Model) -> Self {
-        let model = model.clone();
-        Self {
-            format: Self::FORMAT,
-            protocol: Below {
-                protocol: model.protocol,
-                transport: model.transport,
-                frame: model.frame,
-                json: model.json,
-                envelope: model.envelope,
-                calls: model.calls,
-                limits: model.limits,
-            },
-            groups: model.groups,
-            operations: model.operations,
-            types: model.types,
-            result_codes: model.results,
-            ranges: model.ranges,
-            retired_codes: model.retired,
-            tables: model.tables,
-            entities: model.entities,
-            coordinates: model.coordinates,
-            stores: model.stores,
-            availability: model.availability,
-            glossary: model.glossary,
-            waivers: model.waivers,
-            conflicts: model.conflicts,
-            answers: model.answers,
-            questions: model.questions,
-            lost_sections: model.missing_sections,
-            changes: model.changes,
-        }
-    }
-}
-
 impl Dump {
     /// Returns the JSON Schema of a dump, indented, with a newline at its end. It lacks keys that are computed from others.
     #[must_use]
@@ -202,13 +96,11 @@ impl Dump {
             return Err(DumpError::Format(format));
         }
         let dump: Self = serde_json::from_str(json).map_err(DumpError::Shape)?;
-        dump.check_codes()?;
-        dump.check_groups().map_err(DumpError::Name)?;
-        dump.check_entities().map_err(DumpError::Name)?;
-        dump.check_conditions().map_err(DumpError::Name)?;
-        dump.check_places().map_err(DumpError::Name)?;
-        (dump.availability.check(&dump.operations, &dump.types)).map_err(DumpError::Name)?;
-        let model = dump.model().link().map_err(DumpError::Name)?;
+        let model = dump.model();
+        model.check_codes()?;
+        model.check_conditions().map_err(DumpError::Name)?;
+        model.check_names().map_err(DumpError::Name)?;
+        let model = model.link().map_err(DumpError::Name)?;
         model.check_ways().map_err(DumpError::Name)?;
         model.check_bodies().map_err(DumpError::Name)?;
         if let Some((ty, field)) = model.misfit() {
@@ -216,39 +108,9 @@ impl Dump {
         }
         Ok(model)
     }
+}
 
-    /// The same things in a model, whose references are by name only.
-    fn model(self) -> Model {
-        let below = self.protocol;
-        Model {
-            protocol: below.protocol,
-            transport: below.transport,
-            frame: below.frame,
-            json: below.json,
-            envelope: below.envelope,
-            results: self.result_codes,
-            calls: below.calls,
-            limits: below.limits,
-            ranges: self.ranges,
-            retired: self.retired_codes,
-            groups: self.groups,
-            operations: self.operations,
-            types: self.types,
-            tables: self.tables,
-            entities: self.entities,
-            coordinates: self.coordinates,
-            stores: self.stores,
-            availability: self.availability,
-            glossary: self.glossary,
-            waivers: self.waivers,
-            missing_sections: self.lost_sections,
-            conflicts: self.conflicts,
-            answers: self.answers,
-            questions: self.questions,
-            changes: self.changes,
-        }
-    }
-
+impl Model {
     /// Every code is spelled as its number.
     fn check_codes(&self) -> Result<(), DumpError> {
         let operations = self.operations.iter().map(|it| &it.code);
@@ -259,50 +121,13 @@ impl Dump {
                 (Some(it.last), &it.last_spelling),
             ]
         });
-        let retired = self.retired_codes.iter();
+        let retired = self.retired.iter();
         let retired = retired.map(|it| (Some(it.code), &it.spelling));
         let mut codes = operations.chain(ranges).chain(retired);
         match codes.find(|(value, spelling)| names::code(spelling) != *value) {
             Some((_, spelling)) => Err(DumpError::Spelling(spelling.clone())),
             None => Ok(()),
         }
-    }
-
-    /// Every operation, and every type that is in a group, is in one that there is.
-    fn check_groups(&self) -> Result<(), Unlinked> {
-        let groups: HashSet<&str> = self.groups.iter().map(|group| group.id.as_str()).collect();
-        let operations = self.operations.iter().map(|it| (&it.group, &it.name));
-        let types = self.types.iter();
-        let types = types.filter_map(|it| Some((it.group.as_ref()?, &it.name)));
-        let mut users = operations.chain(types);
-        match users.find(|(group, _)| !groups.contains(group.as_str())) {
-            Some((group, user)) => Err(Unlinked {
-                missing: format!("the group `{group}`"),
-                user: format!("`{user}`"),
-            }),
-            None => Ok(()),
-        }
-    }
-
-    /// Every field refers to an entity that there is, if to any.
-    fn check_entities(&self) -> Result<(), Unlinked> {
-        let entities = self.entities.iter().map(|entity| entity.name.as_str());
-        let entities: HashSet<&str> = entities.collect();
-        for ty in &self.types {
-            let TypeShape::Struct(shape) = &ty.shape else {
-                continue;
-            };
-            for field in &shape.fields {
-                let refers = field.details().refers.as_deref();
-                if let Some(name) = refers.filter(|name| !entities.contains(name)) {
-                    return Err(Unlinked {
-                        missing: format!("the entity `{name}`"),
-                        user: format!("`{}.{}`", ty.name, field.wire),
-                    });
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Every condition asks fields that there are beside its own.
@@ -320,42 +145,6 @@ impl Dump {
                         user: format!("`{}.{}`", ty.name, field.wire),
                     });
                 }
-            }
-        }
-        Ok(())
-    }
-
-    /// Every coordinate system and every store that something names is there.
-    fn check_places(&self) -> Result<(), Unlinked> {
-        let systems = self.coordinates.iter().map(|system| system.name.as_str());
-        let systems: HashSet<&str> = systems.collect();
-        let stores = self.stores.iter().map(|store| store.name.as_str());
-        let stores: HashSet<&str> = stores.collect();
-        let check = |known: &HashSet<&str>, what: &str, name: Option<&str>, user: &str| match name {
-            Some(name) if !known.contains(name) => Err(Unlinked {
-                missing: format!("the {what} `{name}`"),
-                user: format!("`{user}`"),
-            }),
-            _ => Ok(()),
-        };
-        for operation in &self.operations {
-            check(&stores, "store", operation.kept.as_deref(), &operation.name)?;
-        }
-        for table in &self.tables {
-            check(&stores, "store", table.kept.as_deref(), &table.id)?;
-        }
-        for ty in &self.types {
-            let TypeShape::Struct(shape) = &ty.shape else {
-                continue;
-            };
-            let system = shape.coordinates.as_deref();
-            check(&systems, "coordinate system", system, &ty.name)?;
-            for field in &shape.fields {
-                let user = format!("{}.{}", ty.name, field.wire);
-                let details = field.details();
-                let system = details.coordinates.as_deref();
-                check(&systems, "coordinate system", system, &user)?;
-                check(&stores, "store", details.kept.as_deref(), &user)?;
             }
         }
         Ok(())

@@ -7,26 +7,28 @@ mod available;
 mod body;
 mod cadence;
 mod condition;
+mod coordinates;
 mod dump;
 mod dump_fit;
 mod entity;
-mod flat;
+mod exchange_dump;
 mod glossary;
+mod named;
 mod operation;
 mod pattern;
-mod place;
 mod precondition;
 mod process;
 mod projection;
 mod protocol;
 mod question;
 mod reference;
+mod sections;
 mod stream;
 mod text;
+mod text_form;
 mod types;
 mod value;
 mod waiver;
-mod written;
 
 pub use crate::names::{has_unprintable, is_hidden};
 pub use crate::vocabulary::{
@@ -41,14 +43,14 @@ pub use body::{
 };
 pub use cadence::{Cadence, Step};
 pub use condition::{Asked, Condition};
-pub use dump::{Dump, DumpError};
+pub use coordinates::{CoordinateSystem, Store};
+pub use dump::DumpError;
 pub use entity::Entity;
 pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
 };
 pub use pattern::{Pattern, PatternError};
-pub use place::{CoordinateSystem, Store};
 pub use precondition::{Accepted, AcceptedIn, StateSet};
 pub use process::{KeyPath, SetOff, Tie};
 pub(crate) use process::{enums, way};
@@ -60,6 +62,7 @@ pub use protocol::{
 };
 pub use question::{Confirmation, Governed, Question};
 pub use reference::{StructRef, TypeId, TypeRef};
+pub use sections::{Dump, Model, Partial};
 pub use stream::{Content, Stream};
 pub use text::{
     Aliases, Answer, Change, Deprecation, Lang, Languages, Location, Part, Subject, Text,
@@ -69,63 +72,7 @@ pub use types::{Types, Unlinked};
 pub use value::{Number, Scalar, Value};
 pub use waiver::{Waiver, fingerprint, is_past};
 
-use std::collections::{BTreeMap, BTreeSet};
-
-/// A whole protocol, resolved.
-#[derive(Clone, Debug)]
-pub struct Model {
-    /// What the protocol is called and how it counts its own versions.
-    pub protocol: Protocol,
-    /// Host and ports.
-    pub transport: Transport,
-    /// The layout of a frame: header, heads, kinds, encodings.
-    pub frame: Frame,
-    /// How bodies are read where JSON leaves it open: every rule and what the spec says of it.
-    pub json: BTreeMap<JsonRule, Text>,
-    /// The keys that every request and every response carries.
-    pub envelope: Envelope,
-    /// Result codes, sorted by number.
-    pub results: Vec<ResultCode>,
-    /// How long calls wait and how reports are repeated, unless an operation says otherwise.
-    pub calls: CallDefaults,
-    /// Default limits of both stubs.
-    pub limits: Limits,
-    /// Ranges of command codes with a purpose, sorted by first code.
-    pub ranges: Vec<CodeRange>,
-    /// Codes that must not be used again, sorted.
-    pub retired: Vec<RetiredCode>,
-    /// Command groups, in the order of their files' names.
-    pub groups: Vec<Group>,
-    /// Every operation: by group, then in the order of its file.
-    pub operations: Vec<Operation>,
-    /// Every named type: those of `types:` sections and those made for bodies and inline objects.
-    /// In the order in which they were written; a body's own type stands before the inline types in it.
-    pub types: Types,
-    /// Published tables of constants, such as the cell layouts.
-    pub tables: Vec<Table>,
-    /// What the ids in bodies stand for.
-    pub entities: Vec<Entity>,
-    /// In which positions are given.
-    pub coordinates: Vec<CoordinateSystem>,
-    /// Where things are kept.
-    pub stores: Vec<Store>,
-    /// Audiences, lines of machines and series of releases.
-    pub availability: Availability,
-    /// The words of the protocol and what they mean.
-    pub glossary: Vec<Term>,
-    /// Findings that are accepted for a time.
-    pub waivers: Vec<Waiver>,
-    /// Section numbers of the source document of which nothing is left.
-    pub missing_sections: Vec<MissingSection>,
-    /// The gaps and slips of the source document that the spec must answer.
-    pub conflicts: Vec<Conflict>,
-    /// What the spec answers to them, in the order in which the answers stand.
-    pub answers: Vec<Answer>,
-    /// What only the owner can say, the most pressing first: open questions, decisions, and what they have settled.
-    pub questions: Vec<Question>,
-    /// Dated changes of the protocol as a whole; operations and types hold their own.
-    pub changes: Vec<Change>,
-}
+use std::collections::BTreeSet;
 
 impl Model {
     /// Gives every reference its id.

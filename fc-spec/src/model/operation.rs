@@ -1,6 +1,6 @@
 //! Operations: commands, reports and streams.
 
-use super::flat::Flat;
+use super::exchange_dump::ExchangeDump;
 use super::stream::{Content, Stream};
 use super::{
     Accepted, Aliases, Available, Cadence, Change, Deprecation, KeyPath, Location, SetOff,
@@ -77,8 +77,8 @@ pub struct Body {
 
 /// What travels, by the kind of the operation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(into = "Flat", try_from = "Flat")]
-#[schemars(with = "Flat")]
+#[serde(into = "ExchangeDump", try_from = "ExchangeDump")]
+#[schemars(with = "ExchangeDump")]
 pub enum Exchange {
     /// An app asks, the robot answers.
     Command {

@@ -130,14 +130,11 @@ pub(crate) fn link(
         let linked = ids.link_struct(&mut table.row);
         is_linked(linked, &|| format!("the table `{}`", table.id))
     });
-    let reports = operations
-        .iter()
-        .filter(|operation| operation.kind() == Kind::Report);
-    let reports: HashSet<String> = reports.map(|report| report.name.clone()).collect();
-    let commands = operations
-        .iter()
-        .filter(|operation| operation.kind() == Kind::Command);
-    let commands: HashSet<String> = commands.map(|command| command.name.clone()).collect();
+    let names = |kind: Kind| -> HashSet<String> {
+        let operations = operations.iter().filter(|it| it.kind() == kind);
+        operations.map(|it| it.name.clone()).collect()
+    };
+    let (commands, reports) = (names(Kind::Command), names(Kind::Report));
     for operation in &mut *operations {
         let user = &operation.name;
         if let Exchange::Stream(stream) = &mut operation.exchange {

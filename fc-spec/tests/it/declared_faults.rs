@@ -1,7 +1,7 @@
 //! At which keys of the language the faults of a spec lie, and whether the keys say so.
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults};
-use fc_spec::index::{Role, Site, sites};
+use fc_spec::index::{Occurrence, Role, visit};
 use fc_spec::language::{Part, reference};
 use fc_spec::source::Sources;
 use fc_spec::syntax::parse;
@@ -30,14 +30,14 @@ fn place(sources: &Sources, fault: &Diagnostic) -> Option<(&'static str, Option<
     let (id, file) = sources.iter().find(|(id, _)| *id == span.file)?;
     let tree = parse(id, &file.text, &mut Faults::new())?;
     let mut found = ("file", None);
-    let mut see = |site: Site<'_>| {
-        let at = site.node.span();
-        let is_whole = site.role == Role::Key && at.start == span.start && at.end < span.end;
+    let mut see = |occurrence: Occurrence<'_>| {
+        let at = occurrence.node.span();
+        let is_whole = occurrence.role == Role::Key && at.start == span.start && at.end < span.end;
         if at.start <= span.start && !is_whole {
-            found = (site.part, site.key);
+            found = (occurrence.part, occurrence.key);
         }
     };
-    sites(tree.root(), &mut see);
+    visit(tree.root(), &mut see);
     Some(found)
 }
 

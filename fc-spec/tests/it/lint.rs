@@ -5,7 +5,7 @@
 
 use crate::syntax_support;
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::index::places;
+use fc_spec::index::definitions;
 use fc_spec::lint::{Finding, Rule, Settings, faults, lint, settings, waive};
 use fc_spec::load::load;
 use fc_spec::model::{Lang, Model};
@@ -108,7 +108,7 @@ impl Change {
 }
 
 fn shown(findings: &[Finding], sources: &Sources, lang: Lang) -> Vec<String> {
-    let found = faults(findings, &everything(), || places(sources));
+    let found = faults(findings, &everything(), || definitions(sources));
     let shown = found.iter().map(|fault| {
         let at = sources.line_col(fault.primary.span);
         let path = sources.path(fault.primary.span).trim_start_matches("spec/");
@@ -184,7 +184,7 @@ fn house(yaml: &str) -> Vec<String> {
     assert_eq!(wrong, "");
     let (sources, model) = spec(&file("spec/commands/lamp.yaml"), "");
     let findings = lint(&model, &settings, TODAY);
-    let found = faults(&findings, &settings, || places(&sources));
+    let found = faults(&findings, &settings, || definitions(&sources));
     let shown = found.iter().map(|fault| {
         let name = sources.slice(fault.primary.span);
         format!("{} {name} {:?}", fault.message.en, fault.severity)

@@ -2,7 +2,7 @@
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{Item, places};
+use fc_spec::index::{DefId, definitions};
 use fc_spec::load::{Loaded, load};
 use fc_spec::model::{Availability, TypeDef, TypeShape};
 use fc_spec::source::Sources;
@@ -32,8 +32,8 @@ fn fields(loaded: &Loaded, ty: &str) -> Vec<String> {
     }
 }
 
-fn field(owner: &str, name: &str) -> Item {
-    Item {
+fn field(owner: &str, name: &str) -> DefId {
+    DefId {
         kind: "field",
         owner: Some(owner.to_owned()),
         name: name.to_owned(),
@@ -73,7 +73,7 @@ fn what_a_fault_does_not_touch_is_read() {
     assert!(partial.tables.is_empty());
     // Where it is written is known all the same.
     let color = field("GetThingResponseData", "color");
-    assert!(places(&sources).get(&color).is_some());
+    assert!(definitions(&sources).get(&color).is_some());
     assert!(loaded.model().is_none());
 }
 
@@ -241,7 +241,7 @@ fn every_node_of_a_model_has_its_place() {
     (1..=model.changes.len()).for_each(|at| expect("change", &[&at]));
     expected.extend(limits(&model.availability));
     expected.extend(types(&model.types));
-    let places = places(&sources);
+    let places = definitions(&sources);
     let mut found: Vec<_> = places
         .iter()
         .map(|(item, _)| (item.kind, item.name.clone()))
@@ -254,7 +254,7 @@ fn every_node_of_a_model_has_its_place() {
 #[test]
 fn every_place_holds_what_it_is_of() {
     let (sources, ..) = loaded(&[]);
-    for (item, place) in places(&sources).iter() {
+    for (item, place) in definitions(&sources).iter() {
         let says = sources.slice(place.key);
         let is_keyed = KEYED.contains(&item.kind);
         assert!(!is_keyed || says == item.name, "{item}: {says}");
@@ -268,7 +268,7 @@ fn every_place_holds_what_it_is_of() {
 #[test]
 fn names_are_found_alone_and_with_what_holds_them() {
     let (sources, ..) = loaded(&[("      x: {", "      # Of the map.\n        x: {")]);
-    let places = places(&sources);
+    let places = definitions(&sources);
     let found = |name: &str| -> Vec<String> {
         places
             .named(name)

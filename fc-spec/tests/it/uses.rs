@@ -2,7 +2,7 @@
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::{Index, places, site_at, uses};
+use fc_spec::index::{Index, definitions, occurrence_at, references};
 use fc_spec::load::Trees;
 use fc_spec::model::Languages;
 use fc_spec::source::{FileId, SourceFile, Sources};
@@ -20,13 +20,13 @@ fn specs() -> [Sources; 2] {
 #[test]
 fn every_name_leads_to_what_it_names() {
     for sources in specs() {
-        let (places, uses) = (places(&sources), uses(&sources));
+        let (places, uses) = (definitions(&sources), references(&sources));
         assert!(uses.iter().count() > 0);
-        for sought in uses.iter() {
-            let text = sources.slice(sought.span);
-            assert_eq!(text, sought.name, "{sought:?}");
-            let (item, place) = sought.found(&places).expect("the spec has it");
-            assert!(sought.is(&item), "{sought:?}");
+        for reference in uses.iter() {
+            let text = sources.slice(reference.span);
+            assert_eq!(text, reference.name, "{reference:?}");
+            let (item, place) = reference.found(&places).expect("the spec has it");
+            assert!(reference.is(&item), "{reference:?}");
             assert_eq!(places.get(&item), Some(place));
         }
     }
@@ -36,7 +36,7 @@ fn every_name_leads_to_what_it_names() {
 #[test]
 fn every_thing_that_has_to_be_named_is() {
     for sources in specs() {
-        let (places, uses) = (places(&sources), uses(&sources));
+        let (places, uses) = (definitions(&sources), references(&sources));
         let declared = places.iter().filter(|(item, place)| {
             let is_declared = item.owner.is_none() && sources.slice(place.key) == item.name;
             is_declared
@@ -54,10 +54,15 @@ fn no_offset_of_a_file_is_too_odd() {
         for (id, file) in sources.iter() {
             let tree = parse(id, &file.text, &mut Faults::new()).expect("a tree");
             for offset in (0..file.text.len() + 2).step_by(7) {
-                if let Some(site) = site_at(tree.root(), offset) {
-                    let span = site.node.span();
+                if let Some(occurrence) = occurrence_at(tree.root(), offset) {
+                    let span = occurrence.node.span();
                     assert!(span.start <= offset && offset <= span.end);
-                    let _ = (site.words(), site.other_keys(), site.names(), site.sought());
+                    let _ = (
+                        occurrence.words(),
+                        occurrence.other_keys(),
+                        occurrence.names(),
+                        occurrence.reference(),
+                    );
                 }
             }
         }
@@ -86,7 +91,7 @@ fn index_of_files_that_stay_finds_what_a_new_one_does() {
                     faults.iter().cloned().collect::<Vec<_>>()
                 });
                 assert_eq!(faults[0], faults[1], "{}", file.path);
-                let (kept, read) = (index.places(), new.places());
+                let (kept, read) = (index.definitions(), new.definitions());
                 assert!(kept.iter().eq(read.iter()), "{}", file.path);
                 for (id, _) in changed.iter() {
                     let own = read.iter().filter(|(_, place)| place.key.file == id);
@@ -96,7 +101,7 @@ fn index_of_files_that_stay_finds_what_a_new_one_does() {
                     found.sort_by_key(|(item, _)| *item);
                     assert_eq!(found, own);
                 }
-                assert!(index.uses().iter().eq(new.uses().iter()));
+                assert!(index.references().iter().eq(new.references().iter()));
             }
         }
     }

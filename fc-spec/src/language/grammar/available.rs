@@ -2,6 +2,7 @@
 
 use super::common::TEXT;
 use super::form::{Entries, List, Name, Str};
+use super::refers::Ref;
 
 grammar! {
     /// The words that `available` uses: audiences, lines of machines, and series of releases.
@@ -41,18 +42,18 @@ grammar! {
     AVAILABLE: Available = "limit" "适用限制" {
         /// Only these audiences have it; `fcproto generate --for` leaves it out for others.
         /// 只面向这些受众；用 `fcproto generate --for` 为其他受众生成时不包含它。
-        optional r#for: List<Name, 1>,
+        optional r#for: List<Ref<Audience>, 1>,
             example "[product_app]",
             faults [UnknownAvailability, LimitsNothing, LimitBeyondOperation];
         /// Only these lines of machines have it.
         /// 只有这些机型才有。
-        optional hardware: List<Name, 1>, example "[second_generation]", faults [UnknownAvailability];
+        optional hardware: List<Ref<Machine>, 1>, example "[second_generation]", faults [UnknownAvailability];
         /// The first release that has it, by series: `{ adp: "3.8" }`.
         /// 从哪个版本开始有，以版本系列为键：`{ adp: "3.8" }`。
-        optional from: Entries<Name, Str, 1>, example r#"{ adp: "3.8" }"#, faults [UnknownAvailability, BadRelease];
+        optional from: Entries<Ref<Series>, Str, 1>, example r#"{ adp: "3.8" }"#, faults [UnknownAvailability, BadRelease];
         /// The last release that has it, by series.
         /// 到哪个版本为止还有，以版本系列为键。
-        optional until: Entries<Name, Str, 1>,
+        optional until: Entries<Ref<Series>, Str, 1>,
             example r#"{ adp: "4.2" }"#,
             faults [UnknownAvailability, BadRelease, ReleasesOutOfOrder];
     }

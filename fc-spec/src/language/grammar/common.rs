@@ -1,8 +1,10 @@
 //! Keys that mean the same wherever they stand.
 
 use super::available::Available;
-use super::form::{Bool, ConflictId, Date, Entries, Form, List, Name, Scalar, Str};
+use super::coordinates::Store;
+use super::form::{Bool, Date, Entries, Form, List, Name, Scalar, Str};
 use super::kind::Kind;
+use super::refers::{AnyOperation, Ref};
 use crate::model;
 use crate::syntax::Node;
 use crate::vocabulary::{AnswerKind, Severity};
@@ -45,7 +47,7 @@ grammar! {
         optional name: Name, example "battery_level";
         /// Store in which it is kept, declared under `stores`. For an operation: the store that it reads and sets.
         /// 内容的存储位置，在 `stores` 中声明。接口则指它读写的存储位置。
-        optional kept: Name, example "config_file", faults [UnknownStore];
+        optional kept: Ref<Store>, example "config_file", faults [UnknownStore];
     }
 
     /// Other words for it, in both languages.
@@ -73,7 +75,7 @@ grammar! {
     ANSWER: Answer = "answer" "答复" {
         /// Ids of the conflicts it answers. An answer without ids names its facts in `about`.
         /// 所答复的疑问的编号；没有编号的答复在 `about` 中写明涉及的内容。
-        optional ids: List<ConflictId, 1>, faults [UnknownConflict];
+        optional ids: List<Ref<Conflict>, 1>, faults [UnknownConflict];
         /// Kind of answer.
         /// 答复的种类。
         required r#as: AnswerKind;
@@ -134,7 +136,7 @@ grammar! {
         use FIELD_DEPRECATED.since, FIELD_DEPRECATED.sunset, TEXT.zh, TEXT.en;
         /// Operation to use instead.
         /// 改用的接口。
-        optional replaced_by: Name, example "get_battery", faults [UnknownOperation];
+        optional replaced_by: Ref<AnyOperation>, example "get_battery", faults [UnknownOperation];
     }
 }
 

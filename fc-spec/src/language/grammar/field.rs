@@ -1,11 +1,14 @@
 //! Types, bodies and fields.
 
 use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
+use super::coordinates::CoordinateSystem;
+use super::entity::Entity;
 use super::form::{
     Body, Bool, Entries, EnumType, Form, Int, Json, List, Name, Number, OtherForm, Scalar, Str,
     Type, TypeName, Unit, WireKey,
 };
 use super::kind::{Kind, Table};
+use super::refers::Ref;
 use crate::syntax::Node;
 use crate::vocabulary::{Quirk, StateOrder};
 
@@ -58,7 +61,7 @@ grammar! {
         use COMMON.available;
         /// The entity that its value identifies, or each value of its list; declared under `entities`.
         /// 它的值（列表则为每一项）是哪种实体的 ID；实体在 `entities` 中声明。
-        optional refers: Name, example "station", faults [UnknownEntity, RefersOnWrongType];
+        optional refers: Ref<Entity>, example "station", faults [UnknownEntity, RefersOnWrongType];
         use COMMON.kept, COMMON.name;
         /// Other wire keys that the decoder accepts for it.
         /// 解析时还接受哪些键名。
@@ -68,7 +71,7 @@ grammar! {
         optional wire: OtherForm, faults [WireOnWrongType];
         /// The coordinate system of its positions; declared under `coordinates`.
         /// 其中的位置以哪个坐标系为准；坐标系在 `coordinates` 中声明。
-        optional coordinates: Name,
+        optional coordinates: Ref<CoordinateSystem>,
             example "map",
             faults [UnknownCoordinates, CoordinatesOnWrongType, CoordinatesWithoutLength, CoordinatesTwice];
         use COMMON.since;
@@ -161,7 +164,7 @@ grammar! {
     NAMED_VARIANT: NamedVariant = "variant" "选项" {
         /// Its struct.
         /// 它的结构。
-        required r#type: TypeName, example "Station", faults [UnknownType, RecursiveType, NotAStruct];
+        required r#type: Ref<Struct>, example "Station", faults [UnknownType, RecursiveType, NotAStruct];
         use COMMON.available, TEXT.zh, TEXT.en, FIELD.deprecated;
     }
 
@@ -207,7 +210,7 @@ grammar! {
         optional start: Bool, default "false";
         /// Names of the values that can follow it. The `order` of the enum gives the meaning of the list.
         /// 接在它后面的取值的名称；这个列表的含义由枚举的 `order` 决定。
-        optional then: List<Name, 1>,
+        optional then: List<Ref<EnumValue>, 1>,
             example "[arrived, failed]",
             faults [UnknownValue, OrderWithoutStates, FollowedFinal];
         /// `true` if the process ends here: no value follows.
@@ -231,7 +234,7 @@ grammar! {
         use TEXT.zh, TEXT.en, COMMON.about, COMMON.kept;
         /// Struct of a row.
         /// 一行的结构。
-        required row: TypeName, example "Station", faults [NotAStruct];
+        required row: Ref<Struct>, example "Station", faults [NotAStruct];
         /// Rows, in the form that is sent.
         /// 各行，按发送的形式书写。
         required rows: List<Json>, example "[{ id: 1, name: dock }]", faults [RowMismatch];

@@ -2,12 +2,12 @@
 
 use super::available::Availability;
 use super::common::{Change, Conflict};
+use super::coordinates::{CoordinateSystem, Store};
 use super::entity::Entity;
 use super::field::{Constants, TypeDef};
 use super::form::{ConflictId, Entries, Int, List, Name, ResultNumber, Str, TypeName};
 use super::glossary::Term;
 use super::operation::{Command, Group, Report, Stream};
-use super::place::{CoordinateSystem, Store};
 use super::waiver::Waiver;
 use super::wire::{
     Ack, Calls, Codes, Envelope, Frame, Json, Limits, Protocol, ResultCode, Section, Transport,

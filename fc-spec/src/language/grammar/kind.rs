@@ -42,6 +42,13 @@ pub(crate) enum Kind {
     Unit,
     /// A key of a JSON object or a name of the source, as it is.
     WireKey,
+    /// The name of a thing that the spec declares elsewhere.
+    Ref {
+        /// The form of the name.
+        name: &'static Kind,
+        /// The parts of the language of which the thing may be.
+        kinds: &'static [&'static str],
+    },
     /// One of these words.
     Word(&'static [Meaning]),
     /// A list.
@@ -78,6 +85,34 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    /// Returns the parts of the language of which a thing may be that is named here; `None` if nothing is.
+    pub fn refers(&self) -> Option<&'static [&'static str]> {
+        match self {
+            Self::Ref { kinds, .. } => Some(kinds),
+            Self::Either(kinds) => kinds.iter().find_map(Self::refers),
+            Self::List { of, .. } => of.refers(),
+            _ => None,
+        }
+    }
+
+    /// Returns `true` if a type or the name of one may be here.
+    pub fn is_type(&self) -> bool {
+        match self {
+            Self::Type | Self::TypeName => true,
+            Self::Either(kinds) => kinds.iter().any(Self::is_type),
+            Self::List { of, .. } => of.is_type(),
+            _ => false,
+        }
+    }
+
+    /// Returns the form of a value: of a reference, that of the name.
+    pub fn form(&self) -> &Self {
+        match self {
+            Self::Ref { name, .. } => name,
+            kind => kind,
+        }
+    }
+
     /// Returns `true` if the node has the outer form of this kind: scalar, list or mapping.
     pub fn could_be(&self, node: Node<'_>) -> bool {
         match self {

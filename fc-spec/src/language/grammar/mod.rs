@@ -52,9 +52,11 @@ macro_rules! grammar {
         };
 
         impl $Keys {
+            /// Its name in prose and in the schema.
+            pub const NAME: &'static str = $name;
             /// All of its keys.
             pub const TABLE: &'static $crate::language::grammar::kind::Table = &$crate::language::grammar::kind::Table {
-                name: $name,
+                name: Self::NAME,
                 name_zh: $name_zh,
                 doc: $crate::language::grammar::kind::Doc::new($en, $zh),
                 example: include_str!(concat!("examples/", stringify!($Keys), ".yaml")),
@@ -75,6 +77,7 @@ macro_rules! grammar {
 
 mod available;
 mod common;
+mod coordinates;
 mod entity;
 mod field;
 mod file;
@@ -83,13 +86,14 @@ mod glossary;
 mod key;
 mod kind;
 mod operation;
-mod place;
+mod refers;
 pub(crate) mod unit;
 mod waiver;
 mod wire;
 
 pub(crate) use available::*;
 pub(crate) use common::*;
+pub(crate) use coordinates::*;
 pub(crate) use entity::*;
 pub(crate) use field::*;
 pub(crate) use file::*;
@@ -98,6 +102,6 @@ pub(crate) use glossary::*;
 pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};
 pub(crate) use operation::*;
-pub(crate) use place::*;
+pub(crate) use refers::*;
 pub(crate) use waiver::*;
 pub(crate) use wire::*;

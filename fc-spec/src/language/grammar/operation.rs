@@ -1,12 +1,14 @@
 //! Groups and operations.
 
 use super::common::{BothLanguages, COMMON, Deprecated, TEXT};
+use super::field::Enum;
 use super::form::{
     AnyState, Body, Code, Entries, FactState, Int, KnownEffect, List, MediaType, Name, Number,
-    ResultNumber, Scalar, SourceFact, State, Str, TypeName, Unassigned,
+    Scalar, SourceFact, State, Str, Unassigned,
 };
 use super::key::Key;
-use super::wire::Ack;
+use super::refers::Ref;
+use super::wire::{Ack, ResultCode};
 use crate::model;
 use crate::vocabulary::{Effect, Side};
 
@@ -49,7 +51,7 @@ grammar! {
         optional response_state: (State, BodyState), default STATED.name();
         /// Result codes it may return besides success, each with its meaning for this operation if known.
         /// 除成功以外可能返回的结果码；知道对这个接口的含义时一并写明。
-        optional errors: List<(ResultNumber, DeclaredError)>, example "[2, 3]", faults [UnknownResult, SuccessAsError];
+        optional errors: List<(Ref<ResultCode>, DeclaredError)>, example "[2, 3]", faults [UnknownResult, SuccessAsError];
         /// Deprecated.
         /// 已弃用。
         optional deprecated: Deprecated;
@@ -64,7 +66,7 @@ grammar! {
         required effect: (Effect, InferredEffect);
         /// Reports that the robot sends because of it, according to the source. Each is a name, or a name with the keys that tie the report to the command.
         /// 除响应以外，它会引起哪些主动上报；只列源文档写明的。写名称；上报与指令有字段相对应时，连同字段一起写。
-        optional sets_off: List<(Name, SetOff), 1>,
+        optional sets_off: List<(Ref<Report>, SetOff), 1>,
             example "[task_finished]",
             faults [UnknownOperation, NotAReport, DuplicateItem];
         /// Its preconditions, according to the source.
@@ -86,7 +88,7 @@ grammar! {
     SET_OFF: SetOff = "report set off" "引起的上报" {
         /// Name of the report.
         /// 上报的名称。
-        required report: Name, example "task_finished", faults [UnknownOperation, NotAReport, DuplicateItem];
+        required report: Ref<Report>, example "task_finished", faults [UnknownOperation, NotAReport, DuplicateItem];
         /// Keys of the command, each with the key of the report that has the same value, such as `response.data.taskId: data.taskId`. Both are integers or both strings, of the same type.
         /// 指令的字段与上报中取值相同的字段，例如 `response.data.taskId: data.taskId`。两者同为整数或同为字符串，类型相同。
         required tied: Entries<Str, Str, 1>,
@@ -128,10 +130,10 @@ grammar! {
         required from: Side;
         /// Command that starts it. The stream may share the code of this command: the data type tells their frames apart.
         /// 开始它的指令。数据流可以与这条指令共用功能码，两者的帧靠数据类型区分。
-        optional started_by: Name, example "start_mapping", faults [UnknownOperation, NotACommand];
+        optional started_by: Ref<Command>, example "start_mapping", faults [UnknownOperation, NotACommand];
         /// Command that stops it; it may be the same one.
         /// 停止它的指令，可以就是开始它的那一条。
-        optional stopped_by: Name, example "stop_mapping", faults [UnknownOperation, NotACommand];
+        optional stopped_by: Ref<Command>, example "stop_mapping", faults [UnknownOperation, NotACommand];
         /// Media type of the bytes in a frame, such as `image/png`. For JSON, write `body` instead.
         /// 每帧所装字节的媒体类型，例如 `image/png`；内容是 JSON 时改写 `body`。
         optional content: MediaType, faults [StreamContent];
@@ -167,12 +169,12 @@ grammar! {
     ACCEPTED: Precondition = "precondition" "受理条件" {
         /// `any`, or enums with their accepted values in the form that is sent. Reports or responses must carry each enum.
         /// `any`，或若干枚举及受理时的取值，按发送的形式书写。每个枚举须在上报或响应中出现。
-        optional r#in: (AnyState, Entries<TypeName, List<Scalar, 1>, 1>),
+        optional r#in: (AnyState, Entries<Ref<Enum>, List<Scalar, 1>, 1>),
             example "{ RobotState: [1, 2] }",
             faults [UnknownType, NotAnEnum, UnseenState, StateValue, DuplicateItem];
         /// Commands to be sent first.
         /// 须先发送的指令。
-        optional after: List<Name, 1>,
+        optional after: List<Ref<Command>, 1>,
             example "[start_mapping]",
             faults [UnknownOperation, NotACommand, ComesBeforeItself];
         /// Additional notes.
@@ -222,7 +224,7 @@ grammar! {
     ERROR: DeclaredError = "error" "错误" {
         /// The result code.
         /// 结果码。
-        required code: ResultNumber, example "2", faults [UnknownResult, SuccessAsError, DuplicateItem];
+        required code: Ref<ResultCode>, example "2", faults [UnknownResult, SuccessAsError, DuplicateItem];
         use TEXT.zh, TEXT.en;
     }
 

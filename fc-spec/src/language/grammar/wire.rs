@@ -5,6 +5,8 @@ use super::form::{
     Code, Entries, Form, HeaderWidth, Int, List, Name, Never, Scalar, Str, Type, WireKey,
 };
 use super::kind::{AnyKey, Doc, Kind, Said, Table};
+use super::operation::Group;
+use super::refers::Ref;
 use crate::syntax::Node;
 use crate::vocabulary::{
     ByteOrder, DigestAlgorithm, EncodingRole, EnvelopeRole, HeaderQuirk, HeaderRole, JsonRule,
@@ -269,7 +271,7 @@ grammar! {
         required r#use: RangeUse;
         /// IDs of the groups whose new operations get their codes here. A group that no range names gets codes from the ranges without `groups`.
         /// 哪些分组的新接口从这里取功能码，写分组的 ID。没有号段指明的分组从不写 `groups` 的号段取。
-        optional groups: List<Name, 1>, example "[status]", faults [UnknownGroup];
+        optional groups: List<Ref<Group>, 1>, example "[status]", faults [UnknownGroup];
         use TEXT.zh, TEXT.en, COMMON.answers;
     }
 

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
 use crate::language::scalar::small_int;
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
 use crate::names::is_conflict_id;
 use crate::source::Span;
@@ -14,16 +14,19 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// What is lost is inferred or open, never stated.
 pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
-        for node in SOURCE.lost.items(OPERATION.source.of(operation.place.node)) {
+        for node in SOURCE
+            .lost
+            .items(OPERATION.source.of(operation.origin.node))
+        {
             let item = &operation.item;
-            let place = operation.place;
+            let origin = operation.origin;
             let Some(what) = node.as_str().and_then(Fact::named) else {
                 continue;
             };
             let (state, stated_at, remedy) = match what {
                 Fact::Code => (
                     item.code.state,
-                    place.key_at(OPERATION.code),
+                    origin.key_at(OPERATION.code),
                     text!(
                         "改写为 `unassigned`，或 `{{ value: …, state: inferred }}`",
                         "write `unassigned`, or `{{ value: …, state: inferred }}`"
@@ -32,8 +35,8 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 Fact::Request if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Request),
                     match item.kind() {
-                        Kind::Report => place.key_at(REPORT.body),
-                        _ => place.key_at(COMMAND.request),
+                        Kind::Report => origin.key_at(REPORT.body),
+                        _ => origin.key_at(COMMAND.request),
                     },
                     text!(
                         "改写为 `request_state: inferred` 或 `open`",
@@ -42,7 +45,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
                 Fact::Response if item.kind() != Kind::Stream => (
                     item.body_state(Direction::Response),
-                    place.key_at(COMMAND.response),
+                    origin.key_at(COMMAND.response),
                     text!(
                         "改写为 `response_state: inferred` 或 `open`",
                         "write `response_state: inferred` or `open`"
@@ -54,7 +57,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
             let is_said = [OPERATION.request_state.name, OPERATION.response_state.name];
             let is_said = is_said
                 .iter()
-                .any(|key| key.starts_with(what.name()) && place.node.entry(key).is_some());
+                .any(|key| key.starts_with(what.name()) && origin.node.entry(key).is_some());
             if state == BodyState::Stated && !is_said {
                 let what = what.name();
                 let message = text!(
@@ -98,7 +101,7 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(
             Diagnostic::error(
                 FaultCode::UnknownConflict,
-                first.place.at(ANSWER.ids),
+                first.origin.at(ANSWER.ids),
                 message,
             )
             .label(text!("这是第一条", "this is the first"))
@@ -110,7 +113,7 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
         return;
     }
     for answer in &draft.answers {
-        for node in ANSWER.ids.items(answer.place.node) {
+        for node in ANSWER.ids.items(answer.origin.node) {
             let id = node.as_str().unwrap_or_default();
             if known.contains(id) || !is_conflict_id(id) {
                 continue;
@@ -140,7 +143,7 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
         if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
             let message = text!("{id} 没有答复", "{id} has no answer", id = conflict.item.id);
             faults.push(
-                Diagnostic::error(FaultCode::UnansweredConflict, conflict.place.name(), message)
+                Diagnostic::error(FaultCode::UnansweredConflict, conflict.origin.name(), message)
                     .note(text!("在相关内容的 `answers:` 下答复；还没有答案时写 `as: question`", "answer it under `answers:` where it belongs; write `as: question` if there is no answer yet")),
             );
         }
@@ -150,8 +153,8 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
 /// Every section of the source, up to the last one known, belongs to an operation or is known to be lost.
 pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     // Sections that an operation does not say, or not rightly, are not missing.
-    let says_sections = |operation: &Placed<'_, Operation>| {
-        let source = OPERATION.source.of(operation.place.node);
+    let says_sections = |operation: &Sourced<'_, Operation>| {
+        let source = OPERATION.source.of(operation.origin.node);
         SOURCE.sections.of(source).is_some_and(|sections| {
             let mut items = sections.items();
             sections.as_sequence().is_some() && items.all(|item| small_int::<u16>(item).is_some())
@@ -164,7 +167,7 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
         for node in SOURCE
             .sections
-            .items(OPERATION.source.of(operation.place.node))
+            .items(OPERATION.source.of(operation.origin.node))
         {
             if let Some(section) = small_int(node) {
                 claimed.entry(section).or_insert(node.span());
@@ -174,7 +177,7 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
     let missing: HashMap<u16, Span> = draft
         .sections
         .iter()
-        .map(|section| (section.item.section, section.place.name()))
+        .map(|section| (section.item.section, section.origin.name()))
         .collect();
     for section in &draft.sections {
         let number = section.item.section;
@@ -184,8 +187,12 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
                 "section {number} is listed as missing, but an operation names it as its source"
             );
             faults.push(
-                Diagnostic::error(FaultCode::MissingSectionUsed, section.place.name(), message)
-                    .also(*claim, text!("写作出处", "named as a source")),
+                Diagnostic::error(
+                    FaultCode::MissingSectionUsed,
+                    section.origin.name(),
+                    message,
+                )
+                .also(*claim, text!("写作出处", "named as a source")),
             );
         }
     }

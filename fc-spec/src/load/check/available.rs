@@ -1,9 +1,9 @@
 //! For whom things are: words that are declared, and limits that leave every audience a whole protocol.
 
-use super::each::fields;
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{AVAILABILITY, AVAILABLE, COMMON, FIELD};
-use crate::load::draft::{Draft, Placed};
+use super::iter::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{AVAILABLE, COMMON, FIELD};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::names;
 use crate::source::Span;
@@ -24,7 +24,7 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
     let operations = draft.operations.iter().filter_map(|operation| {
         Some(Limit {
             available: operation.item.available.as_ref()?,
-            node: COMMON.available.of(operation.place.node)?,
+            node: COMMON.available.of(operation.origin.node)?,
             within: None,
         })
     });
@@ -51,7 +51,7 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
             .filter_map(move |(available, part)| {
                 Some(Limit {
                     available: available?,
-                    node: COMMON.available.of(part.place.node)?,
+                    node: COMMON.available.of(part.origin.node)?,
                     within,
                 })
             })
@@ -62,139 +62,14 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
 /// What a limit names, of one kind: the name and its place.
 type Named<'a> = Vec<(&'a str, Span)>;
 
-/// Words of one kind.
-struct Words<'d, 'a> {
-    /// What one is called.
-    kind: Text,
-    /// The key under which they are declared.
-    section: &'static str,
-    declared: &'d [Placed<'a, Declared>],
-    /// What a limit names of them.
-    named: fn(Node<'a>) -> Named<'a>,
-}
-
-/// The three kinds of words.
-fn words<'d, 'a>(draft: &'d Draft<'a>) -> [Words<'d, 'a>; 3] {
-    let words = &draft.availability;
-    let audiences = Words {
-        kind: text!("受众", "audience"),
-        section: AVAILABILITY.audiences.name,
-        declared: &words.audiences,
-        named: |node| named(AVAILABLE.r#for.items(node)),
-    };
-    let hardware = Words {
-        kind: text!("机型", "line of machines"),
-        section: AVAILABILITY.hardware.name,
-        declared: &words.hardware,
-        named: |node| named(AVAILABLE.hardware.items(node)),
-    };
-    let releases = Words {
-        kind: text!("版本系列", "series of releases"),
-        section: AVAILABILITY.releases.name,
-        declared: &words.releases,
-        named: |node| {
-            let (from, until) = (AVAILABLE.from.get(node), AVAILABLE.until.get(node));
-            named(from.chain(until).map(|entry| entry.key))
-        },
-    };
-    [audiences, hardware, releases]
-}
-
 /// What is no name has been reported.
 fn named<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Named<'a> {
     let names = nodes.filter_map(|node| Some((node.as_str()?, node.span())));
     names.filter(|(name, _)| names::is_snake(name)).collect()
 }
 
-fn names_of<'d>(declared: &'d [Placed<'_, Declared>]) -> HashSet<&'d str> {
+fn names_of<'d>(declared: &'d [Sourced<'_, Declared>]) -> HashSet<&'d str> {
     declared.iter().map(|it| it.item.name.as_str()).collect()
-}
-
-/// What a limit names is declared.
-pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
-    if draft.availability.is_broken {
-        return;
-    }
-    for Words {
-        kind,
-        section,
-        declared,
-        named,
-    } in words(draft)
-    {
-        let known = names_of(declared);
-        for limit in limits(draft) {
-            for (name, span) in named(limit.node) {
-                if known.contains(name) {
-                    continue;
-                }
-                let message = text!(
-                    "没有名为 `{name}` 的{kind}",
-                    "there is no {kind} `{name}`",
-                    kind = kind
-                );
-                let fault = Diagnostic::error(FaultCode::UnknownAvailability, span, message);
-                faults.push(match nearest(name, known.iter().copied()) {
-                    Some(near) => fault.fix(
-                        span,
-                        near,
-                        text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                    ),
-                    None => fault.note(text!(
-                        "在 `availability: {{ {section} }}` 下声明",
-                        "declare it under `availability: {{ {section} }}`"
-                    )),
-                });
-            }
-        }
-    }
-}
-
-/// Every word has a limit that names it. Of audiences one may go without: it is the one that others' things are kept
-/// from. What a slip stands for is not reported a second time.
-pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
-    for Words {
-        kind,
-        section,
-        declared,
-        named,
-    } in words(draft)
-    {
-        let known = names_of(declared);
-        let limits = limits(draft).flat_map(|limit| named(limit.node));
-        let mut used: HashSet<&str> = limits.map(|(name, _)| name).collect();
-        let slips: Vec<&str> = used.difference(&known).copied().collect();
-        for slip in slips {
-            used.extend(nearest(slip, known.iter().copied()));
-        }
-        let is_unused = |it: &&Placed<'_, Declared>| !used.contains(it.item.name.as_str());
-        let mut unused: Vec<_> = declared.iter().filter(is_unused).collect();
-        let is_audiences = section == AVAILABILITY.audiences.name;
-        if is_audiences && unused.len() == 1 && declared.len() > 1 {
-            unused.clear();
-        }
-        for word in unused {
-            let message = text!(
-                "没有 `available` 用到{kind} `{name}`",
-                "no `available` names the {kind} `{name}`",
-                name = word.item.name,
-                kind = kind
-            );
-            let span = word.place.name();
-            let fault = Diagnostic::error(FaultCode::UnusedAvailability, span, message);
-            faults.push(if is_audiences {
-                fault.note(text!(
-                    "在只面向它的内容上写 `available: {{ for: … }}`，或将它删除",
-                    "write `available: {{ for: … }}` on the things that only it has, or delete it"
-                ))
-            } else {
-                fault.note(text!(
-                    "在某个 `available` 中用到它，或将它删除",
-                    "name it in an `available`, or delete it"
-                ))
-            });
-        }
-    }
 }
 
 /// A limit limits something.
@@ -242,7 +117,7 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
             "`{field}` has `available`, but is required",
             field = field.wire
         );
-        let span = part.place.key_at(COMMON.available);
+        let span = part.origin.key_at(COMMON.available);
         let fault = Diagnostic::error(FaultCode::LimitedButRequired, span, message);
         faults.push(
             fault
@@ -274,7 +149,7 @@ pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
                 operation = operation.item.name
             );
             let fault = Diagnostic::error(FaultCode::LimitBeyondOperation, span, message);
-            let span = operation.place.key_at(COMMON.available);
+            let span = operation.origin.key_at(COMMON.available);
             faults.push(fault.also(span, text!("接口自身的限制", "the operation's own limit")));
         }
     }
@@ -296,7 +171,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(FaultCode::NothingLeft, span, message));
         };
         for ty in &draft.types {
-            let span = ty.place.name();
+            let span = ty.origin.name();
             let body = ty.def.body_of.as_ref();
             let mut operations = draft.operations.iter();
             let within = body.and_then(|body| operations.find(|it| it.item.name == body.operation));
@@ -340,7 +215,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             let is_for = has(details.available.as_ref(), name);
             if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
                 report(
-                    part.place.at(FIELD.only),
+                    part.origin.at(FIELD.only),
                     text!("这个字段可取的值", "value that this field takes"),
                 );
             }

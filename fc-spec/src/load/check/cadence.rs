@@ -11,7 +11,7 @@ use std::collections::HashSet;
 /// Each report that says when it is sent, and where it does.
 fn cadences<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d Operation, Node<'a>)> {
     draft.operations.iter().filter_map(|operation| {
-        let node = REPORT.cadence.of(operation.place.node)?;
+        let node = REPORT.cadence.of(operation.origin.node)?;
         let is_report = operation.item.kind() == Kind::Report;
         (is_report && node.as_mapping().is_some()).then_some((&operation.item, node))
     })

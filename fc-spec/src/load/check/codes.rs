@@ -1,8 +1,8 @@
 //! Codes of operations and their ranges.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{CODE, OPERATION, RANGE, RETIRED, SOURCE};
-use crate::load::draft::{Draft, Placed};
+use crate::language::grammar::{CODE, Group, Named, OPERATION, RANGE, RETIRED, SOURCE};
+use crate::load::draft::{Draft, Sourced};
 use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
 use crate::source::Span;
 use crate::syntax::Node;
@@ -12,14 +12,14 @@ use std::collections::HashMap;
 /// Ranges count upwards and do not overlap. `false` if they are not like that.
 pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     let before = faults.errors();
-    let mut reached: Option<&Placed<'_, CodeRange>> = None;
+    let mut reached: Option<&Sourced<'_, CodeRange>> = None;
     for range in &draft.ranges {
         let item = &range.item;
         if item.first > item.last {
             faults.push(
                 Diagnostic::error(
                     FaultCode::RangeInverted,
-                    range.place.at(RANGE.to),
+                    range.origin.at(RANGE.to),
                     text!(
                         "号段的终点 {last} 早于起点",
                         "the range ends at {last}, before it starts",
@@ -27,7 +27,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                     ),
                 )
                 .also(
-                    range.place.at(RANGE.from),
+                    range.origin.at(RANGE.from),
                     text!("起点在这里", "it starts here"),
                 ),
             );
@@ -46,11 +46,11 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
             faults.push(
                 Diagnostic::error(
                     FaultCode::RangesOverlap,
-                    range.place.at(RANGE.from),
+                    range.origin.at(RANGE.from),
                     message,
                 )
                 .also(
-                    earlier.place.at(RANGE.to),
+                    earlier.origin.at(RANGE.to),
                     text!("另一个号段到这里为止", "the other range ends here"),
                 ),
             );
@@ -66,7 +66,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
 pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<u16, Span> = HashMap::new();
     for retired in &draft.retired {
-        let span = retired.place.at(RETIRED.code);
+        let span = retired.origin.at(RETIRED.code);
         if let Some(earlier) = first.insert(retired.item.code, span) {
             let message = text!(
                 "{code} 退役了两次",
@@ -86,10 +86,10 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
     let retired: HashMap<u16, Span> = draft
         .retired
         .iter()
-        .map(|retired| (retired.item.code, retired.place.at(RETIRED.code)))
+        .map(|retired| (retired.item.code, retired.origin.at(RETIRED.code)))
         .collect();
     // At most a command and its stream.
-    let mut first: HashMap<u16, Vec<&Placed<'_, Operation>>> = HashMap::new();
+    let mut first: HashMap<u16, Vec<&Sourced<'_, Operation>>> = HashMap::new();
     for operation in &draft.operations {
         let Some(code) = operation.item.code.value else {
             continue;
@@ -152,7 +152,7 @@ fn belong_together(one: &Operation, other: &Operation) -> bool {
 }
 
 /// Every code lies in a range whose purpose suits it.
-pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
+pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if !draft.codes_known {
         return;
     }
@@ -185,7 +185,7 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         // Without sound `sections` nobody knows whether it is new.
-        let source = OPERATION.source.of(operation.place.node);
+        let source = OPERATION.source.of(operation.origin.node);
         let sections = SOURCE.sections.of(source).and_then(Node::as_sequence);
         let is_new = operation.item.sections.is_empty() && sections.is_some();
         if let Some(reason) = objection(&operation.item, range.item.usage, is_new) {
@@ -199,7 +199,7 @@ pub(super) fn check_places(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
             )
             .also(
-                range.place.at(RANGE.r#use),
+                range.origin.at(RANGE.r#use),
                 text!("号段的用途", "the purpose of the range"),
             );
             let next = next(draft, &operation.item);
@@ -239,17 +239,13 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
         .iter()
         .map(|group| group.item.id.as_str())
         .collect();
-    for range in &draft.ranges {
-        for node in RANGE.groups.items(range.place.node) {
-            let Some(id) = node.as_str().filter(|id| !known.contains(id)) else {
-                continue;
-            };
+    for (occurrence, id) in draft.references_to(Group::KINDS) {
+        if !known.contains(&id) {
+            let span = occurrence.node.span();
             let message = text!("没有分组 `{id}`", "there is no group `{id}`");
-            let fault = Diagnostic::error(FaultCode::UnknownGroup, node.span(), message);
+            let fault = Diagnostic::error(FaultCode::UnknownGroup, span, message);
             faults.push(match nearest(id, known.iter().copied()) {
-                Some(near) => {
-                    fault.fix(node.span(), near, text!("改为 `{near}`", "write `{near}`"))
-                }
+                Some(near) => fault.fix(span, near, text!("改为 `{near}`", "write `{near}`")),
                 None => fault,
             });
         }
@@ -282,8 +278,8 @@ fn objection(operation: &Operation, usage: RangeUse, is_new: bool) -> Option<Tex
     }
 }
 
-fn code_span(operation: &Placed<'_, Operation>) -> Span {
-    let node = OPERATION.code.of(operation.place.node);
+fn code_span(operation: &Sourced<'_, Operation>) -> Span {
+    let node = OPERATION.code.of(operation.origin.node);
     let node = CODE.value.of(node).or(node);
-    node.map_or(operation.place.name(), Node::span)
+    node.map_or(operation.origin.name(), Node::span)
 }

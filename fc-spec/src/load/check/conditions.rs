@@ -1,7 +1,8 @@
 //! Fields that are there, or valid, only under certain values of the fields beside them.
 
-use super::each::fields;
-use super::value::{Mismatch, check_field};
+use super::iter::fields;
+use super::value::check_field;
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::FIELD;
 use crate::language::scalar;
@@ -16,7 +17,7 @@ pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
         if field.details().condition.is_none() {
             continue;
         }
-        let node = part.place.node;
+        let node = part.origin.node;
         if let (Some(when), Some(unless)) = (FIELD.when.entry(node), FIELD.unless.entry(node)) {
             let message = text!(
                 "`{field}` 同时有 `when` 和 `unless`",
@@ -44,17 +45,11 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
             );
             let unknown = fault(FaultCode::UnknownSibling, message);
             let others = question.beside.iter().map(|field| field.wire.as_str());
-            faults.push(match nearest(key, others) {
-                Some(near) => unknown.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => unknown.note(text!(
-                    "写同一个对象中的字段；公共字段不能用",
-                    "name a field of the same object; keys of the envelope cannot be used"
-                )),
-            });
+            let note = text!(
+                "写同一个对象中的字段；公共字段不能用",
+                "name a field of the same object; keys of the envelope cannot be used"
+            );
+            faults.push(unknown.suggest(nearest(key, others), Some(note)));
             continue;
         };
         if asked.wire == own.wire {
@@ -91,34 +86,26 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         if asked.wire == question.own.wire || !has_single_values(draft, &asked.ty) {
             continue;
         }
-        let mut earlier: Vec<Node<'_>> = Vec::new();
-        for node in scalar::each_value(question.entry.value) {
-            let mut found = Vec::new();
-            check_field(draft, asked, node, &mut found);
-            faults.extend(found.into_iter().map(|mismatch| {
-                let code = FaultCode::ConditionValue;
-                let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(
-                    part.ty,
-                    text!(
-                        "作为条件的字段的类型",
-                        "the type of the field in the condition"
-                    ),
-                )
-            }));
-            let wire = scalar::scalar(node);
-            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-                Some(first) => {
-                    let message = text!(
-                        "这个值在条件中出现两次",
-                        "this value occurs twice in the condition"
-                    );
-                    let fault = Diagnostic::error(FaultCode::ConditionTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-                }
-                None => earlier.push(node),
-            }
-        }
+        let list = ValueList {
+            wrong: FaultCode::ConditionValue,
+            ty: Some((
+                part.ty,
+                text!(
+                    "作为条件的字段的类型",
+                    "the type of the field in the condition"
+                ),
+            )),
+            repeated: FaultCode::ConditionTwice,
+            message: text!(
+                "这个值在条件中出现两次",
+                "this value occurs twice in the condition"
+            ),
+        };
+        list.check(
+            scalar::each_value(question.entry.value),
+            |node, found| check_field(draft, asked, node, found),
+            faults,
+        );
     }
 }
 
@@ -144,7 +131,7 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
         if own.details().condition.is_none() {
             continue;
         }
-        let node = part.place.node;
+        let node = part.origin.node;
         for condition in [FIELD.when, FIELD.unless] {
             for entry in condition.of(node).into_iter().flat_map(Node::entries) {
                 let mut beside = shape.fields.iter().zip(ty.parts.iter().copied());

@@ -1,14 +1,13 @@
 //! Entities, and the fields that refer to them.
 
-use super::each::fields;
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use super::iter::fields;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::FIELD;
 use crate::load::draft::Draft;
-use crate::model::{Type, TypeShape};
-use crate::names;
+use crate::model::Type;
 use crate::source::Span;
 use crate::text;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// `refers` stands on what can be an id: integers, strings and lists of them.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
@@ -27,7 +26,7 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
             refers = FIELD.refers.name,
             field = field.wire
         );
-        let span = part.place.at(FIELD.refers);
+        let span = part.origin.at(FIELD.refers);
         let fault = Diagnostic::error(FaultCode::RefersOnWrongType, span, message);
         faults.push(fault.also(part.ty, text!("类型", "the type")));
     }
@@ -52,70 +51,6 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(fault.also(span, text!("首次出现在这里", "first used here")));
         }
     }
-}
-
-/// What a field refers to is declared.
-pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
-    let declared = declared(draft);
-    for (_, field, part) in fields(draft) {
-        let refers = field.details().refers.as_deref();
-        // What is no name has been reported.
-        let name = refers.filter(|name| names::is_snake(name));
-        let Some(name) = name.filter(|name| !declared.contains(name)) else {
-            continue;
-        };
-        let span = part.place.at(FIELD.refers);
-        let message = text!("没有实体 `{name}`", "there is no entity `{name}`");
-        let fault = Diagnostic::error(FaultCode::UnknownEntity, span, message);
-        faults.push(match nearest(name, declared.iter().copied()) {
-            Some(near) => fault.fix(
-                span,
-                near,
-                text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-            ),
-            None => fault.note(text!(
-                "在 `entities:` 下声明",
-                "declare it under `entities:`"
-            )),
-        });
-    }
-}
-
-/// Every entity has a field that refers to it. The entity that a slip stands for is not reported a second time.
-pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
-    let declared = declared(draft);
-    let mut used: HashSet<&str> = HashSet::new();
-    for ty in &draft.types {
-        if let TypeShape::Struct(shape) = &ty.def.shape {
-            let fields = shape.fields.iter();
-            used.extend(fields.filter_map(|field| field.details().refers.as_deref()));
-        }
-    }
-    let slips: Vec<&str> = used.difference(&declared).copied().collect();
-    for slip in slips {
-        used.extend(nearest(slip, declared.iter().copied()));
-    }
-    for entity in &draft.entities {
-        let name = entity.item.name.as_str();
-        if !used.contains(name) {
-            let message = text!(
-                "没有字段指向实体 `{name}`",
-                "no field refers to the entity `{name}`"
-            );
-            let span = entity.place.name();
-            let fault = Diagnostic::error(FaultCode::UnusedEntity, span, message);
-            faults.push(fault.note(text!(
-                "在存放它的 ID 的字段上写 `refers`，或将它删除",
-                "write `refers` on a field that holds its IDs, or delete it"
-            )));
-        }
-    }
-}
-
-/// Names of the entities.
-fn declared<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
-    let entities = draft.entities.iter();
-    entities.map(|entity| entity.item.name.as_str()).collect()
 }
 
 fn is_id(ty: &Type) -> bool {

@@ -14,7 +14,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         match &ty.def.shape {
             TypeShape::Enum(shape) => {
                 if shape.values.is_empty() {
-                    let span = ty.place.at(ENUM.values);
+                    let span = ty.origin.at(ENUM.values);
                     let message = text!(
                         "`{name}` 没有取值",
                         "`{name}` has no values",
@@ -33,10 +33,10 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                                 "this is not a value of {kind}",
                                 kind = kind.name()
                             );
-                            let span = part.place.name();
+                            let span = part.origin.name();
                             faults.push(
                                 Diagnostic::error(FaultCode::EnumValueType, span, message).also(
-                                    ty.place.at(ENUM.r#enum),
+                                    ty.origin.at(ENUM.r#enum),
                                     text!("发送时的类型", "the type that is sent"),
                                 ),
                             );
@@ -45,7 +45,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                 }
             }
             TypeShape::OneOf(choice) if choice.variants.len() < 2 => {
-                let span = ty.place.at(CHOICE.one_of);
+                let span = ty.origin.at(CHOICE.one_of);
                 let message = text!(
                     "多选一至少要有两个选项",
                     "a choice needs at least two variants"
@@ -64,12 +64,13 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
             TypeShape::Enum(shape) => {
                 let parts = shape.values.iter().zip(&ty.parts);
                 let names = parts
-                    .map(|(value, part)| (value.name.as_str(), part.place.at(ENUM_VALUE.name)));
+                    .map(|(value, part)| (value.name.as_str(), part.origin.at(ENUM_VALUE.name)));
                 check_distinct(&text!("枚举值", "values of the enum"), names, faults);
             }
             TypeShape::OneOf(choice) => {
                 let parts = choice.variants.iter().zip(&ty.parts);
-                let names = parts.map(|(variant, part)| (variant.name.as_str(), part.place.name()));
+                let names =
+                    parts.map(|(variant, part)| (variant.name.as_str(), part.origin.name()));
                 check_distinct(&text!("选项", "variants of the choice"), names, faults);
             }
             TypeShape::Struct(_) => {}
@@ -89,7 +90,7 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
             let Some(required) = draft.type_named(variant.ty.name()).and_then(required_keys) else {
                 continue;
             };
-            let span = part.place.name();
+            let span = part.origin.name();
             let hiding = earlier
                 .iter()
                 .find(|(_, keys, _)| keys.is_subset(&required));

@@ -22,7 +22,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     ] {
         let used = fields
             .iter()
-            .map(|field| (field.item.role, field.place.at(ENVELOPE_FIELD.role)))
+            .map(|field| (field.item.role, field.origin.at(ENVELOPE_FIELD.role)))
             .collect::<Vec<_>>();
         let has_text = (used.iter()).any(|(role, _)| *role == EnvelopeRole::ResultText);
         let is_response = key.name == ENVELOPE.response.name;
@@ -30,7 +30,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
         check_each_once(
             needed,
             &used,
-            envelope.place.key_at(key),
+            envelope.origin.key_at(key),
             &text!("公共字段的键", "envelope key"),
             faults,
         );
@@ -39,7 +39,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
         if field.item.role != EnvelopeRole::Time {
             faults.push(Diagnostic::error(
                 FaultCode::ResultInRequest,
-                field.place.at(ENVELOPE_FIELD.role),
+                field.origin.at(ENVELOPE_FIELD.role),
                 text!("请求不带结果", "a request carries no result"),
             ));
         }
@@ -59,11 +59,11 @@ pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
             "请求不带时间，无法判断是否过期",
             "requests carry no time, so their age is unknown"
         );
-        let span = calls.place.at(CALLS.max_age_ms);
+        let span = calls.origin.at(CALLS.max_age_ms);
         faults.push(
             Diagnostic::error(FaultCode::AgeWithoutTime, span, message)
                 .also(
-                    envelope.place.key_at(ENVELOPE.request),
+                    envelope.origin.key_at(ENVELOPE.request),
                     text!("请求的公共字段", "their envelope"),
                 )
                 .fix(span, "never", text!("改写为 `never`", "write `never`")),
@@ -79,7 +79,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     for fields in [&envelope.request, &envelope.response] {
         let mut first = HashMap::new();
         for field in fields {
-            let (item, place) = (&field.item, field.place);
+            let (item, origin) = (&field.item, field.origin);
             if !envelope_type_fits(item.role, &item.ty) {
                 let expected = match item.role {
                     EnvelopeRole::Time => text!("timestamp_ms", "timestamp_ms"),
@@ -94,18 +94,18 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 faults.push(
                     Diagnostic::error(
                         FaultCode::EnvelopeType,
-                        place.at(ENVELOPE_FIELD.r#type),
+                        origin.at(ENVELOPE_FIELD.r#type),
                         message,
                     )
-                    .also(place.at(ENVELOPE_FIELD.role), text!("角色", "the role")),
+                    .also(origin.at(ENVELOPE_FIELD.role), text!("角色", "the role")),
                 );
-            } else if let Some(node) = ENVELOPE_FIELD.example.of(place.node) {
+            } else if let Some(node) = ENVELOPE_FIELD.example.of(origin.node) {
                 value::check_plain(draft, &item.ty, node, faults);
             }
-            faults.extend(super::names::hidden(&item.wire, place.name()));
-            let span = place.at(COMMON.name);
+            faults.extend(super::names::hidden(&item.wire, origin.name()));
+            let span = origin.at(COMMON.name);
             if !names::is_snake(&item.name) {
-                faults.push(super::names::unusable(&item.wire, place.name()));
+                faults.push(super::names::unusable(&item.wire, origin.name()));
             } else if let Some(earlier) = first.insert(item.name.as_str(), span) {
                 let message = text!(
                     "有两个公共字段的键在代码中都叫 `{name}`",

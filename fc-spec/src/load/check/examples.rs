@@ -1,7 +1,7 @@
 //! Examples of fields and rows of tables.
 
-use super::each::fields;
 use super::fields::is_absent_required;
+use super::iter::fields;
 use super::value::{Mismatch, check_field, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TABLE};
@@ -17,7 +17,7 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(
                     FaultCode::AbsentRequired,
-                    part.place.at(FIELD.example),
+                    part.origin.at(FIELD.example),
                     text!(
                         "`{field}` 是必填，示例不能省略它",
                         "`{field}` is required, so an example cannot leave it out",
@@ -39,7 +39,7 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(
                     FaultCode::MissingExample,
-                    part.place.name(),
+                    part.origin.name(),
                     text!(
                         "`{field}` 没有示例",
                         "`{field}` has no example",
@@ -58,7 +58,8 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
 /// Examples are values of their type and keep within its bounds.
 pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        if let (Example::Given(_), Some(node)) = (&field.example, FIELD.example.of(part.place.node))
+        if let (Example::Given(_), Some(node)) =
+            (&field.example, FIELD.example.of(part.origin.node))
         {
             let mut found = Vec::new();
             check_field(draft, field, node, &mut found);
@@ -71,11 +72,11 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_rows(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let row = Type::Named(TypeRef::clone(&table.item.row));
-        for node in TABLE.rows.items(table.place.node) {
+        for node in TABLE.rows.items(table.origin.node) {
             let mut found = Vec::new();
             check_type(draft, &row, node, &mut found);
             for mismatch in found {
-                let at = table.place.at(TABLE.row);
+                let at = table.origin.at(TABLE.row);
                 let mismatch = Mismatch {
                     code: FaultCode::RowMismatch,
                     ..mismatch

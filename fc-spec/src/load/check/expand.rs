@@ -1,6 +1,6 @@
 //! Types are written out in place, in examples, documentation and dumps: that must come to an end.
 
-use super::reach::each_name;
+use super::unused_types::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::{Text, TypeShape};
@@ -97,7 +97,7 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
     let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
     Some(
         fault
-            .also(first.place.name(), text!("在这里声明", "declared here"))
+            .also(first.origin.name(), text!("在这里声明", "declared here"))
             .note(text!(
                 "层数不定的值改用 `json`",
                 "use `json` for values of arbitrary depth"
@@ -121,7 +121,7 @@ fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
         TypeShape::Enum(_) => None,
     };
     let part = at.and_then(|at| ty.parts.get(at));
-    part.map_or(ty.place.name(), |part| part.ty)
+    part.map_or(ty.origin.name(), |part| part.ty)
 }
 
 /// A body has a limited size. Types do not hold themselves. `false` for a larger body.
@@ -155,7 +155,7 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
         };
         faults.push(Diagnostic::error(
             FaultCode::BodyTooLarge,
-            ty.place.name(),
+            ty.origin.name(),
             message,
         ));
     }
@@ -187,8 +187,8 @@ fn measure(draft: &Draft<'_>, root: usize, sizes: &mut [Option<(u64, usize)>]) {
             .fold((own, 1), |(fields, depth), (more, deep)| {
                 (fields.saturating_add(more), depth.max(deep + 1))
             });
-        if let Some(place) = sizes.get_mut(index) {
-            *place = Some(size);
+        if let Some(origin) = sizes.get_mut(index) {
+            *origin = Some(size);
         }
         open.pop();
     }

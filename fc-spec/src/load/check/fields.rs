@@ -1,7 +1,8 @@
 //! What a field says about itself.
 
-use super::each::{fields, typed_fields};
+use super::iter::{fields, typed_fields};
 use super::value::{Mismatch, check_constraints, check_type};
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TEXT};
 use crate::language::scalar;
@@ -12,7 +13,6 @@ use crate::model::{
     TypeShape, Value, WireForm,
 };
 use crate::source::Span;
-use crate::syntax::Node;
 use crate::text;
 
 /// A field in the short form has a named type, whose title describes it.
@@ -35,12 +35,12 @@ pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
 /// An object in place is described, unless it is the usual `data`.
 pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
-        let node = part.place.node;
+        let node = part.origin.node;
         let is_inline = node.as_mapping().is_some() && FIELD.r#type.of(node).is_none();
         if !is_inline {
             continue;
         }
-        let span = part.place.name();
+        let span = part.origin.name();
         let [has_zh, has_en] = [TEXT.zh, TEXT.en].map(|key| key.of(node).is_some());
         if field.wire == USUAL_OBJECT && !has_zh && !has_en {
             continue;
@@ -80,7 +80,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
             let Some(bound) = bound else {
                 continue;
             };
-            let span = part.place.at(key);
+            let span = part.origin.at(key);
             match field.ty {
                 Type::Int(kind) => {
                     let (least, most) = kind.range();
@@ -114,10 +114,10 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(
                 Diagnostic::error(
                     FaultCode::MinAboveMax,
-                    part.place.at(FIELD.min),
+                    part.origin.at(FIELD.min),
                     text!("`min` 大于 `max`", "`min` is larger than `max`"),
                 )
-                .also(part.place.at(FIELD.max), text!("最大值", "the largest")),
+                .also(part.origin.at(FIELD.max), text!("最大值", "the largest")),
             );
         }
     }
@@ -146,7 +146,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
         let Some((least, most)) = field.details().length else {
             continue;
         };
-        let span = part.place.at(FIELD.length);
+        let span = part.origin.at(FIELD.length);
         if !matches!(field.ty, Type::String | Type::Base64 | Type::Array(_)) {
             let expected = &text!("字符串、base64 或列表", "a string, base64 or list");
             let spans = (span, part.ty);
@@ -181,10 +181,10 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
 /// `pattern` stands on strings and is a regular expression.
 pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
-        let Some(pattern) = FIELD.pattern.read(part.place.node) else {
+        let Some(pattern) = FIELD.pattern.read(part.origin.node) else {
             continue;
         };
-        let span = part.place.at(FIELD.pattern);
+        let span = part.origin.at(FIELD.pattern);
         if field.ty != Type::String {
             let spans = (span, part.ty);
             faults.push(wrong_type(
@@ -218,7 +218,7 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         if !is_enum(draft, &field.ty) {
-            let spans = (part.place.at(FIELD.only), part.ty);
+            let spans = (part.origin.at(FIELD.only), part.ty);
             faults.push(wrong_type(
                 FaultCode::OnlyOnWrongType,
                 FIELD.only.name,
@@ -228,25 +228,17 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             ));
             continue;
         }
-        let mut earlier: Vec<Node<'_>> = Vec::new();
-        for node in FIELD.only.items(part.place.node) {
-            let mut found = Vec::new();
-            check_type(draft, &field.ty, node, &mut found);
-            faults.extend(found.into_iter().map(|mismatch| {
-                let code = FaultCode::OnlyValue;
-                let fault = Mismatch { code, ..mismatch }.into_fault();
-                fault.also(part.ty, text!("枚举", "the enum"))
-            }));
-            let wire = scalar::scalar(node);
-            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-                Some(first) => {
-                    let message = text!("这个值出现两次", "this value occurs twice");
-                    let fault = Diagnostic::error(FaultCode::OnlyTwice, node.span(), message);
-                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-                }
-                None => earlier.push(node),
-            }
-        }
+        let list = ValueList {
+            wrong: FaultCode::OnlyValue,
+            ty: Some((part.ty, text!("枚举", "the enum"))),
+            repeated: FaultCode::OnlyTwice,
+            message: text!("这个值出现两次", "this value occurs twice"),
+        };
+        list.check(
+            FIELD.only.items(part.origin.node),
+            |node, found| check_type(draft, &field.ty, node, found),
+            faults,
+        );
     }
 }
 
@@ -263,7 +255,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
         let Some(default) = &field.details().default else {
             continue;
         };
-        let span = part.place.at(FIELD.default);
+        let span = part.origin.at(FIELD.default);
         if !field.optional {
             faults.push(
                 Diagnostic::error(
@@ -285,7 +277,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
             );
         }
         if is_default(draft, &field.ty, default) {
-            if let Some(node) = FIELD.default.of(part.place.node) {
+            if let Some(node) = FIELD.default.of(part.origin.node) {
                 let mut found = Vec::new();
                 check_constraints(field, node, &Value::from(default), &mut found);
                 faults.extend(found.into_iter().map(|mismatch| {
@@ -340,7 +332,7 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
         if quirks.is_empty() {
             continue;
         }
-        for (quirk, node) in quirks.iter().zip(FIELD.quirk.items(part.place.node)) {
+        for (quirk, node) in quirks.iter().zip(FIELD.quirk.items(part.origin.node)) {
             let (expected, fits) = match quirk {
                 Quirk::EmptyIsAbsent => (text!("可选字段", "an optional field"), field.optional),
                 Quirk::LenientNumber => (
@@ -385,7 +377,7 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
             WireForm::Number => (text!("布尔值", "a bool"), field.ty == Type::Bool),
         };
         if !fits {
-            let spans = (part.place.at(FIELD.wire), part.ty);
+            let spans = (part.origin.at(FIELD.wire), part.ty);
             let said = format!("{}: {}", FIELD.wire.name, field.wire_form.name());
             faults.push(wrong_type(
                 FaultCode::WireOnWrongType,
@@ -410,7 +402,7 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
                 "a body that is `{state}` cannot have fields",
                 state = state.name()
             );
-            let fault = Diagnostic::error(FaultCode::OpenBodyFields, part.place.name(), message);
+            let fault = Diagnostic::error(FaultCode::OpenBodyFields, part.origin.name(), message);
             faults.push(fault.note(match state {
                 BodyState::Free => text!(
                     "删去 `free`：未知的键本来就原样保留",

@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{
     COMMON, ENCODING, FRAME, FRAME_KIND, HEADER_FIELD, HEADS, Key, PORT, TRANSPORT,
 };
-use crate::load::draft::{Draft, FrameDraft, Placed};
+use crate::load::draft::{Draft, FrameDraft, Sourced};
 use crate::model::{
     EncodingRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType, KindRole, PortRole, Text,
 };
@@ -23,11 +23,11 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
     let [first, second] = transport.item.ports.each();
     if first.number == second.number {
         let span = |port: PortRole| {
-            let ports = TRANSPORT.ports.of(transport.place.node);
+            let ports = TRANSPORT.ports.of(transport.origin.node);
             let port = PORT
                 .number
                 .of(ports.and_then(|ports| ports.get(port.name())));
-            port.map_or(transport.place.name(), Node::span)
+            port.map_or(transport.origin.name(), Node::span)
         };
         faults.push(
             Diagnostic::error(
@@ -50,7 +50,7 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
 /// Every header field has a known width, which is that of its role.
 pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
-        let span = field.place.at(HEADER_FIELD.r#type);
+        let span = field.origin.at(HEADER_FIELD.r#type);
         if field.item.ty.size() == 0 {
             faults.push(
                 Diagnostic::error(
@@ -107,7 +107,10 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
             let fix = text!("改写为 `{spelling}`", "write `{spelling}`");
             faults.push(
                 Diagnostic::error(FaultCode::HeaderWidth, span, message)
-                    .also(field.place.at(HEADER_FIELD.role), text!("角色", "the role"))
+                    .also(
+                        field.origin.at(HEADER_FIELD.role),
+                        text!("角色", "the role"),
+                    )
                     .fix(span, spelling, fix),
             );
         }
@@ -122,7 +125,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let used = frame
         .header
         .iter()
-        .filter_map(|field| Some((field.item.role?, field.place.at(HEADER_FIELD.role))))
+        .filter_map(|field| Some((field.item.role?, field.origin.at(HEADER_FIELD.role))))
         .collect::<Vec<_>>();
     let needed = |role| match role {
         HeaderRole::Head
@@ -138,7 +141,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     check_each_once(
         needed,
         &used,
-        frame.place.key_at(FRAME.header),
+        frame.origin.key_at(FRAME.header),
         &text!("包头字段", "header field"),
         faults,
     );
@@ -151,7 +154,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     {
         faults.push(Diagnostic::error(
             FaultCode::HeadNotFirst,
-            field.place.name(),
+            field.origin.name(),
             text!(
                 "帧头应为第一个包头字段",
                 "the head must be the first header field"
@@ -204,27 +207,27 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         {
             faults.push(Diagnostic::error(
                 FaultCode::HeaderQuirk,
-                field.place.at(HEADER_FIELD.quirk),
+                field.origin.at(HEADER_FIELD.quirk),
                 text!(
                     "`zero_when_plain` 只适用于角色为 `plain_length` 的字段",
                     "`zero_when_plain` only applies to the field with the role `plain_length`"
                 ),
             ));
         }
-        if HEADER_FIELD.algorithm.of(field.place.node).is_some() && item.digest().is_none() {
+        if HEADER_FIELD.algorithm.of(field.origin.node).is_some() && item.digest().is_none() {
             faults.push(Diagnostic::error(
                 FaultCode::AlgorithmWithoutDigest,
-                field.place.at(HEADER_FIELD.algorithm),
+                field.origin.at(HEADER_FIELD.algorithm),
                 text!(
                     "只有角色为 `digest` 的字段才有算法",
                     "only the field with the role `digest` has an algorithm"
                 ),
             ));
         }
-        if HEADER_FIELD.value.of(field.place.node).is_none() {
+        if HEADER_FIELD.value.of(field.origin.node).is_none() {
             continue;
         }
-        let span = field.place.at(HEADER_FIELD.value);
+        let span = field.origin.at(HEADER_FIELD.value);
         let bits = u32::try_from(item.ty.size().saturating_mul(8)).unwrap_or(u32::MAX);
         let message = if !item.is_sent_as_value() {
             text!(
@@ -255,10 +258,13 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first = HashMap::new();
     for field in header(draft) {
         let name = field.item.name.as_str();
-        let span = field.place.at(COMMON.name);
-        faults.extend(super::names::hidden(&field.item.wire, field.place.name()));
+        let span = field.origin.at(COMMON.name);
+        faults.extend(super::names::hidden(&field.item.wire, field.origin.name()));
         if !names::is_snake(name) {
-            faults.push(super::names::unusable(&field.item.wire, field.place.name()));
+            faults.push(super::names::unusable(
+                &field.item.wire,
+                field.origin.name(),
+            ));
         } else if let Some(earlier) = first.insert(name, span) {
             let message = text!(
                 "有两个包头字段在代码中都叫 `{name}`",
@@ -279,8 +285,8 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
         return;
     };
     let span = |key: Key<_>| {
-        let head = key.of(FRAME.heads.of(frame.place.node));
-        head.map_or(frame.place.name(), Node::span)
+        let head = key.of(FRAME.heads.of(frame.origin.node));
+        head.map_or(frame.origin.name(), Node::span)
     };
     let field = frame
         .header
@@ -301,7 +307,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
             );
             faults.push(
                 Diagnostic::error(FaultCode::HeadLength, span(key), message).also(
-                    field.place.at(HEADER_FIELD.r#type),
+                    field.origin.at(HEADER_FIELD.r#type),
                     text!("帧头字段", "the head field"),
                 ),
             );
@@ -334,12 +340,12 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         .kinds
         .iter()
         .filter(|kind| kind.item.role != KindRole::Reserved)
-        .map(|kind| (kind.item.role, kind.place.at(FRAME_KIND.role)))
+        .map(|kind| (kind.item.role, kind.origin.at(FRAME_KIND.role)))
         .collect::<Vec<_>>();
     check_each_once(
         |role| role != KindRole::Reserved,
         &used,
-        frame.place.key_at(FRAME.kinds),
+        frame.origin.key_at(FRAME.kinds),
         &text!("数据类型", "frame kind"),
         faults,
     );
@@ -348,7 +354,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
         frame
             .kinds
             .iter()
-            .map(|kind| (kind.item.name.as_str(), kind.place.at(FRAME_KIND.name))),
+            .map(|kind| (kind.item.name.as_str(), kind.origin.at(FRAME_KIND.name))),
         faults,
     );
     for kind in &frame.kinds {
@@ -368,7 +374,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
                 "{what} need the port `{word}`",
                 what = what
             );
-            let span = kind.place.at(FRAME_KIND.port);
+            let span = kind.origin.at(FRAME_KIND.port);
             faults.push(Diagnostic::error(FaultCode::KindPort, span, message).fix(
                 span,
                 word,
@@ -386,9 +392,9 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let encodings = frame.encodings.iter();
     let used = encodings
         .clone()
-        .map(|encoding| (encoding.item.role, encoding.place.at(ENCODING.role)))
+        .map(|encoding| (encoding.item.role, encoding.origin.at(ENCODING.role)))
         .collect::<Vec<_>>();
-    let place = frame.place.key_at(FRAME.encodings);
+    let origin = frame.origin.key_at(FRAME.encodings);
     let has = |role| (frame.header.iter()).any(|field| field.item.role == Some(role));
     let mut lacking = |role: HeaderRole, why: &Text| {
         let message = text!(
@@ -397,9 +403,9 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
             role = role.name(),
             why = why
         );
-        let fault = Diagnostic::error(FaultCode::RoleMissing, place, message);
+        let fault = Diagnostic::error(FaultCode::RoleMissing, origin, message);
         faults.push(fault.also(
-            frame.place.key_at(FRAME.header),
+            frame.origin.key_at(FRAME.header),
             text!("包头", "the header"),
         ));
     };
@@ -418,13 +424,19 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
         );
     }
     let needed = |role| role == EncodingRole::Plain && has(HeaderRole::Encoding);
-    check_each_once(needed, &used, place, &text!("压缩方式", "encoding"), faults);
+    check_each_once(
+        needed,
+        &used,
+        origin,
+        &text!("压缩方式", "encoding"),
+        faults,
+    );
     super::names::check_distinct(
         &text!("压缩方式", "encodings"),
         encodings.map(|encoding| {
             (
                 encoding.item.name.as_str(),
-                encoding.place.at(ENCODING.name),
+                encoding.origin.at(ENCODING.name),
             )
         }),
         faults,
@@ -438,6 +450,6 @@ pub(super) fn header_len(frame: &FrameDraft<'_>) -> usize {
     })
 }
 
-fn header<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = &'d Placed<'a, HeaderField>> {
+fn header<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = &'d Sourced<'a, HeaderField>> {
     draft.frame.iter().flat_map(|frame| &frame.header)
 }

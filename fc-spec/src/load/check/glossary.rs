@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::source::Span;
 use crate::syntax::Node;
 use crate::text;
@@ -33,9 +33,9 @@ fn check_language(
     faults: &mut Faults,
 ) {
     let mut first: HashMap<String, Seen<'_>> = HashMap::new();
-    for Placed { item, place } in &draft.glossary {
-        let own = own.of(place.node).map(|node| (node, false));
-        let others = other.items(TERM.also.of(place.node));
+    for Sourced { item, origin } in &draft.glossary {
+        let own = own.of(origin.node).map(|node| (node, false));
+        let others = other.items(TERM.also.of(origin.node));
         let words = own.into_iter().chain(others.map(|node| (node, true)));
         for (node, is_other) in words {
             // What is no text, or an empty one, has been reported.

@@ -2,8 +2,8 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::ANSWER;
+use crate::load::answer_scope::{ABSENT, CoveredFact, Found, covered_facts, is_doubt};
 use crate::load::draft::Draft;
-use crate::load::govern::{ABSENT, Found, Governed, governed, is_doubt};
 use crate::model::BodyState;
 use crate::text;
 use crate::vocabulary::Word as _;
@@ -11,14 +11,14 @@ use crate::vocabulary::Word as _;
 /// An answer says what it answers.
 pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
-        let node = answer.place.node;
+        let node = answer.origin.node;
         if ANSWER.ids.of(node).is_none() && ANSWER.about.of(node).is_none() {
             let message = text!(
                 "答复没有 `ids`，也没有 `about`",
                 "the answer has neither `ids` nor `about`"
             );
             faults.push(
-                Diagnostic::error(FaultCode::AnswerToNothing, answer.place.name(), message).note(
+                Diagnostic::error(FaultCode::AnswerToNothing, answer.origin.name(), message).note(
                     text!(
                         "在 `ids:` 中写明疑问，或在 `about:` 中写明涉及的内容",
                         "name a conflict in `ids:`, or a fact in `about:`"
@@ -32,10 +32,10 @@ pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
 /// What an answer is about is there.
 pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
-        for governed in governed(draft, answer) {
-            let (span, message, note) = match governed.found {
+        for covered in covered_facts(draft, answer) {
+            let (span, message, note) = match covered.found {
                 Found::Nowhere(key) => (
-                    governed.path.span(),
+                    covered.path.span(),
                     text!("这里没有 `{key}`", "there is no `{key}` here"),
                     text!(
                         "从答复所在的位置开始，写出 YAML 中各级的键",
@@ -43,11 +43,11 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
                     ),
                 ),
                 Found::Several(node) => (
-                    governed.path.span(),
+                    covered.path.span(),
                     text!(
                         "`{path}` 应为单个的值，实际为{found}",
                         "expected a single value at `{path}`, found {found}",
-                        path = text(&governed),
+                        path = text(&covered),
                         found = node.describe()
                     ),
                     text!(
@@ -55,15 +55,13 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
                         "name the value that the owner must confirm"
                     ),
                 ),
-                Found::Fact(..)
-                    if !BodyState::named(governed.meanwhile()).is_some_and(is_doubt) =>
-                {
+                Found::Fact(..) if !BodyState::named(covered.meanwhile()).is_some_and(is_doubt) => {
                     (
-                        governed.meanwhile.span(),
+                        covered.meanwhile.span(),
                         text!(
                             "应为 `inferred` 或 `open`，实际为 `{word}`",
                             "expected `inferred` or `open`, found `{word}`",
-                            word = governed.meanwhile()
+                            word = covered.meanwhile()
                         ),
                         text!(
                             "写负责人答复之前的可靠程度",
@@ -85,33 +83,33 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
             Some(id) => text!("答复 {id} ", "{id}"),
             None => text!("答复", "the answer"),
         };
-        for governed in governed(draft, answer) {
-            let (path, before) = (text(&governed), governed.meanwhile());
+        for covered in covered_facts(draft, answer) {
+            let (path, before) = (text(&covered), covered.meanwhile());
             match &answer.item.confirmed {
-                None if governed.is_as_before() == Some(false) => {
+                None if covered.is_as_before() == Some(false) => {
                     let message = text!(
                         "`{path}` 应为 {before}，实际为 {now}；{name}尚未确认",
                         "`{path}` is {now}, but {name} expects {before} and is not confirmed",
-                        now = now(&governed),
+                        now = now(&covered),
                         name = name
                     );
                     faults.push(
-                        Diagnostic::error(FaultCode::GovernedFact, governed.path.span(), message)
+                        Diagnostic::error(FaultCode::GovernedFact, covered.path.span(), message)
                             .note(text!("用 `fcproto settle` 写入负责人的答复；还没有答复时，把 `about:` 一起修改", "record the owner's answer with `fcproto settle`; without an answer, change `about:` as well")),
                     );
                 }
-                Some(_) if governed.is_untouched() => {
+                Some(_) if covered.is_untouched() => {
                     let message = text!(
                         "{name}已经确认，但 `{path}` 仍然是 {now}",
                         "{name} is confirmed, but `{path}` is still {now}",
-                        now = now(&governed),
+                        now = now(&covered),
                         name = name
                     );
-                    let at = ANSWER.confirmed.entry(answer.place.node);
-                    let at = at.map_or(governed.path.span(), |entry| entry.key.span());
+                    let at = ANSWER.confirmed.entry(answer.origin.node);
+                    let at = at.map_or(covered.path.span(), |entry| entry.key.span());
                     faults.push(
                         Diagnostic::error(FaultCode::SettledButUntouched, at, message)
-                            .also(governed.path.span(), text!("涉及的内容", "its fact"))
+                            .also(covered.path.span(), text!("涉及的内容", "its fact"))
                             .note(text!("写入负责人的答复；答复没有涉及它时，从 `about:` 中去掉", "write the owner's answer, or remove it from `about:` if the owner did not mention it")),
                     );
                 }
@@ -121,13 +119,13 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-fn text<'a>(governed: &Governed<'a>) -> &'a str {
-    governed.path.as_str().unwrap_or_default()
+fn text<'a>(covered: &CoveredFact<'a>) -> &'a str {
+    covered.path.as_str().unwrap_or_default()
 }
 
 /// What is said of it now.
-fn now<'a>(governed: &Governed<'a>) -> &'a str {
-    match governed.found {
+fn now<'a>(covered: &CoveredFact<'a>) -> &'a str {
+    match covered.found {
         Found::Fact(_, state, _) => state.name(),
         Found::Value(node) => node.as_str().unwrap_or_default(),
         Found::Absent(_) | Found::Several(_) | Found::Nowhere(_) => ABSENT,

@@ -1,26 +1,28 @@
 //! Dates.
 
-use super::each::fields;
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMON, FIELD, FIELD_DEPRECATED};
-use crate::load::draft::{Draft, Place};
+use crate::load::draft::{Draft, Origin};
 use crate::names;
 use crate::text;
 
 /// Nothing is withdrawn before it appeared.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
-    let operations = draft.operations.iter().map(|operation| operation.place);
+    let operations = draft.operations.iter().map(|operation| operation.origin);
     let fields = fields(draft)
         .filter(|(_, field, _)| field.details().since.is_some())
-        .map(|(_, _, part)| part.place);
-    for place in operations.chain(fields) {
-        faults.extend(order(place));
+        .map(|(_, _, part)| part.origin);
+    for origin in operations.chain(fields) {
+        faults.extend(order(origin));
     }
 }
 
-fn order(place: Place<'_>) -> Option<Diagnostic> {
-    let since = COMMON.since.of(place.node)?;
-    let withdrawn = FIELD_DEPRECATED.since.of(FIELD.deprecated.of(place.node))?;
+fn order(origin: Origin<'_>) -> Option<Diagnostic> {
+    let since = COMMON.since.of(origin.node)?;
+    let withdrawn = FIELD_DEPRECATED
+        .since
+        .of(FIELD.deprecated.of(origin.node))?;
     let first = names::date(since.as_str()?)?;
     let last = names::date(withdrawn.as_str()?)?;
     // A date without a day is that whole month.

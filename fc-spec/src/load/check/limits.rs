@@ -3,7 +3,7 @@
 use super::frame::header_len;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FRAME, Form, Key, LIMITS};
-use crate::load::draft::{Draft, Placed, TypeDraft};
+use crate::load::draft::{Draft, Sourced, TypeDraft};
 use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
 use crate::text;
 
@@ -17,14 +17,14 @@ pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
         faults.push(
             Diagnostic::error(
                 FaultCode::LimitTooSmall,
-                limits.place.at(LIMITS.frame_bytes),
+                limits.origin.at(LIMITS.frame_bytes),
                 text!(
                     "上限放不下任何帧：包头就有 {header} 字节",
                     "the limit is too small for any frame: the header alone has {header} bytes"
                 ),
             )
             .also(
-                frame.place.key_at(FRAME.header),
+                frame.origin.key_at(FRAME.header),
                 text!("包头", "the header"),
             ),
         );
@@ -91,14 +91,14 @@ pub(super) fn check_bodies(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 fn too_small(
-    limits: &Placed<'_, Limits>,
+    limits: &Sourced<'_, Limits>,
     key: Key<impl Form>,
     message: Text,
     body: &TypeDraft<'_>,
     which: Text,
 ) -> Diagnostic {
-    Diagnostic::error(FaultCode::LimitTooSmall, limits.place.at(key), message)
-        .also(body.place.name(), which)
+    Diagnostic::error(FaultCode::LimitTooSmall, limits.origin.at(key), message)
+        .also(body.origin.name(), which)
 }
 
 /// A lower bound for the JSON of a type, with the keys of its example.

@@ -8,7 +8,8 @@ mod available;
 mod cadence;
 mod codes;
 mod conditions;
-mod each;
+mod coordinates;
+mod declared;
 mod entities;
 mod enums;
 mod envelope;
@@ -19,21 +20,22 @@ mod frame;
 mod glossary;
 mod governed;
 mod history;
+mod iter;
 mod limits;
 mod names;
-mod places;
 mod preconditions;
 mod process;
-mod reach;
 mod references;
 mod results;
 mod states;
 mod streams;
+mod unused_types;
 mod value;
+mod value_list;
 mod waivers;
 
-use super::consequence::Earlier;
 use super::draft::Draft;
+use super::follow_ups::Earlier;
 use crate::diagnostic::Faults;
 use crate::source::Sources;
 use rayon::iter::{
@@ -44,7 +46,7 @@ use rayon::iter::{
 type Check = fn(&Draft<'_>, &mut Faults);
 
 /// What can be checked of every draft.
-const EVER: &[Check] = &[
+const ALWAYS: &[Check] = &[
     frame::check_ports,
     frame::check_header_types,
     frame::check_header_roles,
@@ -100,8 +102,8 @@ const EVER: &[Check] = &[
     available::check_releases,
     entities::check_ids,
     entities::check_types,
-    places::check_objects,
-    places::check_lengths,
+    coordinates::check_objects,
+    coordinates::check_lengths,
     glossary::check_words,
     waivers::check_ids,
     history::check_order,
@@ -117,26 +119,20 @@ const EVER: &[Check] = &[
 
 /// What can only be checked where every file could be parsed: that something is missing or unused, since what is looked
 /// for may stand in a file that could not.
-const OF_WHOLE: &[Check] = &[
+const ONLY_IF_ALL_FILES_PARSED: &[Check] = &[
     references::check_types,
     references::check_structs,
     references::check_operations,
-    references::check_set_off,
     codes::check_groups,
-    streams::check_commands,
     process::check_ties,
     process::check_state,
     references::check_results,
     cadence::check_deadlines,
     preconditions::check_names,
     preconditions::check_states,
-    reach::check_unused,
-    entities::check_declared,
-    entities::check_unused,
-    places::check_declared,
-    places::check_unused,
-    available::check_declared,
-    available::check_unused,
+    unused_types::check_unused,
+    declared::check_declared,
+    declared::check_unused,
     answers::check_known,
     answers::check_answered,
     answers::check_sections,
@@ -146,7 +142,9 @@ const OF_WHOLE: &[Check] = &[
 ///
 /// `whole`: every file could be parsed.
 pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &mut Faults) {
-    let checks = EVER.iter().chain(OF_WHOLE.iter().filter(|_| whole));
+    let checks = ALWAYS
+        .iter()
+        .chain(ONLY_IF_ALL_FILES_PARSED.iter().filter(|_| whole));
     let checks: Vec<&Check> = checks.collect();
     // Some take much longer than their neighbours: each is taken by itself.
     let found: Vec<_> = checks
@@ -162,14 +160,14 @@ pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &
     for found in found {
         all.append(found);
     }
-    Earlier::new(draft, sources, faults).keep_independent(&mut all);
+    Earlier::new(draft, sources, faults).suppress(&mut all);
     faults.append(all);
 }
 
 /// Where codes lie makes sense only within sound ranges.
 fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if codes::check_ranges(draft, faults) {
-        codes::check_places(draft, faults);
+        codes::check_ranges_of_codes(draft, faults);
     }
 }
 

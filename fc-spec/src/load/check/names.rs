@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMON, FIELD, GROUP};
-use crate::load::draft::{Draft, Place, Placed};
+use crate::load::draft::{Draft, Origin, Sourced};
 use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text, TypeShape};
 use crate::names;
 use crate::source::Span;
@@ -16,7 +16,7 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for group in &draft.groups {
         let id = group.item.id.as_str();
-        let span = group.place.at(GROUP.id);
+        let span = group.origin.at(GROUP.id);
         if let Some(earlier) = first.insert(id, span) {
             let message = text!(
                 "有两个文件定义了分组 `{id}`",
@@ -38,7 +38,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for operation in &draft.operations {
         let name = operation.item.name.as_str();
-        let span = operation.place.name();
+        let span = operation.origin.name();
         if RESERVED_OPERATIONS.contains(&name) {
             faults.push(reserved(
                 span,
@@ -70,11 +70,11 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
 /// Groups, operations and types become files. Windows keeps some names for devices, in any case and with any extension.
 pub(super) fn check_files(draft: &Draft<'_>, faults: &mut Faults) {
     let groups = draft.groups.iter();
-    let groups = groups.map(|it| (it.item.id.as_str(), it.place.at(GROUP.id)));
+    let groups = groups.map(|it| (it.item.id.as_str(), it.origin.at(GROUP.id)));
     let operations = draft.operations.iter();
-    let operations = operations.map(|it| (it.item.name.as_str(), it.place.name()));
+    let operations = operations.map(|it| (it.item.name.as_str(), it.origin.name()));
     let types = draft.types.iter().filter(|it| it.def.body_of.is_none());
-    let types = types.map(|it| (it.def.name.as_str(), it.place.name()));
+    let types = types.map(|it| (it.def.name.as_str(), it.origin.name()));
     for (name, span) in groups.chain(operations).chain(types) {
         if names::is_device(name) {
             let message = text!(
@@ -90,7 +90,7 @@ pub(super) fn check_files(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for table in &draft.tables {
-        let span = table.place.name();
+        let span = table.origin.name();
         if let Some(earlier) = first.insert(&table.item.id, span) {
             let message = text!(
                 "有两个常量表都叫 `{id}`",
@@ -133,10 +133,10 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         let name = &ty.def.name;
         let fault = Diagnostic::error(
             FaultCode::DuplicateType,
-            ty.place.name(),
+            ty.origin.name(),
             text!("有两个类型都叫 `{name}`", "two types are named `{name}`"),
         )
-        .also(earlier.place.name(), text!("第一个", "the first one"));
+        .also(earlier.origin.name(), text!("第一个", "the first one"));
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
             fault.note(text!("消息体和内嵌对象的类型以接口和各级键名命名；给内嵌对象写 `type_name` 可以改名", "bodies and inline objects are named after the operation and their keys; write `type_name` to rename an inline object"))
@@ -160,10 +160,10 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
         };
         first.clear();
         for (field, part) in shape.fields.iter().zip(&ty.parts) {
-            let span = part.place.name();
+            let span = part.origin.name();
             if !names::is_snake(&field.name) {
                 // A malformed `name` has been reported.
-                if COMMON.name.of(part.place.node).is_none() {
+                if COMMON.name.of(part.origin.node).is_none() {
                     faults.push(unusable(&field.wire, span));
                 }
                 continue;
@@ -230,8 +230,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
             .iter()
             .zip(&ty.parts)
             .flat_map(|(field, part)| {
-                std::iter::once((field.wire.as_str(), part.place.name()))
-                    .chain(also(field, part.place))
+                std::iter::once((field.wire.as_str(), part.origin.name()))
+                    .chain(also(field, part.origin))
             });
         for (key, span) in keys {
             if key.is_empty() {
@@ -264,16 +264,16 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)
-                        .also(declared.place.name(), text!("在这里声明", "declared here")),
+                        .also(declared.origin.name(), text!("在这里声明", "declared here")),
                 );
             }
         }
     }
 }
 
-fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str, Span)> {
+fn also<'f>(field: &'f Field, origin: Origin<'_>) -> impl Iterator<Item = (&'f str, Span)> {
     let also = &field.details().also;
-    let node = (!also.is_empty()).then_some(place.node);
+    let node = (!also.is_empty()).then_some(origin.node);
     let spans = FIELD.also.items(node).map(Node::span);
     also.iter().map(String::as_str).zip(spans)
 }
@@ -282,7 +282,7 @@ fn also<'f>(field: &'f Field, place: Place<'_>) -> impl Iterator<Item = (&'f str
 fn envelope_of<'d, 'a>(
     draft: &'d Draft<'a>,
     body: Option<&BodyField>,
-) -> &'d [Placed<'a, EnvelopeField>] {
+) -> &'d [Sourced<'a, EnvelopeField>] {
     match (&draft.envelope, body) {
         (Some(envelope), Some(body)) if body.path.is_empty() => match body.side {
             Direction::Request => &envelope.request,

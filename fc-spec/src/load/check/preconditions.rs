@@ -1,11 +1,10 @@
 //! What has to hold before a command is accepted.
 
-use super::each::called;
-use super::reach::each_name;
-use super::value::{Mismatch, check_type};
+use super::unused_types::each_name;
+use super::value::check_type;
+use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{ACCEPTED, COMMAND};
-use crate::language::scalar;
+use crate::language::grammar::{ACCEPTED, COMMAND, Enum, Named};
 use crate::load::draft::Draft;
 use crate::model::{Kind, Text, Type, TypeRef, TypeShape};
 use crate::syntax::{Entry, Node};
@@ -15,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 /// The preconditions of each command that has some, with its name.
 fn preconditions<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d str, Node<'a>)> {
     draft.operations.iter().filter_map(|operation| {
-        let node = COMMAND.accepted.of(operation.place.node)?;
+        let node = COMMAND.accepted.of(operation.origin.node)?;
         let is_command = operation.item.kind() == Kind::Command;
         is_command.then_some((operation.item.name.as_str(), node))
     })
@@ -56,7 +55,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "`in` needs an enum, but `{name}` is not one"
                 );
                 let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
-                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
                 continue;
             }
             if !carried
@@ -68,7 +67,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "no report and no response carries a `{name}`"
                 );
                 let fault = Diagnostic::error(FaultCode::UnseenState, key.span(), message);
-                faults.push(fault.also(ty.place.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
             }
             check_values(draft, name, value, faults);
         }
@@ -77,24 +76,17 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Faults) {
     let ty = Type::Named(TypeRef::named(name));
-    let mut earlier: Vec<Node<'_>> = Vec::new();
-    for node in values.items() {
-        let mut found = Vec::new();
-        check_type(draft, &ty, node, &mut found);
-        faults.extend(found.into_iter().map(|mismatch| {
-            let code = FaultCode::StateValue;
-            Mismatch { code, ..mismatch }.into_fault()
-        }));
-        let wire = scalar::scalar(node);
-        match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
-            Some(first) => {
-                let message = text!("这个状态出现两次", "this state occurs twice");
-                let fault = Diagnostic::error(FaultCode::DuplicateItem, node.span(), message);
-                faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
-            }
-            None => earlier.push(node),
-        }
-    }
+    let list = ValueList {
+        wrong: FaultCode::StateValue,
+        ty: None,
+        repeated: FaultCode::DuplicateItem,
+        message: text!("这个状态出现两次", "this state occurs twice"),
+    };
+    list.check(
+        values.items(),
+        |node, found| check_type(draft, &ty, node, found),
+        faults,
+    );
 }
 
 /// Names of all types in what the robot sends: reports and responses to commands.
@@ -118,56 +110,17 @@ fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
     carried
 }
 
-/// The enums of states are declared, and what comes first is a command.
+/// The enums of states are declared.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
-    let commands = draft.operations.iter().map(|operation| &operation.item);
-    let commands = commands.filter(|operation| operation.kind() == Kind::Command);
-    let commands: HashSet<&str> = commands.map(|command| command.name.as_str()).collect();
-    for (_, node) in preconditions(draft) {
-        let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
-        for Entry { key, .. } in enums.into_iter().flatten() {
-            let Some(name) = key.as_str().filter(|name| draft.type_named(name).is_none()) else {
-                continue;
-            };
+    for (occurrence, name) in draft.references_to(Enum::KINDS) {
+        if draft.type_named(name).is_none() {
+            let span = occurrence.node.span();
             let message = text!("没有类型 `{name}`", "there is no type `{name}`");
-            let fault = Diagnostic::error(FaultCode::UnknownType, key.span(), message);
+            let fault = Diagnostic::error(FaultCode::UnknownType, span, message);
             let types = draft.types.iter().filter(|ty| ty.def.body_of.is_none());
             let near = nearest(name, types.map(|ty| ty.def.name.as_str()));
-            faults.push(fix(fault, key, near));
+            faults.push(fault.suggest(near, None));
         }
-        for node in ACCEPTED.after.items(node) {
-            let Some(name) = node.as_str().filter(|name| !commands.contains(name)) else {
-                continue;
-            };
-            let mut operations = draft.operations.iter();
-            let other = operations.find(|operation| operation.item.name == name);
-            let fault = if let Some(other) = other {
-                let kind = called(other.item.kind());
-                let message = text!(
-                    "`after` 应为指令，而 `{name}` 是{kind}",
-                    "`after` needs a command, but `{name}` is a {kind}",
-                    kind = kind
-                );
-                Diagnostic::error(FaultCode::NotACommand, node.span(), message)
-                    .also(other.place.name(), text!("在这里声明", "declared here"))
-            } else {
-                let message = text!("没有指令 `{name}`", "there is no command `{name}`");
-                Diagnostic::error(FaultCode::UnknownOperation, node.span(), message)
-            };
-            let near = nearest(name, commands.iter().copied());
-            faults.push(fix(fault, node, near));
-        }
-    }
-}
-
-fn fix(fault: Diagnostic, node: Node<'_>, near: Option<&str>) -> Diagnostic {
-    match near {
-        Some(near) => fault.fix(
-            node.span(),
-            near,
-            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-        ),
-        None => fault,
     }
 }
 

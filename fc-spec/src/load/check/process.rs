@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMAND, REPORT, SET_OFF};
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::load::process::{body, path, side, states, way};
 use crate::model::{Direction, Exchange, Operation, Text, Type, TypeShape};
 use crate::source::Span;
@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn check_ties(draft: &Draft<'_>, faults: &mut Faults) {
     for command in &draft.operations {
         let mut seen: HashMap<&str, Span> = HashMap::new();
-        for node in COMMAND.sets_off.items(command.place.node) {
+        for node in COMMAND.sets_off.items(command.origin.node) {
             let named = SET_OFF.report.of(node).unwrap_or(node);
             let Some(name) = named.as_str() else {
                 continue;
@@ -41,8 +41,8 @@ pub(super) fn check_ties(draft: &Draft<'_>, faults: &mut Faults) {
 
 fn check_tie(
     draft: &Draft<'_>,
-    (command, left): (&Placed<'_, Operation>, Node<'_>),
-    (report, right): (&Placed<'_, Operation>, Node<'_>),
+    (command, left): (&Sourced<'_, Operation>, Node<'_>),
+    (report, right): (&Sourced<'_, Operation>, Node<'_>),
     faults: &mut Faults,
 ) {
     let (Some(from), Some(to)) = (left.as_str(), right.as_str()) else {
@@ -96,7 +96,7 @@ fn check_tie(
 /// The type of the field that keys lead to; a fault where they lead nowhere.
 fn end<'d>(
     draft: &'d Draft<'_>,
-    operation: &'d Placed<'_, Operation>,
+    operation: &'d Sourced<'_, Operation>,
     side: Direction,
     keys: &[String],
     span: Span,
@@ -140,7 +140,7 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
         let Exchange::Report { state, .. } = &report.item.exchange else {
             continue;
         };
-        let said = REPORT.state_in.of(report.place.node);
+        let said = REPORT.state_in.of(report.origin.node);
         if let (Some(said), Some(keys)) = (said, state) {
             let found = end(draft, report, Direction::Request, keys, said.span(), faults);
             let named = found.map(|ty| match ty {
@@ -174,7 +174,7 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
                     "`{first}` 和 `{second}` 都可能是过程的状态",
                     "`{first}` and `{second}` could both be the state of the process"
                 );
-                let span = report.place.name();
+                let span = report.origin.name();
                 let fault = Diagnostic::error(FaultCode::AmbiguousState, span, message);
                 faults.push(fault.note(text!(
                     "写明是哪一个，例如 `state_in: {first}`",

@@ -1,34 +1,35 @@
 //! Names that must stand for something.
 
-use super::each::{called, fields};
+use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{
-    COMMAND, DEPRECATED, ERROR, FIELD, NAMED_VARIANT, OPERATION, SET_OFF, TABLE,
+    Constants, DEPRECATED, FIELD, Named, OPERATION, ResultCode, Struct,
 };
-use crate::load::draft::{Draft, Place};
-use crate::model::{Kind, ResultRole, Text, Type, TypeShape};
+use crate::language::scalar;
+use crate::load::draft::{Draft, Origin};
+use crate::model::{ResultRole, Text, Type, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};
 use crate::text;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// "Did you mean" looks through all names, so a spec with very many faults goes without.
 const SUGGESTIONS: usize = 100;
 
 /// Every named type of a field exists.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
-    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.place));
+    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.origin));
     let envelope = draft.envelope.iter();
     let envelope = envelope.flat_map(|envelope| envelope.request.iter().chain(&envelope.response));
-    let envelope = envelope.map(|field| (field.item.ty.clone(), field.place));
+    let envelope = envelope.map(|field| (field.item.ty.clone(), field.origin));
     // A name of several fields that stands for nothing is one fault: it is declared nowhere, or under another name.
     let mut found: Vec<(String, Vec<Node<'_>>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
-    for (ty, place) in fields.chain(envelope) {
+    for (ty, origin) in fields.chain(envelope) {
         let Some(name) = unknown(draft, &ty) else {
             continue;
         };
-        let node = innermost(place);
+        let node = innermost(origin);
         if let Some((_, nodes)) = known.get(name).and_then(|at| found.get_mut(*at)) {
             nodes.push(node);
         } else {
@@ -59,8 +60,8 @@ fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
 }
 
 /// The scalar that names the type, inside any YAML lists around it.
-fn innermost(place: Place<'_>) -> Node<'_> {
-    let mut node = FIELD.r#type.of(place.node).unwrap_or(place.node);
+fn innermost(origin: Origin<'_>) -> Node<'_> {
+    let mut node = FIELD.r#type.of(origin.node).unwrap_or(origin.node);
     loop {
         let mut items = node.items();
         let (Some(item), None) = (items.next(), items.next()) else {
@@ -147,33 +148,13 @@ const FOREIGN: &[(&str, &str)] = &[
 
 /// Variants of a choice and rows of a table are structs.
 pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
-    for ty in &draft.types {
-        if let TypeShape::OneOf(choice) = &ty.def.shape {
-            for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-                if let (false, Some(node)) = (part.broken, NAMED_VARIANT.r#type.of(part.place.node))
-                {
-                    check_struct(
-                        draft,
-                        variant.ty.name(),
-                        node,
-                        &text!("选项", "a variant"),
-                        faults,
-                    );
-                }
-            }
-        }
-    }
-    for table in &draft.tables {
-        let row = TABLE.row.of(table.place.node);
-        if let Some(node) = row.filter(|node| node.as_scalar().is_some()) {
-            check_struct(
-                draft,
-                table.item.row.name(),
-                node,
-                &text!("一行", "a row"),
-                faults,
-            );
-        }
+    for (occurrence, name) in draft.references_to(Struct::KINDS) {
+        let what = if occurrence.part == Constants::NAME {
+            text!("一行", "a row")
+        } else {
+            text!("选项", "a variant")
+        };
+        check_struct(draft, name, occurrence.node, &what, faults);
     }
 }
 
@@ -191,89 +172,31 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
             );
             faults.push(
                 Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
-                    .also(ty.place.name(), text!("在这里声明", "declared here")),
+                    .also(ty.origin.name(), text!("在这里声明", "declared here")),
             );
         }
         Some(_) => {}
     }
 }
 
-/// What replaces a withdrawn operation exists and is not itself.
+/// Another operation replaces a deprecated one.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
-    let names: HashSet<&str> = draft
-        .operations
-        .iter()
-        .map(|operation| operation.item.name.as_str())
-        .collect();
     for operation in &draft.operations {
         let deprecated = operation.item.deprecated.as_ref();
         let Some(by) = deprecated.and_then(|deprecated| deprecated.replaced_by.as_deref()) else {
             continue;
         };
-        let node = DEPRECATED
-            .replaced_by
-            .of(OPERATION.deprecated.of(operation.place.node));
-        let span = node.map_or(operation.place.name(), Node::span);
         if by == operation.item.name {
+            let node = DEPRECATED
+                .replaced_by
+                .of(OPERATION.deprecated.of(operation.origin.node));
+            let span = node.map_or(operation.origin.name(), Node::span);
             let message = text!("接口不能由自己替代", "an operation cannot replace itself");
             faults.push(Diagnostic::error(
                 FaultCode::UnknownOperation,
                 span,
                 message,
             ));
-        } else if !names.contains(by) {
-            let message = text!("没有接口 `{by}`", "there is no operation `{by}`");
-            let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
-            faults.push(match nearest(by, names.iter().copied()) {
-                Some(near) => fault.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => fault,
-            });
-        }
-    }
-}
-
-/// What a command sets off is a report.
-pub(super) fn check_set_off(draft: &Draft<'_>, faults: &mut Faults) {
-    let reports = draft
-        .operations
-        .iter()
-        .map(|operation| &operation.item)
-        .filter(|operation| operation.kind() == Kind::Report);
-    let reports: HashSet<&str> = reports.map(|report| report.name.as_str()).collect();
-    for command in &draft.operations {
-        for node in COMMAND.sets_off.items(command.place.node) {
-            let node = SET_OFF.report.of(node).unwrap_or(node);
-            let Some(name) = node.as_str().filter(|name| !reports.contains(name)) else {
-                continue;
-            };
-            let span = node.span();
-            let mut operations = draft.operations.iter();
-            let other = operations.find(|operation| operation.item.name == name);
-            let fault = if let Some(other) = other {
-                let kind = called(other.item.kind());
-                let message = text!(
-                    "`sets_off` 应为上报，而 `{name}` 是{kind}",
-                    "`sets_off` needs a report, but `{name}` is a {kind}",
-                    kind = kind
-                );
-                Diagnostic::error(FaultCode::NotAReport, span, message)
-                    .also(other.place.name(), text!("在这里声明", "declared here"))
-            } else {
-                let message = text!("没有上报 `{name}`", "there is no report `{name}`");
-                Diagnostic::error(FaultCode::UnknownOperation, span, message)
-            };
-            faults.push(match nearest(name, reports.iter().copied()) {
-                Some(near) => fault.fix(
-                    span,
-                    near,
-                    text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                ),
-                None => fault,
-            });
         }
     }
 }
@@ -283,53 +206,37 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
     if draft.results_place.is_none() {
         return;
     }
-    let known: HashSet<i64> = draft
-        .results
-        .iter()
-        .map(|result| result.item.code)
-        .collect();
-    for operation in &draft.operations {
-        for error in OPERATION.errors.items(operation.place.node) {
-            let node = ERROR.code.of(error).unwrap_or(error);
-            let code = ERROR.code.read_in_or_at(error);
-            let success = draft.results.iter().find(|result| {
-                result.item.role == Some(ResultRole::Success) && Some(result.item.code) == code
-            });
-            if let Some(success) = success {
+    for (occurrence, _) in draft.references_to(ResultCode::KINDS) {
+        let node = occurrence.node;
+        let Some(code) = scalar::small_int::<i64>(node) else {
+            continue;
+        };
+        let mut results = draft.results.iter();
+        let fault = match results.find(|result| result.item.code == code) {
+            Some(success) if success.item.role == Some(ResultRole::Success) => {
                 let message = text!(
                     "{code} 表示成功，不是错误",
-                    "{code} means success, not an error",
-                    code = success.item.code
+                    "{code} means success, not an error"
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
-                        .also(success.place.name(), text!("在这里声明", "declared here"))
-                        .note(text!(
-                            "去掉它：每个接口都可以返回成功",
-                            "remove it: every operation can return success"
-                        )),
-                );
-                continue;
-            }
-            if let Some(code) = code.filter(|code| !known.contains(code)) {
-                let known: Vec<_> = draft
-                    .results
-                    .iter()
-                    .map(|result| result.item.code.to_string())
-                    .collect();
-                faults.push(
-                    Diagnostic::error(
-                        FaultCode::UnknownResult,
-                        node.span(),
-                        text!("没有结果码 {code}", "there is no result code {code}"),
-                    )
+                Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
+                    .also(success.origin.name(), text!("在这里声明", "declared here"))
                     .note(text!(
-                        "可以写：{known}",
-                        "expected one of {known}",
-                        known = Text::listed(known)
-                    )),
-                );
+                        "去掉它：每个接口都可以返回成功",
+                        "remove it: every operation can return success"
+                    ))
             }
-        }
+            Some(_) => continue,
+            None => {
+                let known = draft.results.iter();
+                let known = known.map(|result| result.item.code.to_string());
+                let message = text!("没有结果码 {code}", "there is no result code {code}");
+                Diagnostic::error(FaultCode::UnknownResult, node.span(), message).note(text!(
+                    "可以写：{known}",
+                    "expected one of {known}",
+                    known = Text::listed(known)
+                ))
+            }
+        };
+        faults.push(fault);
     }
 }

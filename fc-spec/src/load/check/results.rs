@@ -12,18 +12,18 @@ use std::collections::HashMap;
 
 /// The engine has a result code for each of its own answers.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
-    let Some(place) = draft.results_place else {
+    let Some(origin) = draft.results_place else {
         return;
     };
     let used = draft
         .results
         .iter()
-        .filter_map(|result| Some((result.item.role?, result.place.at(RESULT.role))))
+        .filter_map(|result| Some((result.item.role?, result.origin.at(RESULT.role))))
         .collect::<Vec<_>>();
     check_each_once(
         |_: ResultRole| true,
         &used,
-        place.name(),
+        origin.name(),
         &text!("结果码", "result code"),
         faults,
     );
@@ -34,7 +34,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     let names = draft
         .results
         .iter()
-        .map(|result| (result.item.name.as_str(), result.place.at(RESULT.name)));
+        .map(|result| (result.item.name.as_str(), result.origin.at(RESULT.name)));
     check_distinct(&text!("结果码", "result codes"), names, faults);
 }
 
@@ -43,7 +43,7 @@ pub(super) fn check_errors(draft: &Draft<'_>, faults: &mut Faults) {
     let at = |error| ERROR.code.of(error).unwrap_or(error);
     for operation in &draft.operations {
         let mut first: HashMap<i64, Node<'_>> = HashMap::new();
-        for node in OPERATION.errors.items(operation.place.node).map(at) {
+        for node in OPERATION.errors.items(operation.origin.node).map(at) {
             let Some(code) = ERROR.code.read_in_or_at(node) else {
                 continue;
             };

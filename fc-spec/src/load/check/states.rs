@@ -26,10 +26,10 @@ fn values<'d, 'a>(
 /// What follows what is claimed in one sense, and a sense has something that it is of.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
-        let node = ENUM.order.of(ty.place.node);
+        let node = ENUM.order.of(ty.origin.node);
         let mut following = values(ty, shape).filter_map(|(value, part)| {
-            let then = ENUM_VALUE.then.entry(part.place.node);
-            let start = ENUM_VALUE.start.entry(part.place.node);
+            let then = ENUM_VALUE.then.entry(part.origin.node);
+            let start = ENUM_VALUE.start.entry(part.origin.node);
             then.or(start.filter(|_| value.start))
         });
         let first = following.next();
@@ -55,7 +55,7 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
             )
             .also(
-                ty.place.name(),
+                ty.origin.name(),
                 text!("这个枚举", "this enum"),
             )
             .note(text!(
@@ -73,7 +73,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         let names: HashSet<&str> = shape.values.iter().map(|it| it.name.as_str()).collect();
         for (_, part) in values(ty, shape) {
-            for node in ENUM_VALUE.then.items(part.place.node) {
+            for node in ENUM_VALUE.then.items(part.origin.node) {
                 let Some(name) = node.as_str().filter(|name| !names.contains(name)) else {
                     continue;
                 };
@@ -82,17 +82,10 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
                     "`{ty}` has no value `{name}`",
                     ty = ty.def.name
                 );
-                let span = node.span();
-                let fault = Diagnostic::error(FaultCode::UnknownValue, span, message);
+                let fault = Diagnostic::error(FaultCode::UnknownValue, node.span(), message);
                 let known = shape.values.iter().map(|value| value.name.as_str());
-                faults.push(match nearest(name, known) {
-                    Some(near) => fault.fix(
-                        span,
-                        near,
-                        text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-                    ),
-                    None => fault.note(text!("写取值的 `name`", "write the `name` of a value")),
-                });
+                let note = text!("写取值的 `name`", "write the `name` of a value");
+                faults.push(fault.suggest(nearest(name, known), Some(note)));
             }
         }
     }
@@ -102,7 +95,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         for (value, part) in values(ty, shape) {
-            let then = ENUM_VALUE.then.entry(part.place.node);
+            let then = ENUM_VALUE.then.entry(part.origin.node);
             if let Some(then) = then.filter(|_| value.is_final) {
                 let message = text!(
                     "`{value}` 是终态，不能有 `then`",
@@ -111,7 +104,7 @@ pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 let fault = Diagnostic::error(FaultCode::FollowedFinal, then.key.span(), message);
                 faults.push(fault.also(
-                    part.place.at(ENUM_VALUE.r#final),
+                    part.origin.at(ENUM_VALUE.r#final),
                     text!("在这里写为终态", "marked as final here"),
                 ));
             }
@@ -140,7 +133,7 @@ pub(super) fn check_reached(draft: &Draft<'_>, faults: &mut Faults) {
                     value = value.name
                 );
                 faults.push(
-                    Diagnostic::error(FaultCode::UnreachedState, part.place.name(), message)
+                    Diagnostic::error(FaultCode::UnreachedState, part.origin.name(), message)
                         .note(text!("过程由它开始时写 `start: true`，否则在某个取值的 `then:` 中写上它", "write `start: true` if the process begins with it, or name it in the `then:` of another value")),
                 );
             }

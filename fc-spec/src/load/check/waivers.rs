@@ -1,7 +1,7 @@
 //! Waivers.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::load::draft::{Draft, Placed};
+use crate::load::draft::{Draft, Sourced};
 use crate::text;
 
 /// Hex digits of a fingerprint.
@@ -9,7 +9,7 @@ const DIGITS: usize = 12;
 
 /// Each names a finding as `fcproto diff` and `fcproto lint` print it. Whether there is such a finding depends on what is compared.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
-    for Placed { item, place } in &draft.waivers {
+    for Sourced { item, origin } in &draft.waivers {
         if !is_id(&item.id) {
             let message = text!(
                 "`{id}` 不是豁免编号",
@@ -17,7 +17,7 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
                 id = item.id
             );
             faults.push(
-                Diagnostic::error(FaultCode::BadWaiver, place.name(), message).note(
+                Diagnostic::error(FaultCode::BadWaiver, origin.name(), message).note(
                     text!("写 `fcproto diff` 或 `fcproto lint` 打印的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the rule and fingerprint that `fcproto diff` or `fcproto lint` prints, such as `FC0725-1a2b3c4d5e6f`"),
                 ),
             );

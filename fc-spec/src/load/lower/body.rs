@@ -7,7 +7,7 @@ use crate::language::grammar::{
     CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
 };
 use crate::language::scalar;
-use crate::load::draft::{Part, Place, TypeDraft};
+use crate::load::draft::{Origin, Part, TypeDraft};
 use crate::load::shape::{lacks_form, misread_marker};
 use crate::model::{
     Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, Pattern,
@@ -57,18 +57,24 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn made_struct(
         &mut self,
         owner: &Owner,
-        place: Place<'a>,
+        origin: Origin<'a>,
         fields: Entries<'a>,
         title: Text,
         shape: StructType,
     ) -> StructRef {
         let shape = TypeShape::Struct(shape);
-        let index = self.push_type(self.made_type(owner, place, title, shape), place);
+        let index = self.push_type(self.made_type(owner, origin, title, shape), origin);
         self.fill_struct(index, owner, fields);
         StructRef::named(&owner.type_name)
     }
 
-    fn made_type(&self, owner: &Owner, place: Place<'a>, title: Text, shape: TypeShape) -> TypeDef {
+    fn made_type(
+        &self,
+        owner: &Owner,
+        origin: Origin<'a>,
+        title: Text,
+        shape: TypeShape,
+    ) -> TypeDef {
         TypeDef {
             name: owner.type_name.clone(),
             group: self.group.clone(),
@@ -78,15 +84,15 @@ impl<'a> Lowering<'a, '_> {
             body_of: owner.body_of.clone(),
             since: None,
             changes: Vec::new(),
-            location: self.location(place.name()),
+            location: self.location(origin.name()),
         }
     }
 
     /// Keeps a type, so that it stands before those made while its parts are lowered; returns where.
-    pub(super) fn push_type(&mut self, def: TypeDef, place: Place<'a>) -> usize {
+    pub(super) fn push_type(&mut self, def: TypeDef, origin: Origin<'a>) -> usize {
         self.draft.types.push(TypeDraft {
             def,
-            place,
+            origin,
             parts: Vec::new(),
         });
         self.draft.types.len() - 1
@@ -114,7 +120,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn variant(&mut self, owner: &Owner, entry: Entry<'a>) -> (Variant, Part<'a>) {
-        let place = Place {
+        let origin = Origin {
             key: entry.key,
             node: entry.value,
         };
@@ -129,14 +135,14 @@ impl<'a> Lowering<'a, '_> {
             let made = owner.variant(&name).called(own_name);
             self.made_struct(
                 &made,
-                place,
+                origin,
                 fields,
                 title.clone(),
                 StructType::new(BodyState::Stated, None),
             )
         };
         let part = Part {
-            place,
+            origin,
             ty: named.map_or(entry.key.span(), |ty| ty.value.span()),
             broken: ty.name().is_empty(),
             borrows_text: false,
@@ -154,12 +160,12 @@ impl<'a> Lowering<'a, '_> {
     fn field(&mut self, owner: &Owner, entry: Entry<'a>) -> (Field, Part<'a>) {
         let node = entry.value;
         let wire = entry.name().to_owned();
-        let place = Place {
+        let origin = Origin {
             key: entry.key,
             node,
         };
         let mut part = Part {
-            place,
+            origin,
             ty: entry.key.span(),
             broken: false,
             borrows_text: false,
@@ -192,7 +198,7 @@ impl<'a> Lowering<'a, '_> {
             };
             let own_name = OBJECT.type_name.read(keys);
             let made = owner.inner(&name, suffix, &wire).called(own_name);
-            (self.inline(&made, place, marker, title.clone()), false)
+            (self.inline(&made, origin, marker, title.clone()), false)
         } else {
             part.ty = node.span();
             part.borrows_text = true;
@@ -227,23 +233,23 @@ impl<'a> Lowering<'a, '_> {
     fn inline(
         &mut self,
         made: &Owner,
-        place: Place<'a>,
+        origin: Origin<'a>,
         marker: Option<(&str, Node<'a>)>,
         title: Text,
     ) -> Type {
-        let content = marker.map_or(place.node, |(_, content)| content);
+        let content = marker.map_or(origin.node, |(_, content)| content);
         if marker.is_some_and(|(mark, _)| mark == CHOICE.one_of.name) {
             let shape = TypeShape::OneOf(OneOf {
                 variants: Vec::new(),
             });
-            let index = self.push_type(self.made_type(made, place, title, shape), place);
+            let index = self.push_type(self.made_type(made, origin, title, shape), origin);
             self.fill_one_of(index, made, content);
             return Type::Named(TypeRef::named(&made.type_name));
         }
         // A bare object has no keys of its own.
-        let coordinates = marker.and_then(|_| FIELD.coordinates.read(place.node));
+        let coordinates = marker.and_then(|_| FIELD.coordinates.read(origin.node));
         let shape = StructType::new(BodyState::Stated, coordinates);
-        let shape = self.made_struct(made, place, content.entries(), title, shape);
+        let shape = self.made_struct(made, origin, content.entries(), title, shape);
         let named = Type::Named(TypeRef::clone(&shape));
         match marker {
             Some((mark, _)) if mark == ITEMS.items.name => Type::Array(Box::new(named)),

@@ -5,20 +5,17 @@
 
 mod available;
 mod body;
-mod entity;
-mod glossary;
 mod needs;
 mod operation;
-mod place;
 mod text;
+mod things;
 mod types;
-mod waiver;
 mod wire;
 
 pub(super) use body::USUAL_OBJECT;
 pub(super) use wire::envelope_type_fits;
 
-use super::draft::{AnswerDraft, Draft, Place};
+use super::draft::{AnswerDraft, Draft, Origin};
 use super::section::Section;
 use crate::language::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
 use crate::model::{Answer, Confirmation, Governed, Languages, Location, Subject};
@@ -50,7 +47,7 @@ pub(super) fn lower<'a>(
     for (index, ty) in draft.types.iter().enumerate() {
         draft.type_index.entry(ty.def.name.clone()).or_insert(index);
     }
-    draft.answers.sort_by_key(|answer| answer.place.key.span());
+    draft.answers.sort_by_key(|answer| answer.origin.key.span());
     name_answers(&mut draft);
     draft
 }
@@ -86,8 +83,8 @@ struct Lowering<'a, 's> {
 
 impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
-        type Lower<'a, S> = (&'static str, fn(&mut S, Place<'a>));
-        let (name, place) = (section.name, section.place);
+        type Lower<'a, S> = (&'static str, fn(&mut S, Origin<'a>));
+        let (name, origin) = (section.name, section.origin);
         let each: [Lower<'a, Self>; 12] = [
             (FILE.commands.name, Self::command),
             (FILE.reports.name, Self::report),
@@ -120,24 +117,29 @@ impl<'a> Lowering<'a, '_> {
             (FILE.limits.name, Self::limits),
             (FILE.codes.name, Self::codes),
         ];
-        if let Some((_, lower)) = each.iter().find(|(key, _)| *key == name) {
-            for Entry { key, value: node } in place.node.entries() {
+        let is_read = |(key, _): &&Lower<'a, Self>| *key == name;
+        let each = each.iter().find(is_read);
+        let clean = clean.iter().filter(|_| section.clean);
+        let whole = whatever.iter().chain(clean).find(is_read);
+        if each.or(whole).is_some() {
+            self.draft.references.extend(&section.references);
+        }
+        if let Some((_, lower)) = each {
+            for Entry { key, value: node } in origin.node.entries() {
                 self.entry = format!("{name}.{}", key.as_str().unwrap_or_default());
-                lower(self, Place { key, node });
+                lower(self, Origin { key, node });
             }
         }
         name.clone_into(&mut self.entry);
-        let clean = clean.iter().filter(|_| section.clean);
-        let whole = whatever.iter().chain(clean).find(|(key, _)| *key == name);
         if let Some((_, lower)) = whole {
-            lower(self, place);
+            lower(self, origin);
         }
         self.draft.availability.is_broken |= name == FILE.availability.name && !section.clean;
         self.draft.sections_known |= name == FILE.sections.name && section.clean;
     }
 
-    fn changes(&mut self, place: Place<'a>) {
-        self.draft.changes = text::changes(place.node.items());
+    fn changes(&mut self, origin: Origin<'a>) {
+        self.draft.changes = text::changes(origin.node.items());
     }
 
     fn location(&self, span: Span) -> Location {
@@ -174,7 +176,7 @@ impl<'a> Lowering<'a, '_> {
             };
             self.draft.answers.push(AnswerDraft {
                 item: answer,
-                place: Place { key: node, node },
+                origin: Origin { key: node, node },
                 holder,
             });
         }

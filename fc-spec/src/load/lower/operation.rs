@@ -8,7 +8,7 @@ use crate::language::grammar::{
     BODY_STATE, BodyKey, CODE, COMMAND, COMMON, EFFECT, ERROR, GROUP, OPERATION, REPORT, SOURCE,
     STATED, STREAM, StateKey, both_languages as text,
 };
-use crate::load::draft::{Place, Placed};
+use crate::load::draft::{Origin, Sourced};
 use crate::load::process;
 use crate::model::{
     Body, BodyField, BodyState, Code, Content, DeclaredError, Direction, Effect, Exchange, Fact,
@@ -18,8 +18,8 @@ use crate::names;
 use crate::syntax::Node;
 
 impl<'a> Lowering<'a, '_> {
-    pub(super) fn group(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn group(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let Some(id) = GROUP.id.read(node) else {
             return;
         };
@@ -27,37 +27,41 @@ impl<'a> Lowering<'a, '_> {
             id,
             title: text(node),
             about: COMMON.about.read(node),
-            location: self.location(place.name()),
+            location: self.location(origin.name()),
         };
-        self.draft.groups.push(Placed { item, place });
+        self.draft.groups.push(Sourced { item, origin });
     }
 
-    pub(super) fn command(&mut self, place: Place<'a>) {
-        let item = self.operation(place);
-        let mut operation = Placed { item, place };
-        let effect = COMMAND.effect.of(place.node).and_then(effect);
+    pub(super) fn command(&mut self, origin: Origin<'a>) {
+        let item = self.operation(origin);
+        let mut operation = Sourced { item, origin };
+        let effect = COMMAND.effect.of(origin.node).and_then(effect);
         let (effect, effect_state) = effect.unwrap_or((Effect::Unknown, BodyState::Open));
         operation.item.exchange = Exchange::Command {
             effect,
             effect_state,
-            sets_off: sets_off(place.node),
-            accepted: COMMAND.accepted.of(place.node).map(needs::accepted),
+            sets_off: sets_off(origin.node),
+            accepted: COMMAND.accepted.of(origin.node).map(needs::accepted),
             messages: self.messages(&operation, [&COMMAND_REQUEST, &COMMAND_RESPONSE]),
         };
         self.draft.operations.push(operation);
     }
 
-    pub(super) fn report(&mut self, place: Place<'a>) {
-        let item = self.operation(place);
-        let mut operation = Placed { item, place };
+    pub(super) fn report(&mut self, origin: Origin<'a>) {
+        let item = self.operation(origin);
+        let mut operation = Sourced { item, origin };
         operation.item.sender = Side::Robot;
         operation.item.exchange = Exchange::Report {
             // Without its own, that of all reports, once it is known.
-            ack: REPORT.ack.of(place.node).map(wire::ack).unwrap_or_default(),
-            cadence: REPORT.cadence.of(place.node).and_then(needs::cadence),
+            ack: REPORT
+                .ack
+                .of(origin.node)
+                .map(wire::ack)
+                .unwrap_or_default(),
+            cadence: REPORT.cadence.of(origin.node).and_then(needs::cadence),
             state: REPORT
                 .state_in
-                .read(place.node)
+                .read(origin.node)
                 .map(|it| process::path(&it)),
             failures: Vec::new(),
             messages: self.messages(&operation, [&REPORT_BODY, &REPORT_ACK]),
@@ -65,27 +69,27 @@ impl<'a> Lowering<'a, '_> {
         self.draft.operations.push(operation);
     }
 
-    pub(super) fn stream(&mut self, place: Place<'a>) {
-        let item = self.operation(place);
-        let mut operation = Placed { item, place };
+    pub(super) fn stream(&mut self, origin: Origin<'a>) {
+        let item = self.operation(origin);
+        let mut operation = Sourced { item, origin };
         operation.item.port = PortRole::Data;
-        operation.item.sender = STREAM.from.read(place.node).unwrap_or(Side::App);
-        let content = match STREAM.body.of(place.node) {
+        operation.item.sender = STREAM.from.read(origin.node).unwrap_or(Side::App);
+        let content = match STREAM.body.of(origin.node) {
             Some(_) => Content::Json(self.body(&operation, &STREAM_BODY)),
-            None => Content::Bytes(STREAM.content.read(place.node)),
+            None => Content::Bytes(STREAM.content.read(origin.node)),
         };
         operation.item.exchange = Exchange::Stream(Stream {
             content,
-            started_by: STREAM.started_by.read(place.node),
-            stopped_by: STREAM.stopped_by.read(place.node),
+            started_by: STREAM.started_by.read(origin.node),
+            stopped_by: STREAM.stopped_by.read(origin.node),
         });
         self.draft.operations.push(operation);
     }
 
     /// What all operations have in common, as a stream.
-    fn operation(&mut self, place: Place<'a>) -> Operation {
-        let node = place.node;
-        let name = place.key.as_str().unwrap_or_default().to_owned();
+    fn operation(&mut self, origin: Origin<'a>) -> Operation {
+        let node = origin.node;
+        let name = origin.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Operation(name.clone()));
         let source = OPERATION.source.of(node);
         let mut errors: Vec<_> = OPERATION.errors.items(node).filter_map(error).collect();
@@ -125,14 +129,14 @@ impl<'a> Lowering<'a, '_> {
             }),
             result_text: OPERATION.result_text.read(node),
             errors,
-            location: self.location(place.name()),
+            location: self.location(origin.name()),
         }
     }
 
     /// Both sides of an operation, and the types made for them.
     fn messages(
         &mut self,
-        operation: &Placed<'a, Operation>,
+        operation: &Sourced<'a, Operation>,
         [request, response]: [&BodySide; 2],
     ) -> Messages {
         Messages {
@@ -142,10 +146,10 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// One side of an operation, and the type made for it.
-    fn body(&mut self, operation: &Placed<'a, Operation>, side: &BodySide) -> Body {
-        let Placed { item, place } = operation;
-        let (state, note) = body_state(side.state_key.of(place.node));
-        let entry = side.key.entry(place.node);
+    fn body(&mut self, operation: &Sourced<'a, Operation>, side: &BodySide) -> Body {
+        let Sourced { item, origin } = operation;
+        let (state, note) = body_state(side.state_key.of(origin.node));
+        let entry = side.key.entry(origin.node);
         let owner = Owner {
             type_name: format!(
                 "{}{}",
@@ -165,7 +169,7 @@ impl<'a> Lowering<'a, '_> {
                 en: format!("{en} of `{}`", item.name),
             }),
         };
-        let body_place = entry.map_or(*place, |entry| Place {
+        let body_place = entry.map_or(*origin, |entry| Origin {
             key: entry.key,
             node: entry.value,
         });

@@ -3,7 +3,7 @@
 use crate::language::grammar::{
     ALIASES, CHANGE, COMMON, DEPRECATED, FIELD_DEPRECATED, both_languages,
 };
-use crate::load::draft::{Place, Placed};
+use crate::load::draft::{Origin, Sourced};
 use crate::model::{Aliases, Change, Deprecation};
 use crate::syntax::Node;
 
@@ -17,13 +17,13 @@ pub(super) fn aliases(node: Node<'_>) -> Aliases {
 }
 
 /// Entries of a list of changes.
-pub(super) fn changes<'a>(items: impl Iterator<Item = Node<'a>>) -> Vec<Placed<'a, Change>> {
-    let change = |node| Placed {
+pub(super) fn changes<'a>(items: impl Iterator<Item = Node<'a>>) -> Vec<Sourced<'a, Change>> {
+    let change = |node| Sourced {
         item: Change {
             date: CHANGE.date.get(node),
             text: both_languages(node),
         },
-        place: Place { key: node, node },
+        origin: Origin { key: node, node },
     };
     items.map(change).collect()
 }

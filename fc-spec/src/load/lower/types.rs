@@ -8,7 +8,7 @@ use crate::language::grammar::{
     CHOICE, COMMON, ENUM, ENUM_VALUE, FIELD, OBJECT, TABLE, both_languages as text,
 };
 use crate::language::scalar;
-use crate::load::draft::{Part, Place, Placed};
+use crate::load::draft::{Origin, Part, Sourced};
 use crate::model::{
     BodyState, EnumRepr, EnumType, EnumValue, Number, Scalar, StructRef, StructType, Subject,
     Table, TypeDef, TypeShape,
@@ -16,9 +16,9 @@ use crate::model::{
 use crate::syntax::{Entry, Node};
 
 impl<'a> Lowering<'a, '_> {
-    pub(super) fn type_def(&mut self, place: Place<'a>) {
-        let node = place.node;
-        let name = place.key.as_str().unwrap_or_default().to_owned();
+    pub(super) fn type_def(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
+        let name = origin.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Type(name.clone()));
         let owner = Owner {
             type_name: name.clone(),
@@ -36,9 +36,9 @@ impl<'a> Lowering<'a, '_> {
             body_of: None,
             since: COMMON.since.read(node),
             changes: own_changes(node),
-            location: self.location(place.name()),
+            location: self.location(origin.name()),
         };
-        let index = self.push_type(def, place);
+        let index = self.push_type(def, origin);
         if let Some(repr) = ENUM.r#enum.of(node) {
             self.fill_enum(index, repr, node);
         } else if let Some(variants) = CHOICE.one_of.of(node) {
@@ -64,9 +64,9 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    pub(super) fn table(&mut self, place: Place<'a>) {
-        let node = place.node;
-        let id = place.key.as_str().unwrap_or_default().to_owned();
+    pub(super) fn table(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
+        let id = origin.key.as_str().unwrap_or_default().to_owned();
         self.answers(node, &Subject::Table(id.clone()));
         let title = text(node);
         let item = Table {
@@ -76,9 +76,9 @@ impl<'a> Lowering<'a, '_> {
             row: StructRef::named(TABLE.row.get(node)),
             rows: TABLE.rows.get(node),
             kept: COMMON.kept.read(node),
-            location: self.location(place.name()),
+            location: self.location(origin.name()),
         };
-        self.draft.tables.push(Placed { item, place });
+        self.draft.tables.push(Sourced { item, origin });
     }
 }
 
@@ -100,7 +100,7 @@ fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>)
         available: available(entry.value),
     };
     let part = Part {
-        place: Place {
+        origin: Origin {
             key: entry.key,
             node: entry.value,
         },

@@ -8,7 +8,7 @@ use crate::language::grammar::{
     TRANSPORT, both_languages as text,
 };
 use crate::language::scalar;
-use crate::load::draft::{EnvelopeDraft, FrameDraft, Place, Placed};
+use crate::load::draft::{EnvelopeDraft, FrameDraft, Origin, Sourced};
 use crate::model::{
     Ack, ByteOrder, CallDefaults, CodeRange, Conflict, Encoding, EncodingRole, EnvelopeField,
     EnvelopeRole, FrameKind, HeaderField, HeaderRole, HeaderType, JsonRule, KindRole, Limits,
@@ -19,8 +19,8 @@ use crate::names;
 use crate::syntax::{Entries, Node};
 use crate::vocabulary::Word as _;
 
-fn places(entries: Entries<'_>) -> impl Iterator<Item = Place<'_>> {
-    entries.map(|entry| Place {
+fn places(entries: Entries<'_>) -> impl Iterator<Item = Origin<'_>> {
+    entries.map(|entry| Origin {
         key: entry.key,
         node: entry.value,
     })
@@ -32,8 +32,8 @@ pub(super) fn code_name(wire: &str, node: Node<'_>) -> String {
 }
 
 impl<'a> Lowering<'a, '_> {
-    pub(super) fn protocol(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn protocol(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let party = |node| {
             Some(Party {
                 title: text(node),
@@ -55,12 +55,12 @@ impl<'a> Lowering<'a, '_> {
             robot,
             app,
         };
-        self.draft.protocol = Some(Placed { item, place });
+        self.draft.protocol = Some(Sourced { item, origin });
         self.answers(node, &Subject::Protocol);
     }
 
-    pub(super) fn transport(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn transport(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let ports = places(
             TRANSPORT
                 .ports
@@ -80,13 +80,13 @@ impl<'a> Lowering<'a, '_> {
                 host: TRANSPORT.host.get(node),
                 ports,
             };
-            self.draft.transport = Some(Placed { item, place });
+            self.draft.transport = Some(Sourced { item, origin });
         }
         self.answers(node, &Subject::Transport);
     }
 
-    pub(super) fn frame(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn frame(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let heads = FRAME.heads.of(node);
         let mut kinds: Vec<_> = places(FRAME.kinds.get(node))
             .filter_map(frame_kind)
@@ -98,13 +98,13 @@ impl<'a> Lowering<'a, '_> {
         encodings.sort_by_key(|encoding| encoding.item.value);
         let mut header = Vec::new();
         let mut offset = 0;
-        for place in places(FRAME.header.get(node)) {
-            let field = self.header_field(place, offset);
+        for origin in places(FRAME.header.get(node)) {
+            let field = self.header_field(origin, offset);
             offset += field.item.ty.size();
             header.push(field);
         }
         self.draft.frame = Some(FrameDraft {
-            place,
+            origin,
             byte_order: FRAME.byte_order.read(node).unwrap_or(ByteOrder::Big),
             header,
             request_head: HEADS.request.get(heads),
@@ -116,12 +116,12 @@ impl<'a> Lowering<'a, '_> {
         self.answers(node, &Subject::Frame(None));
     }
 
-    fn header_field(&mut self, place: Place<'a>, offset: usize) -> Placed<'a, HeaderField> {
-        let wire = place.key.as_str().unwrap_or_default().to_owned();
-        let node = place.node;
+    fn header_field(&mut self, origin: Origin<'a>, offset: usize) -> Sourced<'a, HeaderField> {
+        let wire = origin.key.as_str().unwrap_or_default().to_owned();
+        let node = origin.node;
         self.answers(node, &Subject::Frame(Some(wire.clone())));
         let role = HEADER_FIELD.role.read(node);
-        Placed {
+        Sourced {
             item: HeaderField {
                 name: code_name(&wire, node),
                 // No bytes at all for what is no header type, which a check reports.
@@ -136,34 +136,34 @@ impl<'a> Lowering<'a, '_> {
                 aliases: aliases(node),
                 wire,
             },
-            place,
+            origin,
         }
     }
 
-    pub(super) fn json(&mut self, place: Place<'a>) {
+    pub(super) fn json(&mut self, origin: Origin<'a>) {
         let rules = JsonRule::ALL.iter();
-        let said = rules.filter_map(|rule| Some((*rule, text(place.node.get(rule.name())?))));
+        let said = rules.filter_map(|rule| Some((*rule, text(origin.node.get(rule.name())?))));
         self.draft.json = Some(said.collect());
     }
 
-    pub(super) fn envelope(&mut self, place: Place<'a>) {
+    pub(super) fn envelope(&mut self, origin: Origin<'a>) {
         let mut side = |fields| {
             places(fields)
                 .filter_map(|field| self.envelope_field(field))
                 .collect()
         };
         let envelope = EnvelopeDraft {
-            place,
-            request: side(ENVELOPE.request.get(place.node)),
-            response: side(ENVELOPE.response.get(place.node)),
+            origin,
+            request: side(ENVELOPE.request.get(origin.node)),
+            response: side(ENVELOPE.response.get(origin.node)),
         };
         self.draft.envelope = Some(envelope);
-        self.answers(place.node, &Subject::Envelope(None));
+        self.answers(origin.node, &Subject::Envelope(None));
     }
 
-    fn envelope_field(&mut self, place: Place<'a>) -> Option<Placed<'a, EnvelopeField>> {
-        let wire = place.key.as_str()?.to_owned();
-        let node = place.node;
+    fn envelope_field(&mut self, origin: Origin<'a>) -> Option<Sourced<'a, EnvelopeField>> {
+        let wire = origin.key.as_str()?.to_owned();
+        let node = origin.node;
         self.answers(node, &Subject::Envelope(Some(wire.clone())));
         let (ty, optional) = ENVELOPE_FIELD.r#type.read(node)?;
         let item = EnvelopeField {
@@ -176,14 +176,14 @@ impl<'a> Lowering<'a, '_> {
             aliases: aliases(node),
             wire,
         };
-        Some(Placed { item, place })
+        Some(Sourced { item, origin })
     }
 
-    pub(super) fn results(&mut self, place: Place<'a>) {
-        self.draft.results_place = Some(place);
-        for place in places(place.node.entries()) {
-            let node = place.node;
-            let Some(code) = scalar::small_int(place.key) else {
+    pub(super) fn results(&mut self, origin: Origin<'a>) {
+        self.draft.results_place = Some(origin);
+        for origin in places(origin.node.entries()) {
+            let node = origin.node;
+            let Some(code) = scalar::small_int(origin.key) else {
                 continue;
             };
             let title = text(node);
@@ -194,14 +194,14 @@ impl<'a> Lowering<'a, '_> {
                 about: COMMON.about.read(node).unwrap_or_else(|| title.clone()),
                 text: title,
             };
-            self.draft.results.push(Placed { item, place });
+            self.draft.results.push(Sourced { item, origin });
             self.answers(node, &Subject::Results(Some(code)));
         }
         self.draft.results.sort_by_key(|result| result.item.code);
     }
 
-    pub(super) fn calls(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn calls(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let item = CallDefaults {
             timeout_ms: CALLS.timeout_ms.get(node),
             handler_timeout_ms: CALLS.handler_timeout_ms.get(node),
@@ -209,17 +209,17 @@ impl<'a> Lowering<'a, '_> {
             // `ack:` may stand behind `calls:`; resolving puts it in.
             ack: ack(node),
         };
-        self.draft.calls = Some(Placed { item, place });
+        self.draft.calls = Some(Sourced { item, origin });
         self.answers(node, &Subject::Protocol);
     }
 
-    pub(super) fn default_ack(&mut self, place: Place<'a>) {
-        self.draft.default_ack = Some(ack(place.node));
-        self.answers(place.node, &Subject::Protocol);
+    pub(super) fn default_ack(&mut self, origin: Origin<'a>) {
+        self.draft.default_ack = Some(ack(origin.node));
+        self.answers(origin.node, &Subject::Protocol);
     }
 
-    pub(super) fn limits(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn limits(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let item = Limits {
             frame_bytes: LIMITS.frame_bytes.get(node),
             inflated_bytes: LIMITS.inflated_bytes.get(node),
@@ -228,54 +228,54 @@ impl<'a> Lowering<'a, '_> {
             queued_reports: LIMITS.queued_reports.get(node),
             connections: LIMITS.connections.get(node),
         };
-        self.draft.limits = Some(Placed { item, place });
+        self.draft.limits = Some(Sourced { item, origin });
     }
 
-    pub(super) fn codes(&mut self, place: Place<'a>) {
-        for node in CODES.ranges.items(place.node) {
+    pub(super) fn codes(&mut self, origin: Origin<'a>) {
+        for node in CODES.ranges.items(origin.node) {
             self.answers(node, &Subject::Codes);
             if let Some(item) = range(node) {
-                let place = Place { key: node, node };
-                self.draft.ranges.push(Placed { item, place });
+                let origin = Origin { key: node, node };
+                self.draft.ranges.push(Sourced { item, origin });
             }
         }
-        for node in CODES.retired.items(place.node) {
+        for node in CODES.retired.items(origin.node) {
             if let Some((code, spelling)) = RETIRED.code.read(node) {
                 let item = RetiredCode {
                     code,
                     spelling,
                     text: text(node),
                 };
-                let place = Place { key: node, node };
-                self.draft.retired.push(Placed { item, place });
+                let origin = Origin { key: node, node };
+                self.draft.retired.push(Sourced { item, origin });
             }
         }
         self.draft.ranges.sort_by_key(|range| range.item.first);
         self.draft.retired.sort_by_key(|retired| retired.item.code);
         self.draft.codes_known = true;
-        self.answers(place.node, &Subject::Codes);
+        self.answers(origin.node, &Subject::Codes);
     }
 
-    pub(super) fn missing_section(&mut self, place: Place<'a>) {
-        if let Some(section) = scalar::small_int(place.key) {
+    pub(super) fn missing_section(&mut self, origin: Origin<'a>) {
+        if let Some(section) = scalar::small_int(origin.key) {
             let item = MissingSection {
                 section,
-                text: text(place.node),
+                text: text(origin.node),
             };
-            self.draft.sections.push(Placed { item, place });
-            self.answers(place.node, &Subject::Section(section));
+            self.draft.sections.push(Sourced { item, origin });
+            self.answers(origin.node, &Subject::Section(section));
         }
     }
 
-    pub(super) fn conflict(&mut self, place: Place<'a>) {
-        let node = place.node;
+    pub(super) fn conflict(&mut self, origin: Origin<'a>) {
+        let node = origin.node;
         let item = Conflict {
-            id: place.key.as_str().unwrap_or_default().to_owned(),
+            id: origin.key.as_str().unwrap_or_default().to_owned(),
             category: CONFLICT.category.get(node),
             severity: CONFLICT.severity.read(node).unwrap_or(Severity::Low),
             text: text(node),
         };
-        self.draft.conflicts.push(Placed { item, place });
+        self.draft.conflicts.push(Sourced { item, origin });
     }
 }
 
@@ -287,27 +287,27 @@ pub(super) fn ack(node: Node<'_>) -> Ack {
     }
 }
 
-fn frame_kind(place: Place<'_>) -> Option<Placed<'_, FrameKind>> {
-    let node = place.node;
+fn frame_kind(origin: Origin<'_>) -> Option<Sourced<'_, FrameKind>> {
+    let node = origin.node;
     let item = FrameKind {
-        value: scalar::small_int(place.key)?,
+        value: scalar::small_int(origin.key)?,
         name: FRAME_KIND.name.get(node),
         role: FRAME_KIND.role.read(node).unwrap_or(KindRole::Reserved),
         port: FRAME_KIND.port.read(node).unwrap_or(PortRole::Command),
         text: text(node),
     };
-    Some(Placed { item, place })
+    Some(Sourced { item, origin })
 }
 
-fn encoding(place: Place<'_>) -> Option<Placed<'_, Encoding>> {
-    let node = place.node;
+fn encoding(origin: Origin<'_>) -> Option<Sourced<'_, Encoding>> {
+    let node = origin.node;
     let item = Encoding {
-        value: scalar::small_int(place.key)?,
+        value: scalar::small_int(origin.key)?,
         name: ENCODING.name.get(node),
         role: ENCODING.role.read(node).unwrap_or(EncodingRole::Plain),
         text: text(node),
     };
-    Some(Placed { item, place })
+    Some(Sourced { item, origin })
 }
 
 fn range(node: Node<'_>) -> Option<CodeRange> {

@@ -48,6 +48,7 @@ pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut
 /// Describes the values of a kind.
 pub(super) fn describe(kind: &Kind) -> Text {
     match kind {
+        Kind::Ref { name, .. } => describe(name),
         Kind::Text | Kind::WireKey => text!("文本", "a text"),
         Kind::Bool => text!("`true` 或 `false`", "`true` or `false`"),
         Kind::Int { .. } => text!("整数", "an integer"),
@@ -86,7 +87,7 @@ pub(super) fn describe_either(kinds: &[Kind]) -> Text {
 
 /// Describes the keys of a mapping.
 pub(super) fn describe_key(key: &Kind) -> Text {
-    match key {
+    match key.form() {
         Kind::Name => text!("snake_case 名称", "snake_case names"),
         Kind::TypeName => text!("PascalCase 名称", "PascalCase names"),
         Kind::Int { .. } => text!("数值", "numbers"),

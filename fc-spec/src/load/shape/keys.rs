@@ -1,6 +1,7 @@
 //! Keys that a mapping should not have, or should have.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::Cursor;
 use crate::language::grammar::{
     Command, Enum, FIELD_FORMS, OneOf, Report, Stream, Struct, TEXT, Table,
 };
@@ -62,7 +63,7 @@ fn keys_and(keys: &[&str]) -> Text {
 
 /// Reports the keys of a mapping that its table does not have; what they are known to be meant as, and how many there are
 /// of which nobody knows.
-pub(in crate::load) fn unknown_keys(
+pub(super) fn unknown_keys(
     table: &Table,
     node: Node<'_>,
     faults: &mut Faults,
@@ -105,6 +106,13 @@ pub(in crate::load) fn unknown_keys(
         faults.push(fault);
     }
     (meant, strangers)
+}
+
+/// Reports the keys of a mapping that the grammar does not have there.
+pub(crate) fn check_keys(cursor: Cursor, mapping: Node<'_>, faults: &mut Faults) {
+    if let Cursor::Declared(table) = cursor {
+        unknown_keys(table, mapping, faults);
+    }
 }
 
 /// The key with which a text begins that was meant as a key and a value: `zh` of `zh：标签` and of `zh 标签`.
@@ -164,19 +172,13 @@ fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
             "inside `{{ }}` a comma ends a text; if this is the rest of a text, quote it"
         ));
     }
-    if let Some(near) = nearest(name, free.iter().copied()) {
-        return fault.fix(
-            span,
-            near,
-            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-        );
-    }
     let known: Vec<_> = table.keys.iter().map(|key| key.name).collect();
-    fault.note(text!(
+    let note = text!(
         "它的键有：{known}",
         "its keys are {known}",
         known = Text::listed(known)
-    ))
+    );
+    fault.suggest(nearest(name, free.iter().copied()), Some(note))
 }
 
 /// The name of a table, in English with the indefinite article.

@@ -2,25 +2,36 @@
 //! right kind, scalars well formed. One walk; everything it reports is left out of the draft.
 
 mod expected;
+mod forms;
 mod keys;
 mod scalars;
 mod stray;
 
-pub(super) use keys::unknown_keys;
+pub(super) use forms::{lacks_form, misread_marker};
+pub(crate) use keys::check_keys;
 
 use super::texts;
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{FIELD, FIELD_FORMS, FIELD_KIND, Kind, TEXT, Table};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::grammar::{FIELD_KIND, File, Kind, TEXT, Table};
 use crate::language::scalar;
 use crate::model::{Lang, Languages};
 use crate::source::Span;
 use crate::syntax::{Entry, Items, Node, NodeKind, quoted};
 use crate::text;
-use expected::{describe_either, describe_key, wrong_kind};
-use keys::{article, missing_keys};
+use expected::{describe_key, wrong_kind};
+use forms::{check_by_key, check_either};
+use keys::{article, missing_keys, unknown_keys};
 use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 use stray::{is_split, misplaced, misplaced_entry, section_of};
+
+/// Reports the root of a file that is no mapping.
+pub(crate) fn check_root(root: Node<'_>, faults: &mut Faults) {
+    if root.as_mapping().is_none() {
+        let kind = Kind::Map(File::TABLE);
+        check_kind(&kind, root, root.span(), Languages::Any, faults);
+    }
+}
 
 /// Reports what `node` lacks of `kind`. Each text has to be in the languages `texts`.
 pub(super) fn check_kind(
@@ -43,6 +54,7 @@ pub(super) fn check_kind(
         }
         Kind::Json => check_json(node, Wanted::Either, faults),
         Kind::Type => check_type(node, at, faults),
+        Kind::Ref { name, .. } => check_scalar(name, node, at, faults),
         _ => check_scalar(kind, node, at, faults),
     }
 }
@@ -155,7 +167,9 @@ fn check_entries(
             continue;
         }
         check_key(key, entry.key, faults);
-        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) = (key, scalar::int(entry.key)) {
+        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) =
+            (key.form(), scalar::int(entry.key))
+        {
             match numbers.get(&number) {
                 Some(first) => faults.push(
                     Diagnostic::error(
@@ -192,7 +206,7 @@ fn check_entries(
 fn check_key(kind: &Kind, key: Node<'_>, faults: &mut Faults) {
     match kind {
         Kind::WireKey => check_wire_key(key, faults),
-        _ => check_scalar(kind, key, key.span(), faults),
+        _ => check_scalar(kind.form(), key, key.span(), faults),
     }
 }
 
@@ -255,7 +269,7 @@ fn check_list(
         check_kind(of, item, item.span(), texts, faults);
     }
     if matches!(
-        of,
+        of.form(),
         Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
     ) {
         check_repeated(items, faults);
@@ -296,177 +310,6 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
             );
         }
     }
-}
-
-/// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
-fn check_either(kinds: &[Kind], node: Node<'_>, at: Span, texts: Languages, faults: &mut Faults) {
-    let candidates: Vec<_> = kinds.iter().filter(|kind| kind.could_be(node)).collect();
-    let chosen = candidates
-        .iter()
-        .find(|kind| fits(kind, node))
-        .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
-        .or(candidates.first());
-    if let Some(kind) = chosen {
-        check_kind(kind, node, at, texts, faults);
-    } else {
-        let expected = describe_either(kinds);
-        wrong_kind(&expected, node, at, faults);
-    }
-}
-
-/// Whether a scalar is exactly what the kind asks for.
-fn fits(kind: &Kind, node: Node<'_>) -> bool {
-    match kind {
-        Kind::Code => scalar::code(node).is_some(),
-        Kind::Int { .. } => scalar::int(node).is_some(),
-        Kind::Word(words) => node
-            .as_str()
-            .is_some_and(|text| words.iter().any(|(word, ..)| *word == text)),
-        _ => true,
-    }
-}
-
-/// Whether a scalar is a slip of one of the kind's words.
-fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
-    match (kind, node.as_str()) {
-        (Kind::Word(words), Some(text)) => {
-            nearest(text, words.iter().map(|(word, ..)| *word)).is_some()
-        }
-        _ => false,
-    }
-}
-
-fn check_by_key(
-    tables: &'static [(&'static str, &'static Table)],
-    otherwise: &Kind,
-    node: Node<'_>,
-    at: Span,
-    texts: Languages,
-    faults: &mut Faults,
-) {
-    let entries = node.entries().filter(|entry| entry.value.is_null());
-    let slips: Vec<_> = entries.filter_map(|entry| entry.key.slip()).collect();
-    if !slips.is_empty() && tables.iter().all(|(mark, _)| node.entry(mark).is_none()) {
-        faults.extend(slips);
-        return;
-    }
-    let mut marks = tables
-        .iter()
-        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
-    let Some((first, table)) = marks.next() else {
-        match likely(tables, otherwise, node) {
-            Some(table) => check_map(table, node, at, texts, faults),
-            None => check_kind(otherwise, node, at, texts, faults),
-        }
-        return;
-    };
-    if let Some(marker) = misread_marker(node) {
-        faults.hide(node.span());
-        let name = marker.name();
-        let message = text!(
-            "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
-            "`{name}` starts the long form of a field, so it is not read as a wire key"
-        );
-        faults.push(
-            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
-        );
-        return;
-    }
-    if let Some((second, _)) = marks.next() {
-        faults.hide(node.span());
-        faults.push(
-            Diagnostic::error(
-                FaultCode::TwoForms,
-                second.key.span(),
-                text!(
-                    "`{first}` 和 `{second}` 不能同时使用",
-                    "`{first}` and `{second}` cannot be combined",
-                    first = first.name(),
-                    second = second.name()
-                ),
-            )
-            .also(
-                first.key.span(),
-                text!("这里已经定义了字段", "this already defines the field"),
-            ),
-        );
-        return;
-    }
-    check_map(table, node, at, texts, faults);
-}
-
-/// The table of a mapping that lacks the key which decides, where its other keys tell what it was meant as.
-fn likely(
-    tables: &'static [(&'static str, &'static Table)],
-    otherwise: &Kind,
-    node: Node<'_>,
-) -> Option<&'static Table> {
-    let knows = |table: &Table| {
-        node.entries()
-            .all(|entry| table.key(entry.name()).is_some())
-    };
-    if let Kind::Body = otherwise {
-        let marks = tables.iter().map(|(mark, _)| *mark);
-        let near = node
-            .entries()
-            .find_map(|entry| nearest(entry.name(), marks.clone()));
-        let table = tables.iter().find(|(mark, _)| near == Some(*mark));
-        let table = table.or(tables.first()).map(|(_, table)| *table);
-        return table.filter(|_| lacks_form(node));
-    }
-    let is_otherwise = match otherwise {
-        Kind::Map(table) => knows(table),
-        _ => false,
-    };
-    let mut fitting = tables
-        .iter()
-        .map(|(_, table)| *table)
-        .filter(|table| knows(table));
-    fitting
-        .next()
-        .filter(|_| !is_otherwise && node.entries().count() > 0)
-}
-
-/// Whether a mapping has the text of a field's long form, and nothing that says which form it is: its keys are no wire
-/// keys.
-pub(super) fn lacks_form(node: Node<'_>) -> bool {
-    let has_form = FIELD_FORMS
-        .iter()
-        .any(|(mark, _)| node.entry(mark).is_some());
-    !has_form && has_text(node)
-}
-
-/// Whether it has a text that is no type, as a field's long form has.
-fn has_text(node: Node<'_>) -> bool {
-    let text = TEXT.zh.of(node).or(TEXT.en.of(node));
-    text.is_some_and(|text| text.as_scalar().is_some() && scalar::field_type(text).is_none())
-}
-
-/// The key of a field that marks a longhand and was most likely meant as a wire key.
-pub(super) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
-    if has_text(node) {
-        return None;
-    }
-    let (marker, table) = FIELD_FORMS
-        .iter()
-        .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
-    let is_field = |value: Node<'_>| {
-        FIELD_FORMS
-            .iter()
-            .any(|(mark, _)| value.get(mark).is_some())
-    };
-    let is_misread = if marker.name() == FIELD.r#type.name {
-        marker.value.as_mapping().is_some()
-    } else {
-        let ty = FIELD.r#type.of(marker.value);
-        let text = TEXT.zh.of(marker.value).or(TEXT.en.of(marker.value));
-        ty.is_some_and(|ty| ty.as_mapping().is_none()) && text.is_some()
-    };
-    // Fields beside it, where only keys of the longhand may stand.
-    let has_fields_beside = node
-        .entries()
-        .any(|entry| table.key(entry.name()).is_none() && is_field(entry.value));
-    (is_misread || has_fields_beside).then_some(marker)
 }
 
 /// Values of examples and rows: any form, but no scalar that YAML readers disagree about.

@@ -246,16 +246,14 @@ fn bad_unit(text: &str, span: Span) -> Diagnostic {
             quoted(near),
             text!("是否想写 `{near}`？", "did you mean `{near}`?"),
         ),
-        Some(near) => fault.fix(
-            span,
-            near,
-            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-        ),
-        None => fault.note(text!(
-            "单位有：{units}",
-            "the units are {units}",
-            units = list_words(UNITS)
-        )),
+        near => {
+            let note = text!(
+                "单位有：{units}",
+                "the units are {units}",
+                units = list_words(UNITS)
+            );
+            fault.suggest(near, Some(note))
+        }
     }
 }
 
@@ -466,16 +464,11 @@ fn bad_word(text: &str, words: &[Meaning], span: Span) -> Diagnostic {
         span,
         text!("这里不能写 `{text}`", "`{text}` is not allowed here"),
     );
-    match nearest(text, words.iter().map(|(word, ..)| *word)) {
-        Some(near) => fault.fix(
-            span,
-            near,
-            text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-        ),
-        None => fault.note(text!(
-            "可以写：{words}",
-            "expected one of {words}",
-            words = list_words(words)
-        )),
-    }
+    let near = nearest(text, words.iter().map(|(word, ..)| *word));
+    let note = text!(
+        "可以写：{words}",
+        "expected one of {words}",
+        words = list_words(words)
+    );
+    fault.suggest(near, Some(note))
 }

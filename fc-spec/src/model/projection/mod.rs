@@ -5,6 +5,7 @@
 
 mod operation;
 
+use super::named::Thing;
 use super::{
     Answer, Asked, Condition, EnumType, Example, Field, FieldDetails, Model, OneOf, Operation,
     Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape,
@@ -117,35 +118,17 @@ impl Model {
 
     /// Takes out groups, entities, coordinate systems, stores, answers, questions and conflicts that are about nothing that is here.
     fn leave_out_what_nothing_uses(&mut self) {
-        let operations = self.operations.iter().map(|it| it.group.as_str());
-        let groups = operations.chain(self.types.iter().filter_map(|ty| ty.group.as_deref()));
-        let groups: HashSet<&str> = groups.collect();
-        self.groups
-            .retain(|group| groups.contains(group.id.as_str()));
+        let named = self.named().into_iter();
+        let named: HashSet<_> = named.map(|it| (it.thing, it.name.to_owned())).collect();
+        let is_named = |thing, name: &String| named.contains(&(thing, name.clone()));
+        self.groups.retain(|it| is_named(Thing::Group, &it.id));
         for range in &mut self.ranges {
-            range.groups.retain(|group| groups.contains(group.as_str()));
+            range.groups.retain(|it| is_named(Thing::Group, it));
         }
-        let structs = self.types.iter().filter_map(|ty| match &ty.shape {
-            TypeShape::Struct(shape) => Some(shape),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-        });
-        let fields = structs.clone().flat_map(|shape| &shape.fields);
-        let details: Vec<&FieldDetails> = fields.map(Field::details).collect();
-        let referred = details.iter().filter_map(|it| it.refers.as_deref());
-        let referred: HashSet<&str> = referred.collect();
-        self.entities
-            .retain(|entity| referred.contains(entity.name.as_str()));
-        let whole = structs.filter_map(|shape| shape.coordinates.as_deref());
-        let systems = details.iter().filter_map(|it| it.coordinates.as_deref());
-        let systems: HashSet<&str> = whole.chain(systems).collect();
+        self.entities.retain(|it| is_named(Thing::Entity, &it.name));
         self.coordinates
-            .retain(|system| systems.contains(system.name.as_str()));
-        let kept = details.iter().filter_map(|it| it.kept.as_deref());
-        let kept = kept.chain(self.operations.iter().filter_map(|it| it.kept.as_deref()));
-        let kept = kept.chain(self.tables.iter().filter_map(|it| it.kept.as_deref()));
-        let kept: HashSet<&str> = kept.collect();
-        self.stores
-            .retain(|store| kept.contains(store.name.as_str()));
+            .retain(|it| is_named(Thing::CoordinateSystem, &it.name));
+        self.stores.retain(|it| is_named(Thing::Store, &it.name));
 
         let asked: HashSet<String> = ids(&self.answers).collect();
         let (types, operations) = (&self.types, &self.operations);

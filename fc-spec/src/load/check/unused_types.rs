@@ -31,7 +31,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     for (index, (ty, used)) in draft.types.iter().zip(&used).enumerate() {
         // A second type of one name has been reported; one made for a declared type goes with it.
         let is_first = draft.type_index.get(&ty.def.name) == Some(&index);
-        let is_declared = ty.place.key.as_str() == Some(ty.def.name.as_str());
+        let is_declared = ty.origin.key.as_str() == Some(ty.def.name.as_str());
         if !used && is_first && is_declared {
             let message = text!(
                 "类型 `{name}` 没有用到",
@@ -39,7 +39,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
                 name = ty.def.name
             );
             faults.push(
-                Diagnostic::error(FaultCode::UnusedType, ty.place.name(), message).note(text!(
+                Diagnostic::error(FaultCode::UnusedType, ty.origin.name(), message).note(text!(
                     "在消息体中用到它，或将它删除",
                     "use it in a body, or delete it"
                 )),

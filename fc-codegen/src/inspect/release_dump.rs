@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 /// The dump as JSON for files that are kept: without what is worked out from the rest, and with a line for each operation, type and
 /// other thing of a list, so that text tools find and compare them. It is read like any other dump.
 #[must_use]
-pub fn frozen(model: &Model) -> String {
+pub fn release_dump(model: &Model) -> String {
     let mut out = String::new();
     parts(&mut out, &tree(&Dump::from(model)), 2);
     out.push('\n');

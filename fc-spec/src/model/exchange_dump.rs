@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// An exchange in a dump: every key for every kind, `null` where the kind has nothing of it.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
-pub(super) struct Flat {
+pub(super) struct ExchangeDump {
     /// Command, report or stream.
     kind: Kind,
     /// What it does to the robot; commands only.
@@ -22,9 +22,9 @@ pub(super) struct Flat {
     /// What has to hold before it is accepted; commands only.
     accepted: Option<Accepted>,
     /// What the command asks, what the report says, what the stream carries.
-    request: FlatBody,
+    request: BodyDump,
     /// The answer or acknowledgement.
-    response: FlatBody,
+    response: BodyDump,
     /// For reports.
     ack: Option<Ack>,
     /// When it is sent; reports only.
@@ -45,7 +45,7 @@ pub(super) struct Flat {
 /// One side of an operation in a dump.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Body")]
-struct FlatBody {
+struct BodyDump {
     /// Stated, inferred or open.
     state: BodyState,
     /// Name of its struct; `null` for raw bytes and where nothing is sent.
@@ -55,7 +55,7 @@ struct FlatBody {
     note: Option<Text>,
 }
 
-impl From<Exchange> for Flat {
+impl From<Exchange> for ExchangeDump {
     fn from(exchange: Exchange) -> Self {
         let of = |kind, request: Option<Body>, response: Option<Body>| Self {
             kind,
@@ -63,8 +63,8 @@ impl From<Exchange> for Flat {
             effect_state: None,
             sets_off: Vec::new(),
             accepted: None,
-            request: request.map_or(FlatBody::RAW, FlatBody::from),
-            response: response.map_or(FlatBody::RAW, FlatBody::from),
+            request: request.map_or(BodyDump::RAW, BodyDump::from),
+            response: response.map_or(BodyDump::RAW, BodyDump::from),
             ack: None,
             cadence: None,
             state: None,
@@ -124,7 +124,7 @@ impl From<Exchange> for Flat {
     }
 }
 
-impl FlatBody {
+impl BodyDump {
     const RAW: Self = Self {
         state: BodyState::Stated,
         ty: None,
@@ -140,7 +140,7 @@ impl FlatBody {
     }
 }
 
-impl From<Body> for FlatBody {
+impl From<Body> for BodyDump {
     fn from(body: Body) -> Self {
         Self {
             state: body.state,
@@ -150,10 +150,10 @@ impl From<Body> for FlatBody {
     }
 }
 
-impl TryFrom<Flat> for Exchange {
+impl TryFrom<ExchangeDump> for Exchange {
     type Error = &'static str;
 
-    fn try_from(flat: Flat) -> Result<Self, Self::Error> {
+    fn try_from(flat: ExchangeDump) -> Result<Self, Self::Error> {
         let (request, response) = (flat.request.message(), flat.response.message());
         let messages = |request: Option<Body>| {
             let messages = request.zip(response);

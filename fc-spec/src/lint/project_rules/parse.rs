@@ -1,12 +1,12 @@
 //! A rule of the project as it is written: what it is about, and what it asks of which path.
 
-use super::house::{GROUPS, HOUSE_RULE, HouseRule, SETTINGS};
-use super::path::{At, Shape, kinds};
-use super::predicate::{Check, Test};
-use super::settings::{Reader, meant};
+use super::{GROUPS, HOUSE_RULE, HouseRule, SETTINGS};
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
 use crate::language::grammar::TEXT;
 use crate::language::scalar;
+use crate::lint::path::{At, Shape, kinds};
+use crate::lint::predicate::{Check, Test};
+use crate::lint::settings::{Reader, meant};
 use crate::model::Text;
 use crate::syntax::{Node, NodeKind, Style};
 use crate::text;
@@ -17,7 +17,7 @@ use serde_json::Value;
 const DEPTH: u8 = 16;
 
 impl Reader<'_> {
-    pub(super) fn rule(&mut self, node: Node<'_>) -> Option<HouseRule> {
+    pub(in crate::lint) fn rule(&mut self, node: Node<'_>) -> Option<HouseRule> {
         const KEYS: [&str; 7] = ["id", "zh", "en", "level", "for", "where", "require"];
         for entry in node.entries() {
             if !KEYS.contains(&entry.name()) {

@@ -1,12 +1,14 @@
 //! HOUSE: rules that a project has written itself, and what is wrong with how it uses the lint.
 
-use super::finding::Finding;
-use super::predicate::Test;
-use super::rule::{Category, Level, Rule};
-use super::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
+mod parse;
+
 use crate::diagnostic::LintCode;
-use crate::index::Item;
+use crate::index::DefId;
 use crate::language::grammar as language;
+use crate::lint::finding::Finding;
+use crate::lint::predicate::Test;
+use crate::lint::rule::{Category, Level, Rule};
+use crate::lint::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
 use crate::model::{Model, Text, TypeShape};
 use serde_json::Value;
 
@@ -125,7 +127,7 @@ pub(super) fn find(model: &Model, rules: &[HouseRule]) -> Vec<Finding> {
     if rules.is_empty() {
         return findings;
     }
-    let mut look = |item: Item, value: &dyn Fn() -> serde_json::Result<Value>| {
+    let mut look = |item: DefId, value: &dyn Fn() -> serde_json::Result<Value>| {
         let mut rules = rules.iter().filter(|rule| rule.on.contains(&item.kind));
         let Some(first) = rules.next() else { return };
         // A part of a model always serializes.

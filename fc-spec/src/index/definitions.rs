@@ -1,9 +1,12 @@
-//! Where each thing that a spec says is written.
+//! The places where a spec declares each thing.
 
 use crate::diagnostic::nearest;
-use crate::language::grammar::{self, TRANSPORT, Table};
+use crate::language::grammar::{
+    self, AnyOperation, COMMON, Named, TRANSPORT, TYPES, Table, both_languages,
+};
 use crate::language::reference;
-use crate::load::draft::{Draft, Place as Written, Placed};
+use crate::load::Trees;
+use crate::load::draft::{Draft, Origin, Sourced};
 use crate::model::{Direction, Kind, Text, TypeShape};
 use crate::source::{FileId, Span};
 use crate::syntax::{Entry, Node};
@@ -12,18 +15,18 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// A thing that a spec says.
+/// The identity of a thing that a spec declares.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Item {
-    /// What the language calls it, which is the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
+pub struct DefId {
+    /// The kind, as the id of a [`Part`](crate::language::Part): `command`, `struct`, `field`.
     pub kind: &'static str,
-    /// What it is part of, where its name alone does not tell it from others: the type of a field.
+    /// The thing around it, if the name alone is not unique: the type of a field.
     pub owner: Option<String>,
     /// Its name; a code as the spec writes it, a number in decimal; its place among its like, from 1, where it has neither.
     pub name: String,
 }
 
-impl Item {
+impl DefId {
     /// The name with the kind: `field Station.name`, `字段 Station.name`.
     #[must_use]
     pub fn text(&self) -> Text {
@@ -39,8 +42,22 @@ impl Item {
     }
 }
 
+impl DefId {
+    /// Returns `true` for a type, declared or made of a body.
+    #[must_use]
+    pub fn is_type(&self) -> bool {
+        TYPES.contains(&self.kind)
+    }
+
+    /// Returns `true` for a command, report or stream.
+    #[must_use]
+    pub fn is_operation(&self) -> bool {
+        AnyOperation::KINDS.contains(&self.kind)
+    }
+}
+
 /// With its kind: `field Station.name`.
-impl fmt::Display for Item {
+impl fmt::Display for DefId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, owner, name } = self;
         match owner {
@@ -51,10 +68,10 @@ impl fmt::Display for Item {
     }
 }
 
-/// Where something is written.
+/// The place of a declaration.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// What names it: its key, or the list item itself.
+pub struct DefSite {
+    /// Its key, or the list item itself.
     pub key: Span,
     /// All of it.
     pub whole: Span,
@@ -62,26 +79,26 @@ pub struct Place {
     pub comments: Vec<Span>,
 }
 
-/// Where each thing is written that could be read. Of two of one name, the first.
+/// The declaration of each thing that could be read. Of two with one name, the first.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
-    files: Vec<Arc<Own>>,
+pub struct Definitions {
+    files: Vec<Arc<FileDefinitions>>,
     /// The answers, which are counted through all files.
-    answers: Own,
+    answers: FileDefinitions,
     /// All of them in order, as the number of their file and their own in it.
     order: OnceLock<Vec<(usize, usize)>>,
 }
 
-/// What one file says.
+/// The declarations in one file.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Own {
+pub(super) struct FileDefinitions {
     /// In the order of [`Item`].
-    all: Vec<(Item, Place)>,
-    answers: Vec<Place>,
+    all: Vec<(DefId, DefSite)>,
+    answers: Vec<DefSite>,
 }
 
-impl Own {
-    fn get(&self, item: &Item) -> Option<&Place> {
+impl FileDefinitions {
+    fn get(&self, item: &DefId) -> Option<&DefSite> {
         let at = self
             .all
             .binary_search_by(|(known, _)| known.cmp(item))
@@ -89,23 +106,23 @@ impl Own {
         self.all.get(at).map(|(_, place)| place)
     }
 
-    fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
+    fn iter(&self) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.all.iter().map(|(item, place)| (item, place))
     }
 }
 
-impl Places {
-    pub(super) fn of_files(files: Vec<Arc<Own>>) -> Self {
+impl Definitions {
+    pub(super) fn of_files(files: Vec<Arc<FileDefinitions>>) -> Self {
         let answers = files.iter().flat_map(|file| &file.answers);
         let answers = (1_usize..).zip(answers).map(|(at, place)| {
-            let item = Item {
+            let item = DefId {
                 kind: grammar::Answer::TABLE.name,
                 owner: None,
                 name: at.to_string(),
             };
             (item, place.clone())
         });
-        let mut answers = Own {
+        let mut answers = FileDefinitions {
             all: answers.collect(),
             answers: Vec::new(),
         };
@@ -117,21 +134,21 @@ impl Places {
         }
     }
 
-    fn parts(&self) -> impl Iterator<Item = &Own> {
+    fn parts(&self) -> impl Iterator<Item = &FileDefinitions> {
         let files = self.files.iter().map(Arc::as_ref);
         files.chain(std::iter::once(&self.answers))
     }
 
-    /// Where it is written.
+    /// Returns the place of a thing.
     #[must_use]
-    pub fn get(&self, item: &Item) -> Option<&Place> {
+    pub fn get(&self, item: &DefId) -> Option<&DefSite> {
         self.parts().find_map(|part| part.get(item))
     }
 
     /// All of them, in the order of [`Item`].
-    pub fn iter(&self) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let order = self.order.get_or_init(|| self.ordered());
-        let parts: Vec<&Own> = self.parts().collect();
+        let parts: Vec<&FileDefinitions> = self.parts().collect();
         order.iter().filter_map(move |&(part, at)| {
             let (item, place) = parts.get(part)?.all.get(at)?;
             Some((item, place))
@@ -153,7 +170,7 @@ impl Places {
     }
 
     /// Those of one file, also those of a name that stands in an earlier file too.
-    pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let own = usize::try_from(file.0).ok();
         let own = own.and_then(|at| self.files.get(at));
         let own = own.into_iter().flat_map(|own| own.iter());
@@ -162,7 +179,7 @@ impl Places {
     }
 
     /// All of this name, with or without that of what it is part of: `Station.name`, `name`.
-    pub fn named(&self, name: &str) -> impl Iterator<Item = (&Item, &Place)> {
+    pub fn named(&self, name: &str) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.iter().filter(move |(item, _)| {
             let own = match &item.owner {
                 Some(owner) => name
@@ -181,75 +198,80 @@ impl Places {
     }
 }
 
-/// On the way to what one file says.
+/// Collects the declarations of a file.
 #[derive(Default)]
-struct Said(BTreeMap<Item, Place>);
+struct Collector(BTreeMap<DefId, DefSite>);
 
-impl Said {
-    fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, place: Written<'_>) {
-        let item = Item {
+impl Collector {
+    fn add(&mut self, kind: &'static Table, owner: Option<&str>, name: &str, origin: Origin<'_>) {
+        let item = DefId {
             kind: kind.name,
             owner: owner.map(str::to_owned),
             name: name.to_owned(),
         };
-        self.0.entry(item).or_insert_with(|| written(place));
+        self.0.entry(item).or_insert_with(|| written(origin));
     }
 
-    /// What stands once, and is called what it is.
-    fn one(&mut self, kind: &'static Table, place: Written<'_>) {
-        self.add(kind, None, kind.name, place);
+    /// Adds the only thing of a kind, with the name of the kind.
+    fn one(&mut self, kind: &'static Table, origin: Origin<'_>) {
+        self.add(kind, None, kind.name, origin);
     }
 
     /// The same, if it is there.
-    fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Placed<'_, T>>) {
-        if let Some(Placed { place, .. }) = placed {
-            self.one(kind, *place);
+    fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Sourced<'_, T>>) {
+        if let Some(Sourced { origin, .. }) = placed {
+            self.one(kind, *origin);
         }
     }
 
-    /// What is called as its key says.
-    fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Placed<'_, T>]) {
-        for Placed { place, .. } in placed {
-            self.add(kind, owner, place.key.as_str().unwrap_or_default(), *place);
+    /// Adds things with the names of their keys.
+    fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Sourced<'_, T>]) {
+        for Sourced { origin, .. } in placed {
+            self.add(
+                kind,
+                owner,
+                origin.key.as_str().unwrap_or_default(),
+                *origin,
+            );
         }
     }
 
-    /// What has another name than its key, if it has one.
+    /// Adds things with other names than their keys.
     fn named_by<T>(
         &mut self,
         kind: &'static Table,
-        placed: &[Placed<'_, T>],
+        placed: &[Sourced<'_, T>],
         name: impl Fn(usize, &T) -> String,
     ) {
-        for (at, Placed { item, place }) in placed.iter().enumerate() {
-            self.add(kind, None, &name(at + 1, item), *place);
+        for (at, Sourced { item, origin }) in placed.iter().enumerate() {
+            self.add(kind, None, &name(at + 1, item), *origin);
         }
     }
 }
 
-fn written(place: Written<'_>) -> Place {
-    Place {
-        key: place.key.span(),
-        whole: place.key.span().to(place.node.span()),
-        comments: place.key.comments().collect(),
+fn written(origin: Origin<'_>) -> DefSite {
+    DefSite {
+        key: origin.key.span(),
+        whole: origin.key.span().to(origin.node.span()),
+        comments: origin.key.comments().collect(),
     }
 }
 
-/// Of the draft of one file.
-pub(super) fn own(draft: &Draft<'_>) -> Own {
-    let mut places = Said::default();
+/// Returns the declarations in the draft of one file.
+pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
+    let mut places = Collector::default();
     places.if_there(grammar::Protocol::TABLE, draft.protocol.as_ref());
     places.if_there(grammar::Transport::TABLE, draft.transport.as_ref());
     places.if_there(grammar::Calls::TABLE, draft.calls.as_ref());
     places.if_there(grammar::Limits::TABLE, draft.limits.as_ref());
-    let transport = draft.transport.as_ref().map(|it| it.place.node);
+    let transport = draft.transport.as_ref().map(|it| it.origin.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
     for Entry { key, value: node } in ports.unwrap_or_default() {
         let name = key.as_str().unwrap_or_default();
-        places.add(grammar::Port::TABLE, None, name, Written { key, node });
+        places.add(grammar::Port::TABLE, None, name, Origin { key, node });
     }
     if let Some(frame) = &draft.frame {
-        places.one(grammar::Frame::TABLE, frame.place);
+        places.one(grammar::Frame::TABLE, frame.origin);
         places.keyed(grammar::HeaderField::TABLE, None, &frame.header);
         places.named_by(grammar::FrameKind::TABLE, &frame.kinds, |_, it| {
             it.value.to_string()
@@ -259,7 +281,7 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         });
     }
     if let Some(envelope) = &draft.envelope {
-        places.one(grammar::Envelope::TABLE, envelope.place);
+        places.one(grammar::Envelope::TABLE, envelope.origin);
         for (side, fields) in [
             (Direction::Request, &envelope.request),
             (Direction::Response, &envelope.response),
@@ -277,13 +299,13 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         it.spelling.clone()
     });
     places.named_by(grammar::Group::TABLE, &draft.groups, |_, it| it.id.clone());
-    for Placed { item, place } in &draft.operations {
+    for Sourced { item, origin } in &draft.operations {
         let kind = match item.kind() {
             Kind::Command => grammar::Command::TABLE,
             Kind::Report => grammar::Report::TABLE,
             Kind::Stream => grammar::Stream::TABLE,
         };
-        places.add(kind, None, &item.name, *place);
+        places.add(kind, None, &item.name, *origin);
     }
     types(&mut places, draft);
     places.keyed(grammar::Constants::TABLE, None, &draft.tables);
@@ -304,13 +326,13 @@ pub(super) fn own(draft: &Draft<'_>) -> Own {
         at.to_string()
     });
     let answers = draft.answers.iter();
-    Own {
+    FileDefinitions {
         all: places.0.into_iter().collect(),
-        answers: answers.map(|answer| written(answer.place)).collect(),
+        answers: answers.map(|answer| written(answer.origin)).collect(),
     }
 }
 
-fn types(places: &mut Said, draft: &Draft<'_>) {
+fn types(places: &mut Collector, draft: &Draft<'_>) {
     for ty in &draft.types {
         let name = ty.def.name.as_str();
         let (kind, inside, names): (_, _, Vec<&str>) = match &ty.def.shape {
@@ -330,9 +352,32 @@ fn types(places: &mut Said, draft: &Draft<'_>) {
                 choice.variants.iter().map(|it| it.name.as_str()).collect(),
             ),
         };
-        places.add(kind, None, name, ty.place);
+        places.add(kind, None, name, ty.origin);
         for (part, own) in ty.parts.iter().zip(names) {
-            places.add(inside, Some(name), own, part.place);
+            places.add(inside, Some(name), own, part.origin);
         }
     }
+}
+
+/// The entry whose key stands there.
+pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
+    let has = |node: Node<'_>| node.span().start <= key.start && key.end <= node.span().end;
+    for entry in node.entries() {
+        if entry.key.span() == key {
+            return Some(entry);
+        }
+        if has(entry.value) {
+            return entry_at(entry.value, key);
+        }
+    }
+    let inside = node.items().find(|item| has(*item));
+    inside.and_then(|item| entry_at(item, key))
+}
+
+/// Returns the title of a thing, and its `about` if it has one. Both are empty if the spec lacks them.
+#[must_use]
+pub fn described(trees: &Trees, place: &DefSite) -> Option<(Text, Option<Text>)> {
+    let tree = trees.tree(place.key.file)?;
+    let node = entry_at(tree.root(), place.key)?.value;
+    Some((both_languages(node), COMMON.about.read(node)))
 }

@@ -11,7 +11,7 @@ pub(crate) const ABSENT: &str = "absent";
 
 /// A fact that an answer governs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Governed<'a> {
+pub(super) struct CoveredFact<'a> {
     /// Its path.
     pub path: Node<'a>,
     /// What is said of it until it is settled.
@@ -37,7 +37,7 @@ pub(super) enum Found<'a> {
     Nowhere(&'a str),
 }
 
-impl Governed<'_> {
+impl CoveredFact<'_> {
     /// What is said of it until it is settled, as text.
     pub fn meanwhile(&self) -> &str {
         self.meanwhile.as_str().unwrap_or_default()
@@ -85,22 +85,22 @@ pub(super) fn is_doubt(state: BodyState) -> bool {
 }
 
 /// Everything that an answer governs.
-pub(super) fn governed<'d, 'a>(
+pub(super) fn covered_facts<'d, 'a>(
     draft: &'d Draft<'a>,
     answer: &'d AnswerDraft<'a>,
-) -> impl Iterator<Item = Governed<'a>> + use<'d, 'a> {
+) -> impl Iterator<Item = CoveredFact<'a>> + use<'d, 'a> {
     let operation = match &answer.item.subject {
         Subject::Operation(name) => {
             let mut all = draft.operations.iter();
             all.find(|operation| {
-                operation.item.name == *name && operation.place.node.span() == answer.holder.span()
+                operation.item.name == *name && operation.origin.node.span() == answer.holder.span()
             })
         }
         _ => None,
     };
     let operation = operation.map(|operation| &operation.item);
     let holder = answer.holder;
-    let entries = ANSWER.about.of(answer.place.node).map(Node::entries);
+    let entries = ANSWER.about.of(answer.origin.node).map(Node::entries);
     let entries = entries.into_iter().flatten();
     let is_value = |Entry { key, value }: Entry<'_>| {
         let path = key.as_str().unwrap_or_default();
@@ -108,7 +108,7 @@ pub(super) fn governed<'d, 'a>(
         !is_fact && value.as_str() != Some(ABSENT)
     };
     let beside_a_value = entries.clone().any(is_value);
-    entries.map(move |Entry { key, value }| Governed {
+    entries.map(move |Entry { key, value }| CoveredFact {
         path: key,
         meanwhile: value,
         found: find(operation, holder, key.as_str().unwrap_or_default()),

@@ -1,7 +1,7 @@
 //! What an answer of the owner changes in the files of a spec.
 
-use super::draft::{AnswerDraft, Place, Placed};
-use super::govern::{Found, Governed};
+use super::answer_scope::{CoveredFact, Found};
+use super::draft::{AnswerDraft, Origin, Sourced};
 use crate::language::ambiguous_scalar::misread;
 use crate::language::grammar::{
     ANSWER, Answer, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT,
@@ -17,7 +17,7 @@ use crate::syntax::{Entry, Node, quoted};
 pub(super) const TO_BE_SAID: &str = "…";
 
 /// What the owner says.
-pub(super) trait Word {
+pub(super) trait OwnerInput {
     /// The value of what an answer governs, as YAML; `None` if it stays as it is.
     fn value(&self, path: &str) -> Option<String>;
 
@@ -26,9 +26,9 @@ pub(super) trait Word {
 }
 
 /// Nobody has said anything yet.
-pub(super) struct Silence;
+pub(super) struct Blank;
 
-impl Word for Silence {
+impl OwnerInput for Blank {
     fn value(&self, _: &str) -> Option<String> {
         Some(TO_BE_SAID.to_owned())
     }
@@ -69,20 +69,20 @@ fn confirmation<'v>(entries: impl IntoIterator<Item = (&'static str, &'v str)>) 
 }
 
 /// The edits of one answer.
-pub(super) struct Writing<'s> {
+pub(super) struct AnswerEditor<'s> {
     sources: &'s Sources,
     /// Languages of new texts.
     texts: Languages,
-    word: &'s dyn Word,
+    input: &'s dyn OwnerInput,
     pub edits: Edits,
 }
 
-impl<'s> Writing<'s> {
-    pub fn new(sources: &'s Sources, texts: Languages, word: &'s dyn Word) -> Self {
+impl<'s> AnswerEditor<'s> {
+    pub fn new(sources: &'s Sources, texts: Languages, input: &'s dyn OwnerInput) -> Self {
         Self {
             sources,
             texts,
-            word,
+            input,
             edits: Edits::default(),
         }
     }
@@ -123,43 +123,43 @@ impl<'s> Writing<'s> {
     }
 
     /// Writes down what an answer governs, and the owner's word.
-    pub fn settle_answer(&mut self, answer: &AnswerDraft<'_>, governed: &[Governed<'_>]) {
-        for governed in governed {
-            let path = governed.path.as_str().unwrap_or_default();
-            match governed.found {
+    pub fn settle_answer(&mut self, answer: &AnswerDraft<'_>, covered: &[CoveredFact<'_>]) {
+        for covered in covered {
+            let path = covered.path.as_str().unwrap_or_default();
+            match covered.found {
                 Found::Fact(..) if !self.has_lines(answer.holder) => {}
                 Found::Fact(fact, state, kind) => self.fact(answer.holder, kind, fact, state),
                 Found::Value(node) => {
-                    if let Some(value) = self.word.value(path) {
+                    if let Some(value) = self.input.value(path) {
                         self.edits.replace(node.span(), value);
                     }
                 }
                 Found::Absent(node) => {
                     let key = path.rsplit('.').next().unwrap_or_default();
-                    if let Some(value) = self.word.value(path) {
+                    if let Some(value) = self.input.value(path) {
                         self.add(node, key, &value);
                     }
                 }
                 Found::Several(_) | Found::Nowhere(_) => {}
             }
         }
-        self.confirm(answer.place.node);
+        self.confirm(answer.origin.node);
     }
 
     /// Writes down a fact that nothing asks for, and an answer that says who said it.
     pub fn settle_loss(
         &mut self,
-        operation: &Placed<'_, Operation>,
+        operation: &Sourced<'_, Operation>,
         fact: Fact,
         state: BodyState,
         asked: &Text,
     ) {
-        let Placed { item, place } = operation;
-        if !self.has_lines(place.node) {
+        let Sourced { item, origin } = operation;
+        if !self.has_lines(origin.node) {
             return;
         }
-        self.fact(place.node, item.kind(), fact, state);
-        self.answer(*place, fact, state, asked);
+        self.fact(origin.node, item.kind(), fact, state);
+        self.answer(*origin, fact, state, asked);
     }
 
     /// Adds a key behind the first one of a field, which is its type.
@@ -214,7 +214,7 @@ impl<'s> Writing<'s> {
             return;
         };
         let inferred = inferred.and_then(Node::as_str).map(str::to_owned);
-        let said = self.word.value(fact.name());
+        let said = self.input.value(fact.name());
         let said = said.filter(|said| inferred.is_none() || said != TO_BE_SAID);
         if let Some(value) = said.or(inferred) {
             self.edits.replace(node.span(), value);
@@ -234,7 +234,7 @@ impl<'s> Writing<'s> {
             return;
         };
         let span = state.key.span().to(state.value.span());
-        let value = self.word.value(fact.name());
+        let value = self.input.value(fact.name());
         let value = value.filter(|value| is_open || value != TO_BE_SAID);
         let Some(file) = self.file(span) else {
             return;
@@ -278,7 +278,7 @@ impl<'s> Writing<'s> {
         let Some(entry) = before.last() else {
             return;
         };
-        let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.word.confirmed());
+        let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.input.confirmed());
         if self.is_flow(answer) {
             self.edits
                 .insert_after(entry.value.span(), format!(", {confirmed}"));
@@ -293,7 +293,7 @@ impl<'s> Writing<'s> {
     }
 
     /// Adds an answer about a fact of an operation, which is asked in these words.
-    fn answer(&mut self, operation: Place<'_>, fact: Fact, before: BodyState, asked: &Text) {
+    fn answer(&mut self, operation: Origin<'_>, fact: Fact, before: BodyState, asked: &Text) {
         let answers = COMMON.answers.entry(operation.node);
         let last = operation.node.entries().last();
         let Some((at, indent)) = answers.or(last).map(|entry| {
@@ -310,7 +310,7 @@ impl<'s> Writing<'s> {
         let entries = [
             (ANSWER.about.name, format!("{{ {path}: {meanwhile} }}")),
             (ANSWER.r#as.name, AnswerKind::Question.name().to_owned()),
-            (ANSWER.confirmed.name, self.word.confirmed()),
+            (ANSWER.confirmed.name, self.input.confirmed()),
         ];
         let texts = Lang::ALL.into_iter().filter(|it| self.texts.include(*it));
         let texts = texts.map(|lang| {

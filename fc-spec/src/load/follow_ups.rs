@@ -84,8 +84,8 @@ impl<'s> Earlier<'s> {
         let places = places.into_iter().map(|(_, place)| place);
         // What stretches over lines has more in it than its own fault.
         let places = places.filter(|place| !sources.slice(*place).contains('\n'));
-        let operations = draft.operations.iter().map(|operation| operation.place);
-        let types = draft.types.iter().map(|ty| ty.place);
+        let operations = draft.operations.iter().map(|operation| operation.origin);
+        let types = draft.types.iter().map(|ty| ty.origin);
         let entries = operations.chain(types);
         let hidden = faults.hidden().to_vec();
         let words = hidden.iter().flat_map(|text| words(sources.slice(*text)));
@@ -103,7 +103,7 @@ impl<'s> Earlier<'s> {
     }
 
     /// Takes out of the faults found since those that follow from others.
-    pub fn keep_independent(mut self, found: &mut Faults) {
+    pub fn suppress(mut self, found: &mut Faults) {
         // What each name that stands for nothing is taken for, if for anything.
         let names: Vec<(FaultCode, Option<String>)> = found
             .iter()

@@ -1,0 +1,54 @@
+//! Lists of values, each of a type and each once.
+
+use super::value::Mismatch;
+use crate::diagnostic::{Diagnostic, FaultCode, Faults};
+use crate::language::scalar;
+use crate::model::Text;
+use crate::source::Span;
+use crate::syntax::Node;
+use crate::text;
+
+/// How the values of a list are reported.
+pub(super) struct ValueList {
+    /// The code of a value that is not of the type.
+    pub wrong: FaultCode,
+    /// The place of the type, if the report shows it.
+    pub ty: Option<(Span, Text)>,
+    /// The code of a repeated value.
+    pub repeated: FaultCode,
+    /// The message about a repeated value.
+    pub message: Text,
+}
+
+impl ValueList {
+    /// Reports values that `check` finds wrong, and repeated values.
+    pub fn check<'t>(
+        &self,
+        values: impl Iterator<Item = Node<'t>>,
+        check: impl Fn(Node<'t>, &mut Vec<Mismatch>),
+        faults: &mut Faults,
+    ) {
+        let mut earlier: Vec<Node<'_>> = Vec::new();
+        for node in values {
+            let mut found = Vec::new();
+            check(node, &mut found);
+            faults.extend(found.into_iter().map(|mismatch| {
+                let code = self.wrong;
+                let fault = Mismatch { code, ..mismatch }.into_fault();
+                match &self.ty {
+                    Some((span, text)) => fault.also(*span, text.clone()),
+                    None => fault,
+                }
+            }));
+            let wire = scalar::scalar(node);
+            match earlier.iter().find(|it| scalar::scalar(**it) == wire) {
+                Some(first) => {
+                    let message = self.message.clone();
+                    let fault = Diagnostic::error(self.repeated, node.span(), message);
+                    faults.push(fault.also(first.span(), text!("第一次在这里", "first here")));
+                }
+                None => earlier.push(node),
+            }
+        }
+    }
+}

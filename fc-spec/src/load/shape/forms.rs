@@ -1,0 +1,188 @@
+//! Values that may have one of several forms.
+
+use super::expected::{describe_either, wrong_kind};
+use super::{check_kind, check_map};
+use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::language::grammar::{FIELD, FIELD_FORMS, Kind, TEXT, Table};
+use crate::language::scalar;
+use crate::model::Languages;
+use crate::source::Span;
+use crate::syntax::{Entry, Node};
+use crate::text;
+
+/// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
+pub(super) fn check_either(
+    kinds: &[Kind],
+    node: Node<'_>,
+    at: Span,
+    texts: Languages,
+    faults: &mut Faults,
+) {
+    let candidates: Vec<_> = kinds.iter().filter(|kind| kind.could_be(node)).collect();
+    let chosen = candidates
+        .iter()
+        .find(|kind| fits(kind, node))
+        .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
+        .or(candidates.first());
+    if let Some(kind) = chosen {
+        check_kind(kind, node, at, texts, faults);
+    } else {
+        let expected = describe_either(kinds);
+        wrong_kind(&expected, node, at, faults);
+    }
+}
+
+/// Whether a scalar is exactly what the kind asks for.
+fn fits(kind: &Kind, node: Node<'_>) -> bool {
+    match kind.form() {
+        Kind::Code => scalar::code(node).is_some(),
+        Kind::Int { .. } => scalar::int(node).is_some(),
+        Kind::Word(words) => node
+            .as_str()
+            .is_some_and(|text| words.iter().any(|(word, ..)| *word == text)),
+        _ => true,
+    }
+}
+
+/// Whether a scalar is a slip of one of the kind's words.
+fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
+    match (kind, node.as_str()) {
+        (Kind::Word(words), Some(text)) => {
+            nearest(text, words.iter().map(|(word, ..)| *word)).is_some()
+        }
+        _ => false,
+    }
+}
+
+pub(super) fn check_by_key(
+    tables: &'static [(&'static str, &'static Table)],
+    otherwise: &Kind,
+    node: Node<'_>,
+    at: Span,
+    texts: Languages,
+    faults: &mut Faults,
+) {
+    let entries = node.entries().filter(|entry| entry.value.is_null());
+    let slips: Vec<_> = entries.filter_map(|entry| entry.key.slip()).collect();
+    if !slips.is_empty() && tables.iter().all(|(mark, _)| node.entry(mark).is_none()) {
+        faults.extend(slips);
+        return;
+    }
+    let mut marks = tables
+        .iter()
+        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
+    let Some((first, table)) = marks.next() else {
+        match likely(tables, otherwise, node) {
+            Some(table) => check_map(table, node, at, texts, faults),
+            None => check_kind(otherwise, node, at, texts, faults),
+        }
+        return;
+    };
+    if let Some(marker) = misread_marker(node) {
+        faults.hide(node.span());
+        let name = marker.name();
+        let message = text!(
+            "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
+            "`{name}` starts the long form of a field, so it is not read as a wire key"
+        );
+        faults.push(
+            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
+        );
+        return;
+    }
+    if let Some((second, _)) = marks.next() {
+        faults.hide(node.span());
+        faults.push(
+            Diagnostic::error(
+                FaultCode::TwoForms,
+                second.key.span(),
+                text!(
+                    "`{first}` 和 `{second}` 不能同时使用",
+                    "`{first}` and `{second}` cannot be combined",
+                    first = first.name(),
+                    second = second.name()
+                ),
+            )
+            .also(
+                first.key.span(),
+                text!("这里已经定义了字段", "this already defines the field"),
+            ),
+        );
+        return;
+    }
+    check_map(table, node, at, texts, faults);
+}
+
+/// The table of a mapping that lacks the key which decides, where its other keys tell what it was meant as.
+fn likely(
+    tables: &'static [(&'static str, &'static Table)],
+    otherwise: &Kind,
+    node: Node<'_>,
+) -> Option<&'static Table> {
+    let knows = |table: &Table| {
+        node.entries()
+            .all(|entry| table.key(entry.name()).is_some())
+    };
+    if let Kind::Body = otherwise {
+        let marks = tables.iter().map(|(mark, _)| *mark);
+        let near = node
+            .entries()
+            .find_map(|entry| nearest(entry.name(), marks.clone()));
+        let table = tables.iter().find(|(mark, _)| near == Some(*mark));
+        let table = table.or(tables.first()).map(|(_, table)| *table);
+        return table.filter(|_| lacks_form(node));
+    }
+    let is_otherwise = match otherwise {
+        Kind::Map(table) => knows(table),
+        _ => false,
+    };
+    let mut fitting = tables
+        .iter()
+        .map(|(_, table)| *table)
+        .filter(|table| knows(table));
+    fitting
+        .next()
+        .filter(|_| !is_otherwise && node.entries().count() > 0)
+}
+
+/// Whether a mapping has the text of a field's long form, and nothing that says which form it is: its keys are no wire
+/// keys.
+pub(in crate::load) fn lacks_form(node: Node<'_>) -> bool {
+    let has_form = FIELD_FORMS
+        .iter()
+        .any(|(mark, _)| node.entry(mark).is_some());
+    !has_form && has_text(node)
+}
+
+/// Whether it has a text that is no type, as a field's long form has.
+fn has_text(node: Node<'_>) -> bool {
+    let text = TEXT.zh.of(node).or(TEXT.en.of(node));
+    text.is_some_and(|text| text.as_scalar().is_some() && scalar::field_type(text).is_none())
+}
+
+/// The key of a field that marks a longhand and was most likely meant as a wire key.
+pub(in crate::load) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
+    if has_text(node) {
+        return None;
+    }
+    let (marker, table) = FIELD_FORMS
+        .iter()
+        .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
+    let is_field = |value: Node<'_>| {
+        FIELD_FORMS
+            .iter()
+            .any(|(mark, _)| value.get(mark).is_some())
+    };
+    let is_misread = if marker.name() == FIELD.r#type.name {
+        marker.value.as_mapping().is_some()
+    } else {
+        let ty = FIELD.r#type.of(marker.value);
+        let text = TEXT.zh.of(marker.value).or(TEXT.en.of(marker.value));
+        ty.is_some_and(|ty| ty.as_mapping().is_none()) && text.is_some()
+    };
+    // Fields beside it, where only keys of the longhand may stand.
+    let has_fields_beside = node
+        .entries()
+        .any(|entry| table.key(entry.name()).is_none() && is_field(entry.value));
+    (is_misread || has_fields_beside).then_some(marker)
+}
