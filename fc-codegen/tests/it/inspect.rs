@@ -9,6 +9,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::load::load;
 use fc_spec::model::{Dump, DumpError, Model, Value};
 use fc_spec::syntax::read_dir;
+use serde_json::json;
 use std::path::Path;
 
 /// path, type, whether optional, how it travels, example.
@@ -185,14 +186,14 @@ fn a_dump_says_when_a_field_is_there() {
     assert_eq!(said("pace"), serde_json::Value::Null);
     assert_eq!(
         said("rest"),
-        serde_json::json!({ "when": [
+        json!({ "when": [
             { "path": "pace", "values": [4, 5] },
             { "path": "sudden", "values": [0] },
         ] })
     );
     assert_eq!(
         said("blink"),
-        serde_json::json!({ "unless": [{ "path": "pace", "values": [0, 4] }] })
+        json!({ "unless": [{ "path": "pace", "values": [0, 4] }] })
     );
     let mut broken = dump;
     let types = broken["types"].as_array_mut().expect("types");
@@ -342,19 +343,19 @@ fn dump_with_a_body_of_no_operation_is_refused() {
 fn dump_with_an_example_of_another_type_is_refused() {
     let text = inspect::json(&good_spec::model());
     for (ty, key, other) in [
-        ("GetThingResponseData", "x", serde_json::json!("half")),
-        ("GetThingResponseData", "x", serde_json::json!(0.5)),
-        ("GetThingResponseData", "name", serde_json::json!(1)),
-        ("GetThingRequest", "thingId", serde_json::json!("seven")),
-        ("GetThingRequest", "thingId", serde_json::json!([7])),
-        ("GetThingRequest", "thingId", serde_json::json!(7.5)),
+        ("GetThingResponseData", "x", json!("half")),
+        ("GetThingResponseData", "x", json!(0.5)),
+        ("GetThingResponseData", "name", json!(1)),
+        ("GetThingRequest", "thingId", json!("seven")),
+        ("GetThingRequest", "thingId", json!([7])),
+        ("GetThingRequest", "thingId", json!(7.5)),
     ] {
         let mut dump = serde_json::from_str(&text).expect("JSON");
         let fields = named(&mut dump, "types", ty)["fields"].as_array_mut();
         let mut fields = fields.expect("a list").iter_mut();
         let field = fields.find(|field| field["path"] == key);
         let field = field.expect("it is there");
-        field["example_is"] = serde_json::json!("given");
+        field["example_is"] = json!("given");
         field["example"] = other;
         assert_eq!(
             refused(&dump.to_string()),
@@ -412,34 +413,28 @@ fn a_dump_with_an_unknown_name_is_refused() {
 /// What is said of an operation, a type or a value, where there is no such thing.
 #[test]
 fn a_dump_that_names_what_is_not_there_is_refused() {
-    use serde_json::json;
     let text = inspect::json(&good_spec::model());
     let tied = |command: &str, report: &str| {
-        let tie =
-            serde_json::json!({ "side": "request", "command": [command], "report": [report] });
-        serde_json::json!([{ "report": "thing_moved", "tied": [tie] }])
+        let tie = json!({ "side": "request", "command": [command], "report": [report] });
+        json!([{ "report": "thing_moved", "tied": [tie] }])
     };
-    let accepted = |states: serde_json::Value, after: &[&str]| serde_json::json!({ "in": states, "after": after, "note": null });
-    let states = serde_json::json!({ "states": [{ "type": "Colour", "values": [0] }] });
+    let accepted = |states: serde_json::Value, after: &[&str]| json!({ "in": states, "after": after, "note": null });
+    let states = json!({ "states": [{ "type": "Colour", "values": [0] }] });
     for (place, value, missing) in [
         (
             "Color/values/1/then",
-            serde_json::json!(["red", "blue"]),
+            json!(["red", "blue"]),
             "value `blue`",
         ),
         (
             "GetThingResponse/group",
-            serde_json::json!("nowhere"),
+            json!("nowhere"),
             "group `nowhere`",
         ),
-        (
-            "get_thing/group",
-            serde_json::json!("nowhere"),
-            "group `nowhere`",
-        ),
+        ("get_thing/group", json!("nowhere"), "group `nowhere`"),
         (
             "get_thing/sets_off",
-            serde_json::json!([{ "report": "thing_moved", "tied": [] }, { "report": "get_thing", "tied": [] }]),
+            json!([{ "report": "thing_moved", "tied": [] }, { "report": "get_thing", "tied": [] }]),
             "report `get_thing`",
         ),
         ("get_thing/sets_off", tied("thingId", "thingId"), ""),
@@ -447,18 +442,18 @@ fn a_dump_that_names_what_is_not_there_is_refused() {
         ("get_thing/sets_off", tied("thingId", "id"), "key `id`"),
         (
             "get_thing/accepted",
-            accepted(serde_json::json!(null), &["get_thing", "thing_moved"]),
+            accepted(json!(null), &["get_thing", "thing_moved"]),
             "command `thing_moved`",
         ),
         ("get_thing/accepted", accepted(states, &[]), "type `Colour`"),
         (
             "thing_picture/started_by",
-            serde_json::json!("thing_moved"),
+            json!("thing_moved"),
             "command `thing_moved`",
         ),
         (
             "thing_picture/stopped_by",
-            serde_json::json!("thing_moved"),
+            json!("thing_moved"),
             "command `thing_moved`",
         ),
     ] {
@@ -494,7 +489,7 @@ fn a_dump_says_for_whom_things_are() {
         let field = fields.iter().find(|it| it["path"] == key);
         field.expect("it is there")["available"].clone()
     };
-    let expected = serde_json::json!({
+    let expected = json!({
         "for": ["debugging_app"], "hardware": ["second_generation"], "from": { "adp": "3.8" }, "until": {},
     });
     assert_eq!(limit("data.y"), expected);

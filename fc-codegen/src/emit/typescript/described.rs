@@ -7,7 +7,7 @@ use super::operations::{code, languages};
 use super::source::{head, named};
 use super::wire::header;
 use crate::sample::{Profile, Samples};
-use fc_spec::model::{Direction, Operation, Text};
+use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     let mut out = head([
@@ -63,13 +63,15 @@ fn protocol(context: &Context<'_>, samples: &Samples<'_>) -> Layout {
         described(&field.text, names.into_iter().chain(header(field)))
     });
     let results = model.results.iter().map(|result| {
-        let role = result.role.map(|role| role.name());
         described(
             &result.text,
             [
                 ("code", Layout::number(result.code)),
                 ("name", Layout::text(&result.name)),
-                ("role", Layout::text_or_null(role)),
+                (
+                    "role",
+                    Layout::text_or_null(result.role.map(ResultRole::name)),
+                ),
             ],
         )
     });
