@@ -12,8 +12,8 @@ const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase
 /** Where each package has its settings, and how one is found there. */
 const PACKAGES = {
   Rust: {
-    files: ['fc-runtime/src/client/config.rs', 'fc-runtime/src/server/config.rs', 'fc-runtime/src/protocol.rs'],
-    setting: (name) => `^    pub (?:fn ${name}\\(mut self|${name}: \\w+,)`,
+    files: ['client/config', 'server/config', 'connection_settings', 'wire'].map((name) => `fc-runtime/src/${name}.rs`),
+    setting: (name) => `^ +pub (?:fn ${name}\\(mut self|${name}: \\w+,)`,
   },
   TypeScript: {
     files: ['stubs/typescript/src/client/config.ts', 'stubs/typescript/src/server/config.ts', 'stubs/typescript/src/wire.ts'],
@@ -73,8 +73,8 @@ for (const folder of ['guides', 'en/guides']) {
   })
 
   test(`${folder}: no limit or setting of the Rust package is left out`, () => {
-    const methods = PACKAGES.Rust.files.flatMap((file) => Array.from(read(file).matchAll(/^ {4}pub fn (\w+)\(mut self/gm), ([, name]) => name))
-    const [, fields] = /^pub struct Limits \{([^]*?)^\}/m.exec(read('fc-runtime/src/protocol.rs'))
+    const methods = PACKAGES.Rust.files.flatMap((file) => Array.from(read(file).matchAll(/^ +pub fn (\w+)\(mut self/gm), ([, name]) => name))
+    const [, fields] = /^pub struct Limits \{([^]*?)^\}/m.exec(read('fc-runtime/src/wire.rs'))
     const limits = Array.from(fields.matchAll(/^ {4}pub (\w+):/gm), ([, name]) => name)
     const known = [...new Set([...methods, ...limits])].filter((name) => name !== 'limits')
     assert.ok(methods.length > 20 && limits.length > 5)
