@@ -331,7 +331,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Checks that streams, commands and reports have one kind each, on the port that the engine uses for them.
+/// Checks that streams, commands and reports have one kind each, on the port that the runtime uses for them.
 pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;

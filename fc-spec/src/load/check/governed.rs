@@ -76,7 +76,7 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Checks that facts of an open question match `about:`, and that facts of a settled one have changed.
+/// Checks that facts of an open question match `about:`, and that facts of a settled one no longer wait for the owner.
 pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
         let name = match answer.item.ids.first() {

@@ -31,8 +31,8 @@ pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Checks that each body of the spec, with its examples, fits into the limits, compressed or not. Types must not
-/// contain themselves.
+/// Checks that each body of the spec, with its examples, fits into the limits for nesting, inflated data and
+/// uncompressed frames. Types must not contain themselves.
 pub(super) fn check_bodies(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(limits) = &draft.limits else {
         return;

@@ -10,7 +10,7 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 
-/// Checks that each response of the engine has a result code.
+/// Checks that the runtime has a result code for each response that it creates.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(origin) = draft.results_place else {
         return;
