@@ -1,4 +1,4 @@
-//! What an answer of the owner changes in the files of a spec.
+//! Edits the files of a spec when the owner answers a question.
 
 use super::answer_scope::{CoveredFact, Found};
 use super::draft::{AnswerDraft, Origin, Sourced};
@@ -13,19 +13,19 @@ use crate::model::{
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Node, quoted};
 
-/// What only the owner can say.
+/// Placeholder for a value that only the owner knows.
 pub(super) const TO_BE_SAID: &str = "…";
 
-/// What the owner says.
+/// The input of the owner for one answer.
 pub(super) trait OwnerInput {
-    /// The value of what an answer governs, as YAML; `None` if it stays as it is.
+    /// Returns the new value of the fact at `path`, as YAML; `None` keeps the current value.
     fn value(&self, path: &str) -> Option<String>;
 
-    /// Who said it, and when, as a mapping.
+    /// Returns the confirmation, with the owner's name and the date, as a YAML mapping.
     fn confirmed(&self) -> String;
 }
 
-/// Nobody has said anything yet.
+/// An empty input: every value is a placeholder.
 pub(super) struct Blank;
 
 impl OwnerInput for Blank {
@@ -42,7 +42,7 @@ impl OwnerInput for Blank {
 }
 
 impl Confirmation {
-    /// As a mapping of one line.
+    /// Returns the confirmation as a YAML mapping on one line.
     pub(super) fn to_yaml(&self) -> String {
         let by = text(&self.by);
         let mut entries = vec![
@@ -68,7 +68,7 @@ fn confirmation<'v>(entries: impl IntoIterator<Item = (&'static str, &'v str)>) 
     format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
 }
 
-/// The edits of one answer.
+/// Collects the edits of one answer.
 pub(super) struct AnswerEditor<'s> {
     sources: &'s Sources,
     /// Languages of new texts.
@@ -87,7 +87,7 @@ impl<'s> AnswerEditor<'s> {
         }
     }
 
-    /// The lines that change.
+    /// Returns the changed lines as a diff.
     pub fn diff(&self) -> String {
         let file = self.edits.place().and_then(|span| self.file(span));
         file.map(|file| self.edits.diff(file)).unwrap_or_default()
@@ -97,32 +97,32 @@ impl<'s> AnswerEditor<'s> {
         self.sources.get(span.file)
     }
 
-    /// Blanks as deep as the text that begins there.
+    /// Returns spaces up to the column at which the span starts.
     fn indent(&self, span: Span) -> String {
         let file = self.file(span);
         let column = file.map_or(1, |file| file.line_col(span.start).column);
         " ".repeat(column.saturating_sub(1))
     }
 
-    /// Whether a mapping or list stands between braces or brackets.
+    /// Returns `true` if a mapping or list is written in braces or brackets.
     fn is_flow(&self, node: Node<'_>) -> bool {
         self.sources.slice(node.span()).starts_with(['{', '['])
     }
 
-    /// Whether there are lines to change: what is lost of an operation takes whole ones.
+    /// Returns `true` if the operation and its answers are in block style. The edits of a fact replace whole lines.
     pub fn has_lines(&self, operation: Node<'_>) -> bool {
         let answers = COMMON.answers.of(operation);
         !self.is_flow(operation) && !answers.is_some_and(|node| self.is_flow(node))
     }
 
-    /// Writes a line below what stands there.
+    /// Inserts a line below the span.
     fn line_after(&mut self, span: Span, line: &str) {
         if let Some(file) = self.file(span) {
             self.edits.add_line(file, span, line);
         }
     }
 
-    /// Writes down what an answer governs, and the owner's word.
+    /// Writes the facts that an answer covers, and the owner's confirmation.
     pub fn settle_answer(&mut self, answer: &AnswerDraft<'_>, covered: &[CoveredFact<'_>]) {
         for covered in covered {
             let path = covered.path.as_str().unwrap_or_default();
@@ -146,7 +146,7 @@ impl<'s> AnswerEditor<'s> {
         self.confirm(answer.origin.node);
     }
 
-    /// Writes down a fact that nothing asks for, and an answer that says who said it.
+    /// Writes a lost fact without an answer, and adds an answer with the owner's confirmation.
     pub fn settle_loss(
         &mut self,
         operation: &Sourced<'_, Operation>,
@@ -162,7 +162,7 @@ impl<'s> AnswerEditor<'s> {
         self.answer(*origin, fact, state, asked);
     }
 
-    /// Adds a key behind the first one of a field, which is its type.
+    /// Adds a key after the first key of a field, which is its type.
     fn add(&mut self, node: Node<'_>, key: &str, value: &str) {
         let first = node.entries().next();
         match first {
@@ -182,7 +182,7 @@ impl<'s> AnswerEditor<'s> {
         }
     }
 
-    /// Writes down a fact of an operation.
+    /// Writes a fact of an operation.
     fn fact(&mut self, operation: Node<'_>, kind: Kind, fact: Fact, state: BodyState) {
         let is_open = state == BodyState::Open;
         let code = OPERATION.code.of(operation);
@@ -203,12 +203,12 @@ impl<'s> AnswerEditor<'s> {
                 let body = COMMAND.response.entry(operation);
                 self.body(state, body, COMMAND.response.name, fact, is_open);
             }
-            // The words of a heading stand under `zh` and `en`, and the type goes without saying.
+            // The words of a heading are under `zh` and `en`. The type needs no value.
             Fact::Title | Fact::Type => {}
         }
     }
 
-    /// A value that stands alone, or with how sure it is.
+    /// Replaces a value, together with its `state` if it has one.
     fn fact_value(&mut self, node: Option<Node<'_>>, inferred: Option<Node<'_>>, fact: Fact) {
         let Some(node) = node else {
             return;
@@ -221,7 +221,7 @@ impl<'s> AnswerEditor<'s> {
         }
     }
 
-    /// A body, and how sure it is.
+    /// Writes a body and removes its state. Keeps the body if the owner gives no other.
     fn body(
         &mut self,
         state: Option<Entry<'_>>,
@@ -263,9 +263,9 @@ impl<'s> AnswerEditor<'s> {
             .replace(Span::point(span.file, line_start(file, span)), text + "\n");
     }
 
-    /// Adds the owner's word to an answer.
+    /// Adds the owner's confirmation to an answer.
     fn confirm(&mut self, answer: Node<'_>) {
-        // Behind the keys that come before it in the grammar.
+        // The new key goes after the keys that precede it in the grammar.
         let rank = |key: &str| {
             Answer::TABLE
                 .keys
@@ -283,7 +283,7 @@ impl<'s> AnswerEditor<'s> {
             self.edits
                 .insert_after(entry.value.span(), format!(", {confirmed}"));
         } else {
-            // Shown up to here, so that a reader of the change sees which answer it is.
+            // The edit repeats the answer up to here, so that the diff shows which answer it is.
             let last = entry.value.span();
             let before = Span::new(last.file, answer.span().start, last.end);
             self.edits.replace(before, self.sources.slice(before));
@@ -292,7 +292,7 @@ impl<'s> AnswerEditor<'s> {
         }
     }
 
-    /// Adds an answer about a fact of an operation, which is asked in these words.
+    /// Adds an answer about a fact of an operation; `asked` is the text of the question.
     fn answer(&mut self, operation: Origin<'_>, fact: Fact, before: BodyState, asked: &Text) {
         let answers = COMMON.answers.entry(operation.node);
         let last = operation.node.entries().last();
@@ -328,10 +328,11 @@ impl<'s> AnswerEditor<'s> {
     }
 }
 
-/// A text as it is written in YAML on one line, between braces too: in quotes where it could be taken for something else.
+/// Returns a string as YAML on one line, which also fits between braces. Quotes it if a reader could take it for
+/// something else.
 pub(crate) fn text(text: &str) -> String {
     if text.contains(char::is_control) {
-        // What JSON escapes is escaped in the same way between double quotes of YAML.
+        // YAML in double quotes has the same escapes as JSON.
         return serde_json::Value::from(text).to_string();
     }
     let is_plain = |c: char| c.is_alphanumeric() || " _.-/()（），。、；“”？！".contains(c);
@@ -347,7 +348,7 @@ pub(crate) fn text(text: &str) -> String {
     }
 }
 
-/// Where the line begins on which a span begins.
+/// Returns the start of the line on which a span begins.
 fn line_start(file: &SourceFile, span: Span) -> usize {
     let line = file.line(span.start);
     file.lines(line, line)

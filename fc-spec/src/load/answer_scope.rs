@@ -1,4 +1,4 @@
-//! What an answer governs: the facts that its `about:` names, as the spec says them now.
+//! Resolves the paths in `about:` of an answer to the facts that the answer covers.
 
 use super::draft::{AnswerDraft, Draft};
 use crate::language::grammar::{ANSWER, FIELD, ITEMS, OBJECT};
@@ -6,44 +6,45 @@ use crate::model::{BodyState, Fact, Kind, Operation, Subject};
 use crate::syntax::{Entry, Node};
 use crate::vocabulary::Word as _;
 
-/// Says in `about:` that a key is not there.
+/// The word in `about:` for an absent key.
 pub(crate) const ABSENT: &str = "absent";
 
-/// A fact that an answer governs.
+/// A fact that an answer covers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CoveredFact<'a> {
-    /// Its path.
+    /// The path in `about:`.
     pub path: Node<'a>,
-    /// What is said of it until it is settled.
+    /// The state or value until the owner confirms the answer.
     pub meanwhile: Node<'a>,
-    /// What is said of it now.
+    /// The current state or value.
     pub found: Found<'a>,
-    /// Whether the answer is about a value as well, which may be right as it is.
+    /// `true` if the answer also covers a value. The owner may confirm that value unchanged.
     beside_a_value: bool,
 }
 
-/// Where a path leads.
+/// The target of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Found<'a> {
-    /// To a fact of an operation of this kind, and how sure it is.
+    /// A fact of an operation of this kind, with its state.
     Fact(Fact, BodyState, Kind),
-    /// To a value.
+    /// A value.
     Value(Node<'a>),
-    /// To a key that this mapping does not have, or that this short form of a field has no room for.
+    /// An absent key. The node is the mapping without the key, or a field in the short form.
     Absent(Node<'a>),
-    /// To something that is no single value.
+    /// A mapping or list instead of a single value.
     Several(Node<'a>),
-    /// Nowhere: there is no such key.
+    /// No target: this key does not exist.
     Nowhere(&'a str),
 }
 
 impl CoveredFact<'_> {
-    /// What is said of it until it is settled, as text.
+    /// Returns the state or value until the owner confirms the answer, as written.
     pub fn meanwhile(&self) -> &str {
         self.meanwhile.as_str().unwrap_or_default()
     }
 
-    /// Whether it still waits for the owner: a fact is in doubt as long as it is inferred or open, whichever it was.
+    /// Returns `true` if the fact still waits for the owner. A fact waits while it is inferred or open, regardless of
+    /// its earlier state.
     pub fn is_untouched(&self) -> bool {
         match self.found {
             Found::Fact(_, state, _) => self.has_to_change() && is_doubt(state),
@@ -51,7 +52,8 @@ impl CoveredFact<'_> {
         }
     }
 
-    /// Whether it is as it was before it was settled; `None` where that cannot be told, which is a fault of its own.
+    /// Returns `true` if the fact equals its `about:` entry; `None` if it cannot be compared, which is a separate
+    /// error.
     pub fn is_as_before(&self) -> Option<bool> {
         match self.found {
             Found::Fact(_, state, _) => {
@@ -64,13 +66,13 @@ impl CoveredFact<'_> {
         }
     }
 
-    /// Whether nobody but the owner knows what to write: an inference is a guess that they may confirm.
+    /// Returns `true` if only the owner knows the value. An inference is a guess that the owner may confirm.
     pub fn has_to_be_said(&self) -> bool {
         self.has_to_change() && self.meanwhile() != BodyState::Inferred.name()
     }
 
-    /// Whether to settle it is to change it. A heading or a type byte is confirmed as it is, and so may be a value and
-    /// the lack of another beside it.
+    /// Returns `true` if settling the fact changes it. The owner confirms a heading or a type byte unchanged. With a
+    /// value in the same answer, an absent key may also stay absent.
     pub fn has_to_change(&self) -> bool {
         match self.found {
             Found::Fact(fact, ..) => !matches!(fact, Fact::Title | Fact::Type),
@@ -79,12 +81,12 @@ impl CoveredFact<'_> {
     }
 }
 
-/// Whether this is a state that only the owner can end.
+/// Returns `true` for a state that only the owner can end.
 pub(super) fn is_doubt(state: BodyState) -> bool {
     matches!(state, BodyState::Inferred | BodyState::Open)
 }
 
-/// Everything that an answer governs.
+/// Returns every fact that an answer covers.
 pub(super) fn covered_facts<'d, 'a>(
     draft: &'d Draft<'a>,
     answer: &'d AnswerDraft<'a>,
@@ -134,7 +136,7 @@ fn find<'a>(operation: Option<&Operation>, holder: Node<'a>, path: &'a str) -> F
     match (step(node, last), node.as_scalar()) {
         (Some(value), _) if value.as_scalar().is_some() => Found::Value(value),
         (Some(value), _) => Found::Several(value),
-        // A field in the short form is its type.
+        // A field in the short form consists of its type.
         (None, Some(_)) if last == FIELD.r#type.name => Found::Value(node),
         (None, Some(_)) => Found::Absent(node),
         (None, None) if node.as_mapping().is_some() => Found::Absent(node),
@@ -142,7 +144,7 @@ fn find<'a>(operation: Option<&Operation>, holder: Node<'a>, path: &'a str) -> F
     }
 }
 
-/// What stands under a key, or under that of a field of an object that is written in place.
+/// Returns the value under a key of the mapping, or of the fields in an inline object.
 fn step<'a>(node: Node<'a>, key: &str) -> Option<Node<'a>> {
     let inside = |within: Option<Node<'a>>| within?.get(key);
     node.get(key)

@@ -1,7 +1,7 @@
-//! A spec on its way to the model: model items, each with the place that says it.
+//! Defines the draft: model items with their places in the files.
 //!
-//! Names are not looked up yet and texts may be missing; what the syntax got wrong has been reported
-//! and is left out or flagged, so that checks find only what is new.
+//! References are not resolved yet, and texts may be missing. Malformed parts already have an error; the draft omits or
+//! flags them, so that checks find only new errors.
 
 use crate::diagnostic::Faults;
 use crate::language::Occurrence;
@@ -16,27 +16,27 @@ use crate::source::Span;
 use crate::syntax::Node;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// The nodes of a file that an item is read from.
+/// The nodes of a file that define an item.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Origin<'a> {
-    /// What names it: its key, or the list item itself.
+    /// The key of the item, or the list item.
     pub key: Node<'a>,
-    /// What it says.
+    /// The value of the item.
     pub node: Node<'a>,
 }
 
 impl Origin<'_> {
-    /// Span of its name.
+    /// Returns the span of the name.
     pub fn name(self) -> Span {
         self.key.span()
     }
 
-    /// Span of the value under `key`; its name's where it has no such key.
+    /// Returns the span of the value under `key`, or of the name if the key is absent.
     pub fn at<F: Form>(self, key: Key<F>) -> Span {
         key.of(self.node).map_or(self.key.span(), Node::span)
     }
 
-    /// Span of `key` itself; its name's where it has no such key.
+    /// Returns the span of `key`, or of the name if the key is absent.
     pub fn key_at<F: Form>(self, key: Key<F>) -> Span {
         key.entry(self.node)
             .map_or(self.key.span(), |entry| entry.key.span())
@@ -48,19 +48,18 @@ impl Origin<'_> {
 pub(crate) struct Sourced<'a, T> {
     /// The item.
     pub item: T,
-    /// Its origin.
+    /// The origin of the item.
     pub origin: Origin<'a>,
 }
 
-/// A type and the places of what it is made of.
+/// A type and the places of its parts.
 #[derive(Clone, Debug)]
 pub(crate) struct TypeDraft<'a> {
-    /// The type. Every struct has the same number of fields as `parts`, every enum of values,
-    /// every one-of of variants.
+    /// The type. A struct has as many fields as `parts`, an enum as many values, a choice as many variants.
     pub def: TypeDef,
-    /// Its origin; that of the operation, the field or the variant for a made type.
+    /// The origin of the type. A made type has the origin of its operation, field or variant.
     pub origin: Origin<'a>,
-    /// Places of its fields, values or variants.
+    /// Places of the fields, values or variants.
     pub parts: Vec<Part<'a>>,
 }
 
@@ -69,11 +68,11 @@ pub(crate) struct TypeDraft<'a> {
 pub(crate) struct Part<'a> {
     /// The origin.
     pub origin: Origin<'a>,
-    /// Where its type stands; the name where it has none of its own (an inline object).
+    /// The span of the type, or of the name if the type is an inline object.
     pub ty: Span,
-    /// Whether it is too broken to be checked further.
+    /// `true` if the part is too broken for further checks.
     pub broken: bool,
-    /// Whether it is in the short form and takes its text from its type.
+    /// `true` if the field is in the short form and takes its text from its type.
     pub borrows_text: bool,
 }
 
@@ -101,7 +100,7 @@ pub(crate) struct EnvelopeDraft<'a> {
 /// `availability:`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AvailabilityDraft<'a> {
-    /// Whether it cannot be told what is declared.
+    /// `true` if `availability:` is malformed, so that the declared words are unknown.
     pub is_broken: bool,
     pub audiences: Vec<Sourced<'a, Declared>>,
     pub hardware: Vec<Sourced<'a, Declared>>,
@@ -109,7 +108,7 @@ pub(crate) struct AvailabilityDraft<'a> {
 }
 
 impl AvailabilityDraft<'_> {
-    /// Without the places.
+    /// Returns the declared words without their places.
     pub fn model(self) -> Availability {
         let items = |placed: Vec<Sourced<'_, Declared>>| {
             placed.into_iter().map(|placed| placed.item).collect()
@@ -122,21 +121,21 @@ impl AvailabilityDraft<'_> {
     }
 }
 
-/// An answer and what it stands in.
+/// An answer and the mapping around it.
 #[derive(Clone, Debug)]
 pub(crate) struct AnswerDraft<'a> {
     /// The answer.
     pub item: Answer,
-    /// Its origin.
+    /// The origin of the answer.
     pub origin: Origin<'a>,
-    /// The mapping that holds it, where the paths of what it is about begin.
+    /// The mapping that contains the answer. Paths in `about:` start there.
     pub holder: Node<'a>,
 }
 
-/// A whole spec.
+/// A complete spec.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Draft<'a> {
-    /// Languages in which each text is required.
+    /// Languages that each text requires.
     pub texts: Languages,
     pub protocol: Option<Sourced<'a, Protocol>>,
     pub transport: Option<Sourced<'a, Transport>>,
@@ -151,7 +150,7 @@ pub(crate) struct Draft<'a> {
     /// `ack:`.
     pub default_ack: Option<Ack>,
     pub limits: Option<Sourced<'a, Limits>>,
-    /// Whether `codes:` is there and sound.
+    /// `true` if `codes:` exists and is valid.
     pub codes_known: bool,
     pub ranges: Vec<Sourced<'a, CodeRange>>,
     pub retired: Vec<Sourced<'a, RetiredCode>>,
@@ -166,30 +165,30 @@ pub(crate) struct Draft<'a> {
     pub glossary: Vec<Sourced<'a, Term>>,
     pub waivers: Vec<Sourced<'a, Waiver>>,
     pub sections: Vec<Sourced<'a, MissingSection>>,
-    /// Whether `sections:` is there and sound.
+    /// `true` if `sections:` exists and is valid.
     pub sections_known: bool,
     pub conflicts: Vec<Sourced<'a, Conflict>>,
     pub answers: Vec<AnswerDraft<'a>>,
-    /// Made of the answers and of what is lost, once that is known.
+    /// Questions from answers and lost facts. A later step fills them in.
     pub questions: Vec<Question>,
-    /// Whether there is an answer that does not say what it answers, or how.
+    /// `true` if an answer is malformed or has neither `ids` nor `about`.
     pub broken_answers: bool,
     pub changes: Vec<Sourced<'a, Change>>,
     /// Values and keys that name a thing.
     pub references: Vec<Occurrence<'a>>,
-    /// First type of each name; filled when all are lowered.
+    /// Index of the first type with each name, filled after lowering.
     pub type_index: HashMap<String, usize>,
-    /// Types of which faults leave open what they are.
+    /// Names of types whose definition is uncertain because of errors.
     pub doubtful: HashSet<String>,
 }
 
 impl<'a> Draft<'a> {
-    /// Whether there is a type of this name, of which it is clear what it is.
+    /// Returns `true` if a type of this name exists and its definition is certain.
     pub fn knows(&self, name: &str) -> bool {
         self.type_index.contains_key(name) && !self.doubtful.contains(name)
     }
 
-    /// Notes of which types the faults so far leave open what they are.
+    /// Records the types whose definition is uncertain because of the errors so far.
     pub fn note_doubtful(&mut self, faults: &Faults) {
         let places: HashSet<Span> = faults.iter().map(|fault| fault.primary.span).collect();
         for (index, ty) in self.types.iter().enumerate() {
@@ -219,7 +218,7 @@ impl<'a> Draft<'a> {
         references.filter_map(|it| Some((it, it.node.as_str()?)))
     }
 
-    /// The type of this name.
+    /// Returns the type of this name.
     pub fn type_named(&self, name: &str) -> Option<&TypeDraft<'a>> {
         self.types.get(*self.type_index.get(name)?)
     }

@@ -1,4 +1,4 @@
-//! Whether the examples and defaults of the language are what they are examples of.
+//! Tests that examples and defaults of the language are valid.
 
 use super::shape;
 use crate::diagnostic::{Faults, Format, render};
@@ -8,7 +8,7 @@ use crate::model::{Lang, Languages};
 use crate::source::Sources;
 use crate::syntax::parse;
 
-/// Reads a text as a value under a key, as a file of the spec is read.
+/// Checks a value under a key as if it were in a file of the spec. Returns the errors, if any.
 fn check(what: &str, kind: &Kind, value: &str) -> Option<String> {
     let value = value.trim_end().replace('\n', "\n  ");
     let goes_over_lines = value.contains('\n') || !value.starts_with('{') && value.contains(": ");
@@ -33,7 +33,7 @@ fn check(what: &str, kind: &Kind, value: &str) -> Option<String> {
     (!is_sound).then(|| render(&faults, &sources, Format::Text, Lang::En))
 }
 
-/// What leads to another part, whose example is shown there.
+/// Returns `true` for a kind that refers to another part. The example of that part applies.
 fn is_of_parts(kind: &Kind) -> bool {
     match kind {
         Kind::Map(_) | Kind::ByKey { .. } | Kind::Body => true,
@@ -80,7 +80,7 @@ fn every_key_has_an_example_that_may_stand_there() {
 fn every_default_may_stand_there_and_only_where_nothing_has_to() {
     let mut wrong = Vec::new();
     each_key(|name, kind, key| {
-        // It is what nobody writes.
+        // The default `stated` is never written.
         if let Some(default) = key.default.filter(|default| *default != STATED.name()) {
             let is_idle = key.required.then(|| format!("{name} is required"));
             wrong.extend(check(&name, kind, default).or(is_idle));

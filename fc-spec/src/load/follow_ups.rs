@@ -1,8 +1,8 @@
-//! Faults that follow from others.
+//! Suppresses errors that only follow from other errors.
 //!
-//! A step reports what is missing, unused or does not fit. What it looks for may stand in a text that is not read because
-//! of a fault of an earlier step, or is what an earlier fault says to write: then nothing is known, and nothing is said.
-//! Once the first fault is mended, what is left shows up.
+//! A check reports missing, unused or mismatched things. The cause may be a part that was skipped because of an earlier
+//! error, or a spelling that an earlier error already corrects. Then the result is unknown and the check stays silent.
+//! It reports again after the first error is fixed.
 
 use super::draft::Draft;
 use crate::diagnostic::{FaultCode, Faults};
@@ -10,38 +10,37 @@ use crate::language::grammar::{COMMON, SOURCE};
 use crate::source::{Sources, Span};
 use std::collections::HashSet;
 
-/// What has been reported, as far as others may follow from it.
+/// The earlier errors, in a form that shows which others follow from them.
 pub(super) struct Earlier<'s> {
     sources: &'s Sources,
-    /// Where the faults are.
+    /// The places of the errors.
     places: Vec<Span>,
-    /// The names of what lacks a key.
+    /// The places of errors about missing keys.
     incomplete: Vec<Span>,
-    /// Texts that are not read.
+    /// The skipped parts of the files.
     hidden: Vec<Span>,
-    /// The words in those texts.
+    /// The words in the skipped parts.
     words: HashSet<&'s str>,
-    /// What the faults say to write, [`loosely`].
+    /// The suggested replacements, normalized by [`loosely`].
     suggested: HashSet<String>,
-    /// Operations and types.
+    /// The spans of operations and types.
     entries: Vec<Span>,
 }
 
-/// Names that stand for nothing: whatever else is said of them is said in vain.
+/// Errors about unknown names. Any other error about such a name would be redundant.
 const NAMES_NOTHING: &[FaultCode] = &[FaultCode::UnknownType, FaultCode::UnknownValue];
 
-/// Faults of paths, each part of which may be in a text that is not read.
+/// Errors about paths. Each key of a path may be in a skipped part.
 const PATHS: &[FaultCode] = &[FaultCode::UnknownField, FaultCode::GovernsNothing];
 
-/// Faults that compare parts of an operation or type that stand far apart in it: what one of them says is not known
-/// where any is malformed.
+/// Errors that compare distant parts of one operation or type. The result is unknown if any part is malformed.
 const WITHIN_ENTRY: &[FaultCode] = &[
     FaultCode::GovernedFact,
     FaultCode::UnreachedState,
     FaultCode::UnknownField,
 ];
 
-/// What is unknown, and what may be meant by it if it is unused.
+/// Errors about unknown names, with the error for an unused thing that the name may mean.
 const UNKNOWN: [(FaultCode, FaultCode); 5] = [
     (
         FaultCode::UnknownAvailability,
@@ -53,7 +52,7 @@ const UNKNOWN: [(FaultCode, FaultCode); 5] = [
     (FaultCode::UnknownCoordinates, FaultCode::UnusedCoordinates),
 ];
 
-/// Faults that say that something is missing, or not used.
+/// Errors about missing or unused things.
 const ABSENT: &[FaultCode] = &[
     FaultCode::UnknownType,
     FaultCode::UnusedType,
@@ -73,7 +72,7 @@ const ABSENT: &[FaultCode] = &[
 ];
 
 impl<'s> Earlier<'s> {
-    /// Of the faults so far.
+    /// Collects the errors so far.
     pub fn new(draft: &Draft<'_>, sources: &'s Sources, faults: &Faults) -> Self {
         let is_missing =
             |code| matches!(code, FaultCode::MissingKey | FaultCode::MissingTranslation);
@@ -82,7 +81,7 @@ impl<'s> Earlier<'s> {
             .map(|fault| (fault.code, fault.primary.span))
             .partition(|(code, _)| is_missing(*code));
         let places = places.into_iter().map(|(_, place)| place);
-        // What stretches over lines has more in it than its own fault.
+        // A span over several lines contains more than the error.
         let places = places.filter(|place| !sources.slice(*place).contains('\n'));
         let operations = draft.operations.iter().map(|operation| operation.origin);
         let types = draft.types.iter().map(|ty| ty.origin);
@@ -102,9 +101,9 @@ impl<'s> Earlier<'s> {
         }
     }
 
-    /// Takes out of the faults found since those that follow from others.
+    /// Removes new errors that follow from others.
     pub fn suppress(mut self, found: &mut Faults) {
-        // What each name that stands for nothing is taken for, if for anything.
+        // Error codes and the suggested name, if any.
         let names: Vec<(FaultCode, Option<String>)> = found
             .iter()
             .map(|fault| {
@@ -156,14 +155,14 @@ impl<'s> Earlier<'s> {
         self.keep_used(found);
     }
 
-    /// Whether what is missing at a place may be in what is not read, or is what a fault says to write.
+    /// Returns `true` if a missing thing may be in a skipped part, or is a suggested replacement.
     fn is_absent_only_here(&self, code: FaultCode, at: Span) -> bool {
         let subject = subject(self.sources.slice(at));
         let is_known = self.words.contains(subject) || self.suggested.contains(&loosely(subject));
         ABSENT.contains(&code) && is_known
     }
 
-    /// Takes out the types of which only such types make use that may be used in what is not read.
+    /// Removes errors about unused types that a skipped part may use, directly or through another unused type.
     fn keep_used(&mut self, found: &mut Faults) {
         if self.hidden.is_empty() {
             return;
@@ -208,13 +207,13 @@ fn suggested(faults: &Faults) -> impl Iterator<Item = String> {
     fixes.map(|fix| fix.replacement.clone())
 }
 
-/// The name that a fault is about, of the text that it points at.
+/// Returns the name in the text that an error points at.
 fn subject(text: &str) -> &str {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     text.trim_matches(|c| !is_part(c))
 }
 
-/// A name without regard to how its words are joined.
+/// Returns a name without underscores and in lower case.
 fn loosely(name: &str) -> String {
     name.replace('_', "").to_lowercase()
 }
@@ -224,7 +223,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
         .filter(|word| !word.is_empty())
 }
 
-/// Whether one stretch lies in another. An empty one lies in nothing but itself.
+/// Returns `true` if `inner` lies in `outer`. An empty span lies only in an equal one.
 fn is_within(inner: Span, outer: Span) -> bool {
     let is_empty = inner.start == inner.end;
     inner.file == outer.file

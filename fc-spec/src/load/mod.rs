@@ -1,14 +1,14 @@
-//! From the files of a spec to the resolved model, or to every fault in them.
+//! Turns the files of a spec into the resolved model, or into a list of all their errors.
 //!
 //! 1. [`syntax`](crate::syntax) makes a tree of each file;
 //! 2. `shape` compares the trees with the language's `grammar`;
 //! 3. `lower` makes a draft of them: model items, each with its place;
-//! 4. `resolve` fills in what the spec leaves to be derived;
-//! 5. `check` looks for what no grammar can say: names, codes, examples, gaps;
-//! 6. `partial` takes the places off: what could be read, and the model if there is no fault.
+//! 4. `resolve` fills in derived values;
+//! 5. `check` verifies names, codes, examples and gaps, which the grammar cannot express;
+//! 6. `partial` removes the places and builds the readable part, and the model if there is no error.
 //!
-//! **Architecture invariant.** No step stops at a fault and none reports what an earlier one has
-//! reported: all faults of a spec show up in one run.
+//! **Architecture invariant.** No step stops at an error, and none repeats an error of an earlier step. One run reports
+//! all errors of a spec.
 
 mod answer_edit;
 mod answer_scope;
@@ -43,13 +43,13 @@ pub(crate) use answer_edit::text as yaml_scalar;
 pub(crate) use shape::{check_keys, check_root};
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
-/// Reads a spec whose texts are in both languages: what it says, as far as it can be read, and all of its faults.
+/// Reads a spec whose texts are in both languages. Returns everything readable and adds all errors to `faults`.
 #[must_use]
 pub fn load(sources: &Sources, faults: &mut Faults) -> Loaded {
     Trees::new(sources).load(Languages::All, faults)
 }
 
-/// Reads a spec as a draft, whose places lie in its trees; and whether all of it could be read.
+/// Reads a spec as a draft, whose places lie in its trees. The flag for `then` is `true` if all of it was readable.
 fn read<T>(
     trees: &Trees,
     texts: Languages,

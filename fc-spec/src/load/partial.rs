@@ -1,31 +1,31 @@
-//! What could be read of a spec, whether or not it has faults.
+//! Builds the readable part of a spec, with or without errors.
 
 use super::draft::{Draft, Sourced};
 use crate::model::{Envelope, Frame, FrameKinds, Model, Partial, TypeDef, TypeShape, Types, link};
 
-/// What loading a spec comes to. Its faults are told apart from it, since a spec with faults has all of this, too.
+/// The result of loading a spec. The errors are separate, because a spec with errors also has a result.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// What could be read.
+    /// The readable part of the spec.
     pub partial: Partial,
-    /// Whether all files could be read as YAML, so that what is missing is really missing.
+    /// `true` if all files were readable as YAML, so that a missing thing is really missing.
     pub whole: bool,
-    /// Whether nothing stands in the way of a model.
+    /// `true` if no error prevents a model.
     sound: bool,
 }
 
 impl Loaded {
-    /// The model; `None` if there is any error in the spec. Warnings do not stand in the way.
+    /// Returns the model; `None` if the spec has any error. Warnings do not prevent a model.
     #[must_use]
     pub fn model(self) -> Option<Model> {
         self.into_model().ok()
     }
 
-    /// The model, or what could be read if there is any error in the spec.
+    /// Returns the model.
     ///
     /// # Errors
     ///
-    /// What could be read.
+    /// Returns the readable part if the spec has any error.
     pub fn into_model(self) -> Result<Model, Box<Partial>> {
         if self.sound {
             self.partial.whole()
@@ -35,7 +35,7 @@ impl Loaded {
     }
 }
 
-/// Takes the places off a checked draft. `sound`: it has no fault that stands in the way of a model.
+/// Removes the places from a checked draft. `sound`: `true` if the spec has no errors.
 pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
     let types = draft.types.into_iter().map(|ty| {
         let mut broken = ty.parts.iter().map(|part| part.broken);
@@ -96,7 +96,7 @@ pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
     }
 }
 
-/// A type without those of its parts that are too broken to say anything.
+/// Returns a type without its broken parts.
 fn known(mut def: TypeDef, mut broken: impl FnMut() -> bool) -> TypeDef {
     match &mut def.shape {
         TypeShape::Struct(shape) => shape.fields.retain(|_| !broken()),
@@ -110,7 +110,7 @@ fn items<T>(placed: Vec<Sourced<'_, T>>) -> Vec<T> {
     shrunk(placed.into_iter().map(|placed| placed.item))
 }
 
-/// Without the room that the places took.
+/// Collects items and frees the space of their places.
 fn shrunk<T>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut items: Vec<T> = items.collect();
     items.shrink_to_fit();

@@ -1,4 +1,4 @@
-//! The keys that tie reports to commands and say how far a process has come, in a draft.
+//! Finds, in a draft, the keys that tie reports to commands and the keys that hold the state of a process.
 
 use super::draft::Draft;
 use crate::language::grammar::SET_OFF;
@@ -8,12 +8,12 @@ use crate::model::{
 };
 use crate::syntax::Node;
 
-/// The keys of `data.status`.
+/// Splits a path such as `data.status` into its keys.
 pub(super) fn path(text: &str) -> KeyPath {
     text.split('.').map(str::to_owned).collect()
 }
 
-/// Which message of a command `response.data.job` is of, and the keys behind that.
+/// Splits a path such as `response.data.job` into the message of a command and the remaining keys.
 pub(super) fn side(text: &str) -> Option<(Direction, &str)> {
     let (side, keys) = text.split_once('.')?;
     let mut sides = Direction::ALL.iter();
@@ -21,7 +21,7 @@ pub(super) fn side(text: &str) -> Option<(Direction, &str)> {
     Some((*side, keys))
 }
 
-/// A report that a command sets off, as written: its name alone, or with what ties it.
+/// Lowers an entry of `sets_off`: the name of a report, with or without ties.
 pub(super) fn set_off(node: Node<'_>) -> Option<SetOff> {
     let entries = SET_OFF.tied.of(node).into_iter().flat_map(Node::entries);
     let tied = entries.filter_map(|entry| {
@@ -38,7 +38,7 @@ pub(super) fn set_off(node: Node<'_>) -> Option<SetOff> {
     })
 }
 
-/// The body that travels this way, unless its type is not known.
+/// Returns the body of this direction; `None` if its type is unknown.
 pub(super) fn body<'d>(
     draft: &'d Draft<'_>,
     operation: &Operation,
@@ -51,7 +51,7 @@ pub(super) fn body<'d>(
     }
 }
 
-/// The fields on the way that keys lead from a body.
+/// Returns the fields along the keys, starting at a body.
 pub(super) fn way<'d>(
     draft: &'d Draft<'_>,
     from: &'d StructType,
@@ -61,7 +61,7 @@ pub(super) fn way<'d>(
     model::way(&find, from, keys)
 }
 
-/// Where a body has states of a process.
+/// Returns the paths in a body that hold states of a process.
 pub(super) fn states(draft: &Draft<'_>, from: &StructType) -> Vec<KeyPath> {
     let find = |named: &TypeRef| draft.type_named(named.name()).map(|ty| &ty.def);
     let enums = model::enums(&find, from).into_iter();
@@ -69,7 +69,7 @@ pub(super) fn states(draft: &Draft<'_>, from: &StructType) -> Vec<KeyPath> {
     states.map(|(keys, _)| keys).collect()
 }
 
-/// Where a body says that something failed, beside its state.
+/// Returns the paths in a body, other than its state, that hold failures.
 fn failures(draft: &Draft<'_>, from: &StructType, state: Option<&KeyPath>) -> Vec<KeyPath> {
     let find = |named: &TypeRef| draft.type_named(named.name()).map(|ty| &ty.def);
     let enums = model::enums(&find, from).into_iter();
@@ -77,8 +77,8 @@ fn failures(draft: &Draft<'_>, from: &StructType, state: Option<&KeyPath>) -> Ve
     failing.map(|(keys, _)| keys).collect()
 }
 
-/// A report whose body has states in one place has its state there, unless it says so itself; a failure may
-/// stand in any other.
+/// Finds state and failures of each report. Without `state_in`, a body with states in one place has its state there.
+/// Failures may be in any other place.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
     let mut resolved = Vec::new();
     for (index, operation) in draft.operations.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The questions for the owner: what the spec asks or decides, and what the source has lost without anybody asking.
+//! Collects the questions for the owner, from the answers of the spec and from lost facts without an answer.
 
 use super::answer_edit::{AnswerEditor, Blank};
 use super::answer_scope::{CoveredFact, Found, covered_facts, is_doubt};
@@ -12,7 +12,7 @@ use crate::source::Sources;
 use crate::vocabulary::Word as _;
 use std::collections::{HashMap, HashSet};
 
-/// All of them, the most pressing first.
+/// Returns all questions, the most urgent first.
 pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
     let editor = || AnswerEditor::new(sources, draft.texts, &Blank);
     let mut asked: HashSet<(&str, Fact)> = HashSet::new();
@@ -59,7 +59,7 @@ pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
         let group = groups.find(|group| group.item.location.file == *file);
         question.group = group.map(|group| group.item.id.clone());
     }
-    // What is settled holds nothing up any more.
+    // Settled questions come last.
     questions.sort_by_key(|it| (!it.is_open(), it.impact, it.severity.is_none(), it.severity));
     questions
 }
@@ -106,7 +106,7 @@ fn of_answer(
     }
 }
 
-/// What is asked of a fact of which the spec is in doubt and of which nothing else asks.
+/// Returns the question about a doubtful fact that no answer covers.
 fn of_loss(
     operation: &Sourced<'_, Operation>,
     fact: Fact,
@@ -135,7 +135,7 @@ fn of_loss(
     }
 }
 
-/// What a fact of an operation holds up.
+/// Returns the impact of a doubtful fact.
 fn impact(fact: Fact, state: BodyState) -> Impact {
     match (fact, state) {
         (Fact::Code, BodyState::Open) => Impact::NoCode,
@@ -145,7 +145,7 @@ fn impact(fact: Fact, state: BodyState) -> Impact {
     }
 }
 
-/// The question, in both languages. What the spec says of a lost body is the better one.
+/// Returns the question in both languages. Prefers the note of a lost body.
 fn ask(operation: &Operation, fact: Fact, state: BodyState) -> Text {
     let direction = match fact {
         Fact::Request => Some(Direction::Request),
@@ -205,8 +205,8 @@ fn ask(operation: &Operation, fact: Fact, state: BodyState) -> Text {
     Text { zh, en }
 }
 
-/// Tells questions about one conflict apart by where they stand. A conflict's one question, or its one decision where
-/// it has no question, has its id.
+/// Adds the place to the id if several questions are about one conflict. The only question of a conflict has the
+/// conflict's id. If there is no question, the only decision has it.
 fn name(draft: &Draft<'_>, questions: &mut [Question]) {
     let mut all: HashMap<String, usize> = HashMap::new();
     let mut asking: HashMap<String, usize> = HashMap::new();
@@ -234,7 +234,7 @@ fn name(draft: &Draft<'_>, questions: &mut [Question]) {
     }
 }
 
-/// Where it stands, in one word: of what stands in a body, the operation.
+/// Returns the place as one word. A part of a body yields its operation.
 fn place(draft: &Draft<'_>, subject: &Subject) -> String {
     match subject {
         Subject::Protocol => FILE.protocol.name.to_owned(),

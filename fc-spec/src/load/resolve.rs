@@ -1,4 +1,4 @@
-//! What the spec leaves to be derived: filled in where names can be looked up.
+//! Fills in derived values of the draft that need a lookup of names.
 
 use super::answer_scope::{Found, covered_facts};
 use super::draft::Draft;
@@ -6,7 +6,7 @@ use super::process;
 use crate::language::grammar::REPORT;
 use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
 
-/// Fills in ports, acknowledgements, states of reports, borrowed texts, the kind of each example and what the owner has confirmed.
+/// Fills in ports, acknowledgements, states of reports, borrowed texts, the kind of each example and confirmed facts.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
     resolve_ports(draft);
     resolve_acks(draft);
@@ -16,7 +16,7 @@ pub(super) fn resolve(draft: &mut Draft<'_>) {
     resolve_confirmed(draft);
 }
 
-/// An operation travels on the port of its frame kind.
+/// Gives each operation the port of its frame kind.
 fn resolve_ports(draft: &mut Draft<'_>) {
     let Some(frame) = &draft.frame else {
         return;
@@ -48,7 +48,7 @@ fn resolve_acks(draft: &mut Draft<'_>) {
     }
 }
 
-/// A field in the short form is described by the title of its type.
+/// Gives a field in the short form the title of its type.
 fn resolve_texts(draft: &mut Draft<'_>) {
     let mut titles = Vec::new();
     for (at, ty) in draft.types.iter().enumerate() {
@@ -70,7 +70,7 @@ fn resolve_texts(draft: &mut Draft<'_>) {
     }
 }
 
-/// An optional field without an example of its own is left out of composed ones where none can be derived.
+/// Marks optional fields as absent in composed examples if they have no example and none can be derived.
 fn resolve_examples(draft: &mut Draft<'_>) {
     for ty in &mut draft.types {
         if let TypeShape::Struct(shape) = &mut ty.def.shape {
@@ -83,8 +83,8 @@ fn resolve_examples(draft: &mut Draft<'_>) {
     }
 }
 
-/// What the source has lost and the owner has said is confirmed: a code, an effect or a body once it is written down
-/// without a doubt, a heading or a type byte as it is.
+/// Marks lost facts as confirmed that the owner has settled. A code, an effect or a body must also be stated in the
+/// spec. A heading or a type byte needs no change.
 fn resolve_confirmed(draft: &mut Draft<'_>) {
     let mut confirmed = Vec::new();
     for answer in &draft.answers {
@@ -109,8 +109,8 @@ fn resolve_confirmed(draft: &mut Draft<'_>) {
     }
 }
 
-/// Whether a value of this type can be composed without being told one. What is missing inside a named
-/// type is reported there.
+/// Returns `true` if a value of this type can be composed without an example. A named type reports its own missing
+/// examples.
 pub(super) fn is_derivable(ty: &Type) -> bool {
     match ty {
         Type::Int(_) | Type::Float(_) | Type::String => false,

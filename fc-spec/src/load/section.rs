@@ -1,4 +1,4 @@
-//! The top keys of all files: which may stand where, and how often.
+//! Collects the top keys of all files and checks their place and number.
 
 use super::draft::Origin;
 use super::shape;
@@ -16,39 +16,39 @@ use std::collections::HashMap;
 pub(super) struct Parsed<'s> {
     /// Path from the project's root.
     pub path: &'s str,
-    /// Its text as a tree.
+    /// The syntax tree of the file.
     pub tree: syntax::Tree<'s>,
-    /// Its texts that are not in the tree.
+    /// The parts of the text that are not in the tree.
     pub gaps: &'s [Span],
-    /// Whether all of its text is in the tree.
+    /// `true` if the tree covers all of the text.
     pub is_whole: bool,
 }
 
 impl Parsed<'_> {
-    /// Its top mapping.
+    /// Returns the top mapping.
     fn root(&self) -> Node<'_> {
         self.tree.root()
     }
 }
 
-/// A top key of a file and what stands under it.
+/// A top key of a file and its content.
 pub(super) struct Section<'a> {
     /// The key.
     pub name: &'static str,
-    /// Its place.
+    /// The place of the key.
     pub origin: Origin<'a>,
     /// Group of the file.
     pub group: Option<&'a str>,
-    /// Values and keys in it that name a thing.
+    /// Values and keys in the section that name a thing.
     pub references: Vec<Occurrence<'a>>,
-    /// Whether its shape is sound.
+    /// `true` if the shape of the section is valid.
     pub clean: bool,
 }
 
-/// The sections of all files, in order, and what is wrong with their shape.
+/// Returns the sections of all files, in order, and reports errors in their shape.
 ///
-/// `whole`: every file could be parsed, so that what is missing is really missing. It stays so unless a file that
-/// every spec has is not there, which is the cause of all else that is missing.
+/// `whole`: `true` if every file was parsed, so that a missing thing is really missing. Becomes `false` if a required
+/// file is absent, because that explains all other missing things.
 pub(super) fn collect<'a>(
     trees: &'a [Parsed<'_>],
     texts: Languages,
@@ -72,14 +72,14 @@ pub(super) fn collect<'a>(
     sections
 }
 
-/// The sections of one file by itself.
+/// Returns the sections of one file.
 pub(super) fn of_file<'a>(tree: &'a Parsed<'_>) -> Vec<Section<'a>> {
     let (mut sections, mut faults) = shaped(tree, Languages::Any);
     drop_repeated(&mut sections, &mut faults);
     sections
 }
 
-/// The sections of one file, and what is wrong with their shape.
+/// Returns the sections of one file and the errors in their shape.
 fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faults) {
     let mut sections = Vec::new();
     let mut faults = Faults::new();
@@ -108,7 +108,7 @@ fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faul
     (sections, faults)
 }
 
-/// Whether the file lies in `commands/`.
+/// Returns `true` if the file is in `commands/`.
 fn holds_operations(tree: &Parsed<'_>) -> bool {
     let mut parts = tree.path.rsplit('/');
     parts.nth(1) == Some("commands")
@@ -157,7 +157,7 @@ fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
     }
 }
 
-/// Keeps the first of sections that may stand only once, and says so.
+/// Keeps the first of sections that may occur only once, and reports the others.
 fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     sections.retain(|section| {
@@ -183,7 +183,7 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
     });
 }
 
-/// Whether there is a file for what lies below the messages, and one with operations.
+/// Checks that there is a file for the sections below the messages, and one with operations.
 fn check_files(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Faults) -> bool {
     let Some(first) = trees.first() else {
         return true;

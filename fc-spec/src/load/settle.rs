@@ -1,4 +1,4 @@
-//! Writing down what the owner says.
+//! Writes the owner's answer to a question into the files.
 
 use super::answer_edit::{AnswerEditor, OwnerInput};
 use super::answer_scope::{CoveredFact, Found, covered_facts};
@@ -15,18 +15,19 @@ use crate::text;
 use crate::vocabulary::Word as _;
 use std::fmt;
 
-/// What the owner says to one question.
+/// The owner's answer to one question.
 #[derive(Clone, Debug)]
 pub struct Said {
     /// The id of a question, or of a conflict that has one.
     pub id: String,
-    /// By the path of what the question is about, or its end, the value as YAML: `code` and `0x0350`, `unit` and `s`.
+    /// Pairs of a path and a value as YAML, such as `code` and `0x0350`, `unit` and `s`. The path is a path in `about:`
+    /// or its end.
     pub values: Vec<(String, String)>,
-    /// Who said it, and when.
+    /// The owner's name and the date.
     pub confirmation: Confirmation,
 }
 
-/// A question with the owner's word written down.
+/// A settled question and the changed file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settled {
     /// The question's id.
@@ -35,18 +36,18 @@ pub struct Settled {
     pub path: String,
     /// The file's new text.
     pub text: String,
-    /// The lines that change, as a diff without line numbers.
+    /// The changed lines, as a diff without line numbers.
     pub diff: String,
 }
 
-/// Why the owner's word cannot be written down.
+/// The reason why an owner's answer cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SettleError {
     /// There is no such question.
     Unknown {
-        /// What was asked for.
+        /// The id that was passed.
         id: String,
-        /// What it may be a slip of.
+        /// The most similar id, if any.
         nearest: Option<String>,
     },
     /// The conflict has several questions.
@@ -56,44 +57,44 @@ pub enum SettleError {
         /// The ids of its questions.
         questions: Vec<String>,
     },
-    /// It has been settled before.
+    /// The question is already settled.
     Settled {
         /// The question.
         id: String,
-        /// Who settled it.
+        /// The owner who settled it.
         by: String,
-        /// When.
+        /// The date of the answer.
         date: String,
     },
-    /// It is not about such a thing.
+    /// The question is not about this path.
     NotAbout {
         /// The question.
         id: String,
-        /// What was said.
+        /// The path that was passed.
         path: String,
-        /// What it is about.
+        /// The paths of the question.
         about: Vec<String>,
     },
-    /// What it is about stands on one line between braces.
+    /// The entry is in braces on one line, so that its lines cannot be edited.
     Layout {
         /// The question.
         id: String,
         /// Path of the file from the project's root.
         path: String,
-        /// Line on which it begins, counted from 1.
+        /// Line on which the entry begins, counted from 1.
         line: usize,
     },
-    /// Something that it is about is not known without a value.
+    /// The question needs values that were not passed.
     Missing {
         /// The question.
         id: String,
-        /// What has to be said.
+        /// The paths that need a value.
         paths: Vec<String>,
     },
 }
 
 impl SettleError {
-    /// The sentence for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -148,12 +149,14 @@ impl fmt::Display for SettleError {
 
 impl std::error::Error for SettleError {}
 
-/// Writes down what the owner says to a question of a spec, and nothing else. New texts are in the languages `texts`. The files are not read again: whether the
-/// spec is sound with it is for [`load`](super::load) to say.
+/// Writes the owner's answer to a question of a spec, and changes no other text. New texts are in the languages
+/// `texts`.
+///
+/// Does not read the files again: call [`load`](super::load) to check the result.
 ///
 /// # Errors
 ///
-/// [`SettleError`] if there is no such question, or what is said does not answer it.
+/// Returns [`SettleError`] if there is no such question, or if the values do not answer it.
 pub fn settle(sources: &Sources, texts: Languages, said: &Said) -> Result<Settled, SettleError> {
     super::read(
         &super::Trees::new(sources),
@@ -195,7 +198,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
         path: place.file.clone(),
         line: place.line,
     };
-    // An answer and an operation do not have one place.
+    // An answer and an operation never have the same place.
     let mut answers = draft.answers.iter();
     if let Some(answer) = answers.find(|answer| answer.item.location == question.location) {
         let covered: Vec<_> = covered_facts(draft, answer).collect();
@@ -236,7 +239,7 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
     })
 }
 
-/// The question with this id, or the one that is about this conflict.
+/// Returns the question with this id, or the one about this conflict.
 fn find<'q>(questions: &'q [Question], id: &str) -> Result<&'q Question, SettleError> {
     if let Some(question) = questions.iter().find(|question| question.id == id) {
         return Ok(question);
@@ -262,7 +265,7 @@ fn find<'q>(questions: &'q [Question], id: &str) -> Result<&'q Question, SettleE
     }
 }
 
-/// The fact that a question is about which the spec does not ask itself.
+/// Returns the fact of a question that no answer of the spec asks.
 fn lost<'d, 'a>(
     draft: &'d Draft<'a>,
     question: &Question,
@@ -276,11 +279,11 @@ fn lost<'d, 'a>(
     Some((operation, fact, operation.item.fact_state(fact)?))
 }
 
-/// What the owner says, for the facts of one question.
+/// The owner's answer as input for the facts of one question.
 struct Spoken<'s>(&'s Said);
 
 impl OwnerInput for Spoken<'_> {
-    /// Of several that fit, the one that says most of the path.
+    /// If several values match, the one with the longest path wins.
     fn value(&self, path: &str) -> Option<String> {
         let fitting = self.0.values.iter().filter(|(end, _)| is_end_of(end, path));
         let (_, value) = fitting.max_by_key(|(end, _)| end.len())?;
@@ -292,8 +295,8 @@ impl OwnerInput for Spoken<'_> {
     }
 }
 
-/// A value as it is, in quotes where YAML or its readers might take it for something else. A mapping, and what stands
-/// in braces or quotes, is YAML already.
+/// Returns a value as YAML, quoted if a reader could take it for something else. Mappings, and values in braces or
+/// quotes, are already YAML.
 fn as_yaml(value: &str) -> String {
     let is_yaml = value.contains(": ") || value.starts_with(['{', '[', '"', '\'']);
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_.-/".contains(c);
@@ -304,7 +307,7 @@ fn as_yaml(value: &str) -> String {
     }
 }
 
-/// Whether a path ends with these keys.
+/// Returns `true` if a path ends with these keys.
 fn is_end_of(end: &str, path: &str) -> bool {
     let rest = path.strip_suffix(end);
     rest.is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))

@@ -1,4 +1,4 @@
-//! Whether texts are texts, each in its language. Looked at with the shape, wherever a mapping has them.
+//! Checks texts and their language, wherever a mapping has them.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::ambiguous_scalar::misread;
@@ -7,12 +7,12 @@ use crate::names;
 use crate::syntax::{Node, Style, quoted};
 use crate::text;
 
-/// How the Chinese texts of an operation begin that has only been begun.
+/// Prefix of Chinese placeholder texts in a new operation.
 pub(crate) const TO_BE_WRITTEN_ZH: &str = "（待写";
-/// The same in English.
+/// Prefix of English placeholder texts.
 pub(crate) const TO_BE_WRITTEN_EN: &str = "(to be written";
 
-/// Reports what is wrong with `zh` and `en` of a mapping, which are texts or lists of words.
+/// Reports errors in `zh` and `en` of a mapping, which are texts or lists of words.
 pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
     for word in [TEXT.zh, TEXT.en]
         .into_iter()
@@ -70,7 +70,8 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
     }
 }
 
-/// Whether there is a text, without white space around it.
+/// Reports an empty text, invisible characters and white space around the text. Returns `false` if further checks
+/// cannot use the text.
 fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
     let Some(scalar) = node.as_scalar() else {
         return false;
@@ -88,7 +89,7 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
         ));
         return false;
     }
-    // Whether it is one at all has been asked.
+    // The shape check reports an ambiguous spelling.
     if node.as_plain().is_some_and(|text| misread(text).is_some()) {
         return false;
     }

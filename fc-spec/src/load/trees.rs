@@ -1,4 +1,4 @@
-//! The files of a spec as trees, which stay while other files change.
+//! Keeps the files of a spec as trees while other files change.
 
 use super::draft::Draft;
 use super::section::Parsed;
@@ -11,18 +11,17 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use std::fmt;
 use std::sync::Arc;
 
-/// The files of a spec as trees: what reads a spec again and again, such as an editor's server, reads of the files that have
-/// not changed what it has read before.
+/// The files of a spec as trees. A long-running reader, such as a language server, parses only the changed files again.
 #[derive(Clone, Debug, Default)]
 pub struct Trees {
     sources: Sources,
     files: Vec<Arc<File>>,
 }
 
-/// A file, and what has been found out about it by itself.
+/// A parsed file and its own errors.
 struct File {
     source: Arc<SourceFile>,
-    /// Without its text.
+    /// The tree without the text of the file.
     tree: Option<Tree<'static>>,
     is_whole: bool,
     faults: Faults,
@@ -35,13 +34,13 @@ impl fmt::Debug for File {
 }
 
 impl Trees {
-    /// Of these files.
+    /// Parses the files.
     #[must_use]
     pub fn new(sources: &Sources) -> Self {
         Self::default().with(sources)
     }
 
-    /// Of these files, of which those that are the same as here are not parsed again.
+    /// Returns the trees of these files. Does not parse unchanged files again.
     #[must_use]
     pub fn with(&self, sources: &Sources) -> Self {
         let all = sources.iter().filter_map(|(id, _)| {
@@ -62,7 +61,7 @@ impl Trees {
         }
     }
 
-    /// The files.
+    /// Returns the files.
     #[must_use]
     pub fn sources(&self) -> &Sources {
         &self.sources
@@ -72,14 +71,15 @@ impl Trees {
         self.files.get(usize::try_from(id.0).ok()?)
     }
 
-    /// The tree of a file; `None` of one that [`parse`](crate::syntax::parse) makes none of.
+    /// Returns the tree of a file; `None` if [`parse`](crate::syntax::parse) returns none.
     #[must_use]
     pub fn tree(&self, file: FileId) -> Option<Tree<'_>> {
         let file = self.file(file).filter(|file| file.is_whole)?;
         Some(file.tree.as_ref()?.over(&file.source.text))
     }
 
-    /// What the spec says, as far as it can be read, and all of its faults. Each text has to be in these languages.
+    /// Reads the spec: returns everything readable and adds all errors to `faults`. Each text must be in the languages
+    /// `texts`.
     #[must_use]
     pub fn load(&self, texts: Languages, faults: &mut Faults) -> Loaded {
         read(self, texts, faults, |draft, whole, faults| {
@@ -96,7 +96,7 @@ impl Trees {
         }
     }
 
-    /// Hands on the draft of one file alone; `None` if it has no tree.
+    /// Passes the draft of one file to `then`; `None` if the file has no tree.
     pub(crate) fn draft_of<T>(&self, id: FileId, then: impl FnOnce(&Draft<'_>) -> T) -> Option<T> {
         let parsed = self.file(id)?.parsed()?;
         let sections = section::of_file(&parsed);
@@ -107,8 +107,7 @@ impl Trees {
         )))
     }
 
-    /// Those files of which there are trees, and what is wrong with each and with the others; and whether there are no
-    /// others.
+    /// Returns the files with a tree, and `true` if every file has one. Adds the errors of all files to `faults`.
     pub(super) fn parsed(&self, faults: &mut Faults) -> (Vec<Parsed<'_>>, bool) {
         let mut whole = true;
         let mut parsed = Vec::new();
@@ -123,8 +122,7 @@ impl Trees {
     }
 }
 
-/// Makes something of each file, on all processors. What is to be made of one alone is not handed to other threads, which
-/// may be busy with something longer.
+/// Maps the files in parallel. Keeps a single file on this thread, because the other threads may have longer tasks.
 fn together<F: Sync, T: Send>(files: &[F], make: impl Fn(&F) -> T + Send + Sync) -> Vec<T> {
     if files.len() > 1 {
         files.par_iter().map(make).collect()
@@ -149,7 +147,7 @@ impl File {
         }
     }
 
-    /// Whether it is this file with this text.
+    /// Returns `true` if the source is this file with the same text.
     fn is_of(&self, source: &Arc<SourceFile>) -> bool {
         let own = &self.source;
         Arc::ptr_eq(own, source)

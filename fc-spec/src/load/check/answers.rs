@@ -1,4 +1,4 @@
-//! What the source lacks, and what the spec says about it.
+//! Checks the parts that the source lacks, conflicts and their answers.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
@@ -11,7 +11,7 @@ use crate::text;
 use crate::vocabulary::Word as _;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// What is lost is inferred or open, never stated.
+/// Checks that a lost fact is inferred or open, never stated.
 pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
         for node in SOURCE
@@ -53,7 +53,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
                 _ => continue,
             };
-            // What is said of it in a key that cannot be read has been reported.
+            // An unreadable state key has its own error.
             let is_said = [OPERATION.request_state.name, OPERATION.response_state.name];
             let is_said = is_said
                 .iter()
@@ -80,7 +80,7 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every answered conflict exists.
+/// Checks that every conflict of an answer exists.
 pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
     let known: HashSet<&str> = draft
         .conflicts
@@ -129,7 +129,7 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every conflict is answered.
+/// Checks that every conflict has an answer.
 pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
     let answered: HashSet<&str> = draft
         .answers
@@ -150,9 +150,9 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every section of the source, up to the last one known, belongs to an operation or is known to be lost.
+/// Checks the sections of the source up to the last known one. Each belongs to an operation or is listed as missing.
 pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
-    // Sections that an operation does not say, or not rightly, are not missing.
+    // An operation without valid `sections` could use any of them, so no section counts as missing.
     let says_sections = |operation: &Sourced<'_, Operation>| {
         let source = OPERATION.source.of(operation.origin.node);
         SOURCE.sections.of(source).is_some_and(|sections| {

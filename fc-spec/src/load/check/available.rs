@@ -1,4 +1,4 @@
-//! For whom things are: words that are declared, and limits that leave every audience a whole protocol.
+//! Checks limits of availability: they use declared words and leave every audience a complete protocol.
 
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -11,15 +11,15 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashSet;
 
-/// A limit and where it stands.
+/// A limit and its place.
 struct Limit<'d, 'a> {
     available: &'d Available,
     node: Node<'a>,
-    /// The operation in whose body it is; of a type that bodies share there is none.
+    /// The operation whose body contains the limit; `None` in a shared type.
     within: Option<&'d str>,
 }
 
-/// Every limit of a spec.
+/// Returns every limit of a spec.
 fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
     let operations = draft.operations.iter().filter_map(|operation| {
         Some(Limit {
@@ -59,10 +59,10 @@ fn limits<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = Limit<'d, 'a>> {
     operations.chain(parts)
 }
 
-/// What a limit names, of one kind: the name and its place.
+/// The words of one kind in a limit: each name with its place.
 type Named<'a> = Vec<(&'a str, Span)>;
 
-/// What is no name has been reported.
+/// Skips malformed names, which the shape check reports.
 fn named<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Named<'a> {
     let names = nodes.filter_map(|node| Some((node.as_str()?, node.span())));
     names.filter(|(name, _)| names::is_snake(name)).collect()
@@ -72,7 +72,7 @@ fn names_of<'d>(declared: &'d [Sourced<'_, Declared>]) -> HashSet<&'d str> {
     declared.iter().map(|it| it.item.name.as_str()).collect()
 }
 
-/// A limit limits something.
+/// Checks that no limit is empty or names every audience.
 pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
     let all = names_of(&draft.availability.audiences);
     for Limit {
@@ -106,7 +106,7 @@ pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A key that not everyone has is optional: those without it neither send nor get it.
+/// Checks that a field with a limit is optional. Peers outside the limit neither send nor receive it.
 pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if field.optional || field.details().available.is_none() {
@@ -127,7 +127,7 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What is in a body is for no audience that the operation is not for.
+/// Checks that a part of a body is limited to audiences of its operation.
 pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
     for limit in limits(draft) {
         let mut operations = draft.operations.iter();
@@ -155,7 +155,7 @@ pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every audience is left a value of each enum and of each `only`, and two variants of each choice.
+/// Checks that every audience keeps one value of each enum and each `only`, and two variants of each choice.
 pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
     let has = |available: Option<&Available>, audience: &str| {
         available.is_none_or(|available| available.is_for(audience))
@@ -223,7 +223,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Releases are numbers with dots between them, and the last is not before the first.
+/// Checks that releases are numbers joined by dots, and that the last is not before the first.
 pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
     for Limit { node, .. } in limits(draft) {
         let (from, until) = (AVAILABLE.from.get(node), AVAILABLE.until.get(node));
@@ -255,7 +255,7 @@ pub(super) fn check_releases(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The numbers of a release, without zeros at their end, which make no difference.
+/// Returns the numbers of a release without trailing zeros, which do not affect the order.
 fn numbers(release: &str) -> Option<Vec<u64>> {
     let number = |part: &str| {
         let is_number = !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());

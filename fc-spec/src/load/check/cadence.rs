@@ -1,4 +1,4 @@
-//! When reports are sent.
+//! Checks the cadence of reports.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{CADENCE, REPORT, STEP};
@@ -8,7 +8,7 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashSet;
 
-/// Each report that says when it is sent, and where it does.
+/// Returns each report that has a cadence, with the node of the cadence.
 fn cadences<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d Operation, Node<'a>)> {
     draft.operations.iter().filter_map(|operation| {
         let node = REPORT.cadence.of(operation.origin.node)?;
@@ -17,7 +17,7 @@ fn cadences<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d Operation
     })
 }
 
-/// A cadence is one rule.
+/// Checks that a cadence has exactly one rule.
 pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, node) in cadences(draft) {
         let rules = [
@@ -49,9 +49,9 @@ pub(super) fn check_one_rule(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A deadline runs from a command that sets the report off.
+/// Checks that a command sets off each report that has a deadline. The deadline starts with that command.
 pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
-    // Most specs have none.
+    // Computed on demand, because most specs have no deadlines.
     let mut set_off = None;
     for (report, node) in cadences(draft) {
         let Some(entry) = CADENCE.within_ms.entry(node) else {
@@ -80,7 +80,7 @@ pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A rule goes by a field of the report, and steps are those of a number.
+/// Checks that a rule names a field of the report, and that a step refers to a number.
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     for (report, node) in cadences(draft) {
         let Some(body) = report.messages().map(|messages| messages.request.ty.name()) else {
@@ -136,7 +136,7 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
     }
 }
 
-/// The field at a path. Where there is none, that is reported, unless what is missing may be what has been reported.
+/// Returns the field at a path. Reports an absent field, unless an earlier error may explain its absence.
 fn find<'d, 'a>(
     draft: &'d Draft<'a>,
     body: &str,
@@ -169,7 +169,7 @@ fn find<'d, 'a>(
     None
 }
 
-/// The structs that a type may be: itself, or the variants of a choice.
+/// Returns the structs that a type may be: the type itself, or the variants of a choice.
 fn structs<'d, 'a>(draft: &'d Draft<'a>, ty: &'d TypeDraft<'a>) -> Vec<&'d TypeDraft<'a>> {
     match &ty.def.shape {
         TypeShape::OneOf(choice) => {

@@ -1,4 +1,4 @@
-//! Codes of operations and their ranges.
+//! Checks codes of operations and their ranges.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{CODE, Group, Named, OPERATION, RANGE, RETIRED, SOURCE};
@@ -9,7 +9,7 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 
-/// Ranges count upwards and do not overlap. `false` if they are not like that.
+/// Checks that ranges ascend and do not overlap. Returns `false` if they do not.
 pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     let before = faults.errors();
     let mut reached: Option<&Sourced<'_, CodeRange>> = None;
@@ -62,7 +62,7 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     faults.errors() == before
 }
 
-/// A code is retired once.
+/// Checks that no code is retired twice.
 pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<u16, Span> = HashMap::new();
     for retired in &draft.retired {
@@ -81,14 +81,15 @@ pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No two operations have one code but a stream and the command that starts it, and none has a retired one.
+/// Checks that operations have different codes, and that none uses a retired one. A stream may share the code of the
+/// command that starts it.
 pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
     let retired: HashMap<u16, Span> = draft
         .retired
         .iter()
         .map(|retired| (retired.item.code, retired.origin.at(RETIRED.code)))
         .collect();
-    // At most a command and its stream.
+    // Holds at most a command and its stream.
     let mut first: HashMap<u16, Vec<&Sourced<'_, Operation>>> = HashMap::new();
     for operation in &draft.operations {
         let Some(code) = operation.item.code.value else {
@@ -142,7 +143,7 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Whether one is a stream and the other the command that starts it: the kinds of their frames tell them apart.
+/// Returns `true` if one is a stream and the other the command that starts it. The frame kind distinguishes the two.
 fn belong_together(one: &Operation, other: &Operation) -> bool {
     let starts = |command: &Operation, stream: &Operation| {
         let started_by = stream.stream().and_then(|it| it.started_by.as_deref());
@@ -151,7 +152,7 @@ fn belong_together(one: &Operation, other: &Operation) -> bool {
     starts(one, other) || starts(other, one)
 }
 
-/// Every code lies in a range whose purpose suits it.
+/// Checks that every code lies in a range with a suitable purpose.
 pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if !draft.codes_known {
         return;
@@ -184,7 +185,7 @@ pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
             );
             continue;
         };
-        // Without sound `sections` nobody knows whether it is new.
+        // Without valid `sections` it is unknown whether the operation is new.
         let source = OPERATION.source.of(operation.origin.node);
         let sections = SOURCE.sections.of(source).and_then(Node::as_sequence);
         let is_new = operation.item.sections.is_empty() && sections.is_some();
@@ -203,7 +204,7 @@ pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
                 text!("号段的用途", "the purpose of the range"),
             );
             let next = next(draft, &operation.item);
-            // The code of an operation of the source is a fact; that of a new one is a choice.
+            // The code of an operation from the source is a fact; the code of a new operation is a choice.
             faults.push(match next.filter(|_| operation.item.sections.is_empty()) {
                 Some(next) => fault.fix(
                     span,
@@ -216,7 +217,7 @@ pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The code that the next operation of the same kind and group gets.
+/// Returns the code for the next operation of the same kind and group.
 fn next(draft: &Draft<'_>, operation: &Operation) -> Option<u16> {
     let usage = match operation.kind() {
         Kind::Command => RangeUse::Commands,
@@ -232,7 +233,7 @@ fn next(draft: &Draft<'_>, operation: &Operation) -> Option<u16> {
     )
 }
 
-/// Every group of a range exists.
+/// Checks that every group of a range exists.
 pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     let known: Vec<&str> = draft
         .groups
@@ -252,9 +253,9 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Why an operation cannot have a code of such a range.
+/// Returns the reason why an operation cannot have a code from such a range.
 ///
-/// One that the source does not have is new: what is new gets its code from the ranges that count up.
+/// An operation that is not in the source is new. New operations get codes from the ranges that count up.
 fn objection(operation: &Operation, usage: RangeUse, is_new: bool) -> Option<Text> {
     match (operation.kind(), usage) {
         (Kind::Command | Kind::Report, RangeUse::Historic) if is_new => Some(text!(

@@ -1,4 +1,4 @@
-//! Fields that are there, or valid, only under certain values of the fields beside them.
+//! Checks fields that are present, or valid, only for certain values of other fields of the object.
 
 use super::iter::fields;
 use super::value::check_field;
@@ -11,7 +11,7 @@ use crate::model::{Field, Text, Type, TypeShape};
 use crate::syntax::{Entry, Node};
 use crate::text;
 
-/// A field has one condition.
+/// Checks that a field has at most one condition.
 pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if field.details().condition.is_none() {
@@ -31,7 +31,8 @@ pub(super) fn check_one(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What a condition asks is another field of the same object, whose value is always there and can be told from others.
+/// Checks that a condition refers to another field of the same object. That field must be required, and its values must
+/// be comparable.
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     for question in questions(draft) {
         let Question { own, entry, .. } = question;
@@ -76,13 +77,13 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The values that a condition asks for are values of the field that it asks, each named once.
+/// Checks that a condition lists valid values of the field it depends on, each once.
 pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     for question in questions(draft) {
         let Some((asked, part)) = question.asked else {
             continue;
         };
-        // What cannot be asked has been reported.
+        // An unusable field has its own error.
         if asked.wire == question.own.wire || !has_single_values(draft, &asked.ty) {
             continue;
         }
@@ -109,19 +110,19 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What a condition asks of one field.
+/// One entry of a condition: a field and its values.
 struct Question<'d, 'a> {
     /// The field that has the condition.
     own: &'d Field,
-    /// Every field of the object, itself among them.
+    /// Every field of the object, including `own`.
     beside: &'d [Field],
     /// The key and the values.
     entry: Entry<'a>,
-    /// The field that is asked, if there is one.
+    /// The field that the condition depends on, if it exists.
     asked: Option<(&'d Field, Part<'a>)>,
 }
 
-/// Everything that conditions ask, but of fields that are too broken to be asked.
+/// Returns the entries of all conditions, except those about malformed fields.
 fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
     let mut questions = Vec::new();
     for (ty, own, part) in fields(draft) {
@@ -150,7 +151,8 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
     questions
 }
 
-/// Whether each of its values is one word, number or truth, equal to another or not. An unknown type is reported as such.
+/// Returns `true` if values of the type are single words, numbers or booleans. Also `true` for an unknown type, which
+/// has its own error.
 fn has_single_values(draft: &Draft<'_>, ty: &Type) -> bool {
     match ty {
         Type::Bool | Type::Int(_) | Type::String => true,

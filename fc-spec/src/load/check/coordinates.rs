@@ -1,4 +1,4 @@
-//! Coordinate systems and stores, and what names them.
+//! Checks coordinate systems and stores, and the references to them.
 
 use super::iter::typed_fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -9,14 +9,14 @@ use crate::model::{StructType, Type, TypeShape};
 use crate::text;
 use std::collections::HashSet;
 
-/// `coordinates` of a field stands where objects are, and says what their struct leaves open.
+/// Checks that a field with `coordinates` holds objects whose struct names no other coordinate system.
 pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let Some(system) = field.details().coordinates.as_deref() else {
             continue;
         };
         let Some(shape) = structure(draft, field.ty.item()) else {
-            // A list of an unknown type has been reported.
+            // An unknown type has its own error.
             let named = field.ty.innermost();
             if named.is_none_or(|named| draft.type_named(named.name()).is_some()) {
                 let message = text!(
@@ -52,7 +52,8 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What is given in a coordinate system has a length, which says in what positions are measured.
+/// Checks that an object in a coordinate system has a field with a unit of length. The unit tells how positions are
+/// measured.
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     let mut push = |shape: &StructType, span, what: &str| {
         if !has_length(draft, shape, &mut HashSet::new()) {
@@ -88,7 +89,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Whether a field of it, or of an object in it, is a length.
+/// Returns `true` if a field of the struct, or of an object inside it, has a unit of length.
 fn has_length<'d>(
     draft: &'d Draft<'_>,
     shape: &'d StructType,

@@ -1,4 +1,4 @@
-//! References to declared things, and things without a reference.
+//! Checks references to declared things, and things without a reference.
 
 use super::iter::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -37,7 +37,7 @@ enum Home {
     Availability(&'static str),
 }
 
-/// Every name of a thing is declared.
+/// Checks that every referenced name is declared.
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     for things in &things(draft) {
         if draft.availability.is_broken && matches!(things.home, Home::Availability(_)) {
@@ -58,8 +58,8 @@ pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every thing has a reference. One whose name a reference misspells is not reported a second time. One audience may go
-/// without: the things of other audiences are not for it.
+/// Checks that every declared thing has a reference. Skips a thing that a misspelled reference may mean. One audience
+/// may have no reference: it gets everything except the things limited to other audiences.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     for things in &things(draft) {
         let Some(code) = things.unused else {
@@ -108,7 +108,7 @@ impl<'d> Things<'d> {
         }
     }
 
-    /// The note on an unknown name without a similar one.
+    /// Returns the note for an unknown name without a similar one.
     fn declare(&self) -> Option<Text> {
         match self.home {
             Home::Operations => None,
@@ -143,7 +143,7 @@ impl<'d> Things<'d> {
         }
     }
 
-    /// The note on a thing without a reference.
+    /// Returns the note for a thing without a reference.
     fn use_or_delete(&self) -> Text {
         match self.home {
             Home::Section { by, .. } if self.kinds == Entity::KINDS => text!(
@@ -166,7 +166,7 @@ impl<'d> Things<'d> {
     }
 }
 
-/// The error of a reference to an operation of another kind.
+/// Returns the error for a reference to an operation of another kind.
 fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<Diagnostic> {
     let is_operation = [Command::KINDS, Report::KINDS].contains(&occurrence.names());
     let mut operations = draft.operations.iter();
@@ -199,7 +199,7 @@ fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<
     Some(fault.also(other.origin.name(), text!("在这里声明", "declared here")))
 }
 
-/// All things that references may name, other than types.
+/// Returns all things that references may name, except types.
 fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
     let words = &draft.availability;
     let entities = Things {

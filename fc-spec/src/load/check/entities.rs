@@ -1,4 +1,4 @@
-//! Entities, and the fields that refer to them.
+//! Checks entities and the fields that refer to them.
 
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -9,13 +9,13 @@ use crate::source::Span;
 use crate::text;
 use std::collections::HashMap;
 
-/// `refers` stands on what can be an id: integers, strings and lists of them.
+/// Checks that a field with `refers` can hold an id: an integer, a string or a list of them.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if field.details().refers.is_none() || is_id(field.ty.item()) {
             continue;
         }
-        // That a type is unknown is reported; what it is good for is no question.
+        // An unknown type has its own error.
         let named = field.ty.innermost();
         if named.is_some_and(|named| draft.type_named(named.name()).is_none()) {
             continue;
@@ -32,8 +32,8 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The ids of an entity have one type: what comes from one message can be sent in another. How a field sends it is its
-/// own affair.
+/// Checks that all ids of an entity have one type, so that an id from one message fits into another. The wire form of
+/// each field may differ.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, (&Type, Span)> = HashMap::new();
     for (_, field, part) in fields(draft) {

@@ -1,4 +1,4 @@
-//! Enums and choices.
+//! Checks enums and choices.
 
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -8,7 +8,7 @@ use crate::model::{EnumRepr, Number, Scalar, TypeShape};
 use crate::text;
 use std::collections::HashSet;
 
-/// An enum has values, and its type holds each; a choice has variants to choose from.
+/// Checks that an enum has values that fit its type, and that a choice has variants.
 pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         match &ty.def.shape {
@@ -57,7 +57,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Values of an enum, and variants of a choice, have names of their own.
+/// Checks that values of an enum, and variants of a choice, have distinct names.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         match &ty.def.shape {
@@ -78,8 +78,8 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A variant is taken when all its required keys are there. One whose required keys include all those of an
-/// earlier one is never reached.
+/// Checks that every variant can be reached. A decoder takes the first variant whose required keys are all present. A
+/// variant that requires all keys of an earlier one is unreachable.
 pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         let TypeShape::OneOf(choice) = &ty.def.shape else {

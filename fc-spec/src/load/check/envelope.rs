@@ -1,4 +1,4 @@
-//! The envelope.
+//! Checks the envelope.
 
 use super::frame::check_each_once;
 use super::value;
@@ -11,7 +11,8 @@ use crate::names;
 use crate::text;
 use std::collections::HashMap;
 
-/// Requests may carry a time, responses a time and a result, each once; a text is beside the code that it explains.
+/// Checks that each role occurs at most once per direction, and that requests carry no result. A result text needs a
+/// result code in the same response.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(envelope) = &draft.envelope else {
         return;
@@ -46,7 +47,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A message is too old by the time that it carries.
+/// Checks that requests carry a time if the spec limits their age.
 pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
     let (Some(envelope), Some(calls)) = (&draft.envelope, &draft.calls) else {
         return;
@@ -71,7 +72,7 @@ pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Types fit the roles, examples the types; names in code exist and differ.
+/// Checks types against roles, examples against types, and that names in code exist and differ.
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(envelope) = &draft.envelope else {
         return;

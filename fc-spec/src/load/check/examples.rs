@@ -1,4 +1,4 @@
-//! Examples of fields and rows of tables.
+//! Checks examples of fields and rows of tables.
 
 use super::fields::is_absent_required;
 use super::iter::fields;
@@ -10,7 +10,7 @@ use crate::load::resolve::is_derivable;
 use crate::model::{Example, Type, TypeRef};
 use crate::text;
 
-/// Every required field has an example, or one can be derived.
+/// Checks that every required field has an example or a derivable one.
 pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if is_absent_required(field) {
@@ -55,7 +55,7 @@ pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Examples are values of their type and keep within its bounds.
+/// Checks that examples match their type and its bounds.
 pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if let (Example::Given(_), Some(node)) =
@@ -68,7 +68,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Rows of a table are values of its struct.
+/// Checks that rows of a table match its struct.
 pub(super) fn check_rows(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let row = Type::Named(TypeRef::clone(&table.item.row));

@@ -1,4 +1,4 @@
-//! Types are written out in place, in examples, documentation and dumps: that must come to an end.
+//! Checks that types are finite and small enough to expand in examples, documentation and dumps.
 
 use super::unused_types::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -7,10 +7,10 @@ use crate::model::{Text, TypeShape};
 use crate::source::Span;
 use crate::text;
 
-/// Most fields of a body, all types in it written out.
+/// Maximum number of fields in a fully expanded body.
 const FIELDS: u64 = 10_000;
 
-/// Deepest nesting of types. JSON is nested no deeper than `limits.json_depth`, which is far less.
+/// Maximum nesting of types. The limit `limits.json_depth` on JSON is far lower.
 const DEPTH: usize = 64;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,7 +20,7 @@ enum State {
     Done,
 }
 
-/// No type holds itself, be it in a list or optional. `false` if one does.
+/// Checks that no type contains itself, not even in a list or an optional field. Returns `false` if one does.
 pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     let before = faults.errors();
     let mut states = vec![State::New; draft.types.len()];
@@ -30,7 +30,7 @@ pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     faults.errors() == before
 }
 
-/// A depth-first walk without recursion, so that a long chain of types cannot exhaust the stack.
+/// Walks depth-first without recursion, so that a long chain of types cannot exhaust the stack.
 fn visit(draft: &Draft<'_>, root: usize, states: &mut [State], faults: &mut Faults) {
     let mut path: Vec<(usize, std::vec::IntoIter<usize>)> = Vec::new();
     let enter = |index: usize, states: &mut [State], path: &mut Vec<_>| {
@@ -105,7 +105,7 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
     )
 }
 
-/// Where a type names another.
+/// Returns the place where a type names another.
 fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
     let at = match &ty.def.shape {
         TypeShape::Struct(shape) => shape.fields.iter().position(|field| {
@@ -124,7 +124,7 @@ fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
     part.map_or(ty.origin.name(), |part| part.ty)
 }
 
-/// A body has a limited size. Types do not hold themselves. `false` for a larger body.
+/// Checks that a body has a limited size. Returns `false` for a larger body. Types must not contain themselves.
 pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     let before = faults.errors();
     let mut sizes: Vec<Option<(u64, usize)>> = vec![None; draft.types.len()];
@@ -162,7 +162,7 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     faults.errors() == before
 }
 
-/// Number of fields and nesting of a type, written out.
+/// Computes the number of fields and the nesting of an expanded type.
 fn measure(draft: &Draft<'_>, root: usize, sizes: &mut [Option<(u64, usize)>]) {
     let mut open = vec![root];
     while let Some(&index) = open.last() {

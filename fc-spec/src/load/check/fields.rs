@@ -1,4 +1,4 @@
-//! What a field says about itself.
+//! Checks the keys of fields.
 
 use super::iter::{fields, typed_fields};
 use super::value::{Mismatch, check_constraints, check_type};
@@ -15,7 +15,7 @@ use crate::model::{
 use crate::source::Span;
 use crate::text;
 
-/// A field in the short form has a named type, whose title describes it.
+/// Checks that a field in the short form has a named type, whose title describes the field.
 pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if part.borrows_text && !matches!(field.ty, Type::Named(_)) {
@@ -32,7 +32,7 @@ pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// An object in place is described, unless it is the usual `data`.
+/// Checks that an inline object has a description, unless it is the usual `data`.
 pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         let node = part.origin.node;
@@ -70,7 +70,7 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `min` and `max` stand on numbers, within what their type holds, in order.
+/// Checks that `min` and `max` belong to numbers, fit into the type, and are in order.
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         for (key, bound) in [
@@ -123,7 +123,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A key that the type of the field has no use for.
+/// Returns the error for a key that does not apply to the type of the field.
 fn wrong_type(
     code: FaultCode,
     key: &str,
@@ -140,7 +140,7 @@ fn wrong_type(
     Diagnostic::error(code, span, message).also(ty, text!("类型", "the type"))
 }
 
-/// `length` stands on strings, bytes and lists, in order.
+/// Checks that `length` belongs to strings, bytes and lists, and is in order.
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let Some((least, most)) = field.details().length else {
@@ -178,7 +178,7 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `pattern` stands on strings and is a regular expression.
+/// Checks that `pattern` belongs to strings and is a regular expression.
 pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let Some(pattern) = FIELD.pattern.read(part.origin.node) else {
@@ -211,7 +211,7 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `only` stands on enums and names values of theirs, each once.
+/// Checks that `only` belongs to enums and lists valid values, each once.
 pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         if field.details().only.is_empty() {
@@ -242,14 +242,14 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Whether it is an enum, or may be: an unknown type is reported as such.
+/// Returns `true` for an enum. Also `true` for an unknown type, which has its own error.
 fn is_enum(draft: &Draft<'_>, ty: &Type) -> bool {
     let Type::Named(named) = ty else { return false };
     let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
     matches!(shape, None | Some(TypeShape::Enum(_)))
 }
 
-/// `default` stands on optional fields, is a value of their type and keeps within their bounds.
+/// Checks that `default` belongs to optional fields and matches their type and bounds.
 pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         let Some(default) = &field.details().default else {
@@ -318,14 +318,14 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
         {
             Some(TypeShape::Enum(shape)) => shape.values.iter().any(|value| value.wire == *default),
             Some(_) => false,
-            // An unknown type is reported as such.
+            // An unknown type has its own error.
             None => true,
         },
         _ => false,
     }
 }
 
-/// Quirks stand on types whose decoding they can relax.
+/// Checks that quirks belong to types whose decoding they can relax.
 pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let quirks = &field.details().quirks;
@@ -358,7 +358,7 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// `wire: string` stands on what is no string anyway, `wire: number` on bools.
+/// Checks that `wire: string` belongs to numbers and bools, and `wire: number` to bools.
 pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         let (expected, fits) = match field.wire_form {
@@ -390,7 +390,7 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A body that is lost, or free by design, has no fields.
+/// Checks that a body that is lost, or free by design, has no fields.
 pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
     for ty in &draft.types {
         if let TypeShape::Struct(shape) = &ty.def.shape
@@ -417,7 +417,7 @@ pub(super) fn check_open_bodies(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Whether a required field is left out of examples is no question.
+/// Returns `true` if examples leave out a required field.
 pub(super) fn is_absent_required(field: &Field) -> bool {
     field.example == Example::Absent && !field.optional
 }

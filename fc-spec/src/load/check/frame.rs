@@ -1,4 +1,4 @@
-//! Ports, header, heads, kinds, encodings.
+//! Checks ports, header, heads, kinds and encodings.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{
@@ -15,7 +15,7 @@ use crate::text;
 use crate::vocabulary::Word;
 use std::collections::HashMap;
 
-/// The two ports differ.
+/// Checks that the two ports differ.
 pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(transport) = &draft.transport else {
         return;
@@ -47,7 +47,7 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Every header field has a known width, which is that of its role.
+/// Checks that every header field has a known width, which fits its role.
 pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let span = field.origin.at(HEADER_FIELD.r#type);
@@ -74,11 +74,11 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
             None => continue,
             Some(HeaderRole::Head) if is_bytes => continue,
             Some(HeaderRole::Head) => HeaderType::Bytes(ty.size()),
-            // It has a value, which is a number.
+            // A status has a numeric value of any width.
             Some(HeaderRole::Status) if !is_bytes => continue,
             Some(HeaderRole::Status | HeaderRole::Kind | HeaderRole::Encoding) => HeaderType::U8,
             Some(HeaderRole::Code) => HeaderType::U16,
-            // Of 256 ids, a late answer would soon meet another request.
+            // With only 256 ids, a late response would soon match another request.
             Some(HeaderRole::Id) if ty == HeaderType::U16 => continue,
             Some(HeaderRole::Id | HeaderRole::TotalLength | HeaderRole::PlainLength) => {
                 HeaderType::U32
@@ -117,7 +117,7 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each role stands once; those that a frame can do without may be left out.
+/// Checks that each role occurs once. A frame may omit the optional ones.
 pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -163,7 +163,7 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each role that is `needed` is used, and none of those `used` is used twice.
+/// Reports each role that is `needed` but not in `used`, and each role that occurs twice in `used`.
 pub(super) fn check_each_once<R: Word>(
     needed: impl Fn(R) -> bool,
     used: &[(R, Span)],
@@ -199,7 +199,7 @@ pub(super) fn check_each_once<R: Word>(
     }
 }
 
-/// `value`, `algorithm` and `quirk` stand only where they mean something.
+/// Checks that `value`, `algorithm` and `quirk` apply to their field.
 pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let item = &field.item;
@@ -253,7 +253,7 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Header fields have names in code, each its own.
+/// Checks that header fields have distinct names in code.
 pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first = HashMap::new();
     for field in header(draft) {
@@ -279,7 +279,7 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// The heads are as long as the head field, and tell requests from responses.
+/// Checks that the heads are as long as the head field and differ between requests and responses.
 pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -331,7 +331,7 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Streams, commands and reports have one kind each, on the port that the engine uses for them.
+/// Checks that streams, commands and reports have one kind each, on the port that the runtime uses for them.
 pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -384,7 +384,8 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each way of packing has one encoding at most, plain data has one, and the header says what the receiver has to know.
+/// Checks that each encoding role occurs at most once, and plain at least once if the header has an encoding field.
+/// Also checks that the header has the fields that a receiver needs.
 pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
@@ -443,7 +444,7 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     );
 }
 
-/// Length of the header in bytes.
+/// Returns the length of the header in bytes.
 pub(super) fn header_len(frame: &FrameDraft<'_>) -> usize {
     frame.header.iter().fold(0, |length, field| {
         length.saturating_add(field.item.ty.size())

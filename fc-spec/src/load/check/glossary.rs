@@ -1,4 +1,4 @@
-//! Terms.
+//! Checks terms of the glossary.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{Form, Key, OTHER_FORMS, TERM, TEXT};
@@ -8,16 +8,16 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 
-/// In each language a word stands for one term, which has it once. Words that differ in case alone are one: readers
-/// take them for the same.
+/// Checks that, in each language, a word belongs to one term and occurs there once. Words that differ only in case
+/// count as one, because readers do not distinguish them.
 ///
-/// A term that occurs in no text is no fault: readers also look up what they have met in the source or on the robot.
+/// A term may be absent from all texts: readers also look up words from the source or the robot.
 pub(super) fn check_words(draft: &Draft<'_>, faults: &mut Faults) {
     check_language(draft, TEXT.zh, OTHER_FORMS.zh, faults);
     check_language(draft, TEXT.en, OTHER_FORMS.en, faults);
 }
 
-/// A word that has been seen.
+/// A known word.
 struct Seen<'d> {
     /// Id of its term.
     term: &'d str,
@@ -38,7 +38,7 @@ fn check_language(
         let others = other.items(TERM.also.of(origin.node));
         let words = own.into_iter().chain(others.map(|node| (node, true)));
         for (node, is_other) in words {
-            // What is no text, or an empty one, has been reported.
+            // An empty or malformed text has its own error.
             let Some(word) = node.as_str().filter(|word| !word.trim().is_empty()) else {
                 continue;
             };
@@ -53,7 +53,7 @@ fn check_language(
                 continue;
             };
             let is_same_term = earlier.term == item.id;
-            // A list that says one thing twice has been reported.
+            // The shape check reports a repeated list item.
             if is_same_term && earlier.is_other && is_other && earlier.word == word {
                 continue;
             }

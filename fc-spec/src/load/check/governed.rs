@@ -1,4 +1,4 @@
-//! What answers govern: an open question keeps its facts as they are, a settled one does not.
+//! Checks the facts that answers cover: they change when the owner confirms the answer, and not before.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::ANSWER;
@@ -8,7 +8,7 @@ use crate::model::BodyState;
 use crate::text;
 use crate::vocabulary::Word as _;
 
-/// An answer says what it answers.
+/// Checks that an answer names a conflict or a fact.
 pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
         let node = answer.origin.node;
@@ -29,7 +29,7 @@ pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What an answer is about is there.
+/// Checks that the paths in `about:` exist.
 pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
         for covered in covered_facts(draft, answer) {
@@ -76,7 +76,7 @@ pub(super) fn check_paths(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What an open question is about is as the question says, and what a settled one is about no longer is.
+/// Checks that facts of an open question match `about:`, and that facts of a settled one no longer wait for the owner.
 pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
     for answer in &draft.answers {
         let name = match answer.item.ids.first() {
@@ -123,7 +123,7 @@ fn text<'a>(covered: &CoveredFact<'a>) -> &'a str {
     covered.path.as_str().unwrap_or_default()
 }
 
-/// What is said of it now.
+/// Returns the current state or value of a fact.
 fn now<'a>(covered: &CoveredFact<'a>) -> &'a str {
     match covered.found {
         Found::Fact(_, state, _) => state.name(),

@@ -1,4 +1,4 @@
-//! Dates.
+//! Checks dates.
 
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -7,7 +7,7 @@ use crate::load::draft::{Draft, Origin};
 use crate::names;
 use crate::text;
 
-/// Nothing is withdrawn before it appeared.
+/// Checks that no thing is deprecated before it was added.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
     let operations = draft.operations.iter().map(|operation| operation.origin);
     let fields = fields(draft)
@@ -25,7 +25,7 @@ fn order(origin: Origin<'_>) -> Option<Diagnostic> {
         .of(FIELD.deprecated.of(origin.node))?;
     let first = names::date(since.as_str()?)?;
     let last = names::date(withdrawn.as_str()?)?;
-    // A date without a day is that whole month.
+    // A date without a day covers the whole month.
     let is_later = (first.0, first.1) > (last.0, last.1)
         || ((first.0, first.1) == (last.0, last.1) && last.2 > 0 && first.2 > last.2);
     is_later.then(|| {

@@ -1,10 +1,10 @@
-//! What most checks go through: each field and its place.
+//! Iterates over the fields that most checks visit, with their places.
 
 use crate::load::draft::{Draft, Part, TypeDraft};
 use crate::model::{Field, Kind, Text, Type, TypeShape};
 use crate::text;
 
-/// Every field that is sound enough to be checked, with its place and the type that holds it.
+/// Returns every field that is valid enough to check, with its place and its type.
 pub(super) fn fields<'d, 'a>(
     draft: &'d Draft<'a>,
 ) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
@@ -20,7 +20,7 @@ pub(super) fn fields<'d, 'a>(
     })
 }
 
-/// [`fields`] whose type is known. What an unknown one is good for is no question: that it is unknown is reported.
+/// Returns the [`fields`] whose type is known. An unknown type has its own error.
 pub(super) fn typed_fields<'d, 'a>(
     draft: &'d Draft<'a>,
 ) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
@@ -30,7 +30,7 @@ pub(super) fn typed_fields<'d, 'a>(
     })
 }
 
-/// What an operation of this kind is called.
+/// Returns the name of this kind of operation.
 pub(super) fn called(kind: Kind) -> Text {
     match kind {
         Kind::Command => text!("指令", "command"),

@@ -1,4 +1,4 @@
-//! Limits compared with the spec's own messages.
+//! Checks that the limits have room for the spec's own messages.
 
 use super::frame::header_len;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -7,7 +7,7 @@ use crate::load::draft::{Draft, Sourced, TypeDraft};
 use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
 use crate::text;
 
-/// A frame may be as long as its own header at least.
+/// Checks that a frame may be at least as long as its header.
 pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
     let (Some(frame), Some(limits)) = (&draft.frame, &draft.limits) else {
         return;
@@ -31,7 +31,8 @@ pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Each body of the spec fits into the limits, plain and with its examples. Types do not hold themselves.
+/// Checks that each body of the spec, with its examples, fits into the limits for nesting, inflated data and
+/// uncompressed frames. Types must not contain themselves.
 pub(super) fn check_bodies(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(limits) = &draft.limits else {
         return;
@@ -120,7 +121,7 @@ fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Exte
     };
     let extent = match draft.types.get(index).map(|ty| &ty.def.shape) {
         Some(TypeShape::Struct(shape)) => {
-            // Two braces, and one comma less than there are keys.
+            // Two braces minus the comma that the last key does not have.
             let mut whole = Extent {
                 levels: 1,
                 bytes: 1,
@@ -139,7 +140,7 @@ fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Exte
             whole.bytes = whole.bytes.max(2);
             whole
         }
-        // The object of a choice is that of its variant.
+        // A choice is sent as the object of its variant.
         Some(TypeShape::OneOf(choice)) => {
             let variants = choice.variants.iter().map(|it| named(it.ty.name()));
             variants.fold(Extent::default(), |most, it| Extent {
@@ -178,7 +179,7 @@ fn extent_of_field(field: &Field, named: &mut impl FnMut(&str) -> Extent) -> Ext
             _ => 1,
         },
     };
-    // An example of a named type has names of values, which may be longer than the values.
+    // An example of a named type uses names of values, which may be longer than the values.
     if let Example::Given(value) = &field.example
         && ty.innermost().is_none()
     {

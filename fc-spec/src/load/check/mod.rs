@@ -1,7 +1,7 @@
-//! What no grammar can say: names that must exist, codes that must differ, examples that must fit.
+//! Checks what the grammar cannot express: names must exist, codes must differ, examples must match their types.
 //!
-//! One function per check, one file per subject. A check reports and changes nothing; it is silent about what
-//! an earlier step has reported.
+//! Each check is one function, each subject one file. A check only reports errors and does not repeat those of an
+//! earlier step.
 
 mod answers;
 mod available;
@@ -42,10 +42,10 @@ use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };
 
-/// Reports what is wrong, each time the same in the same order.
+/// Reports errors. The result and its order depend on the draft alone.
 type Check = fn(&Draft<'_>, &mut Faults);
 
-/// What can be checked of every draft.
+/// Checks that apply to every draft.
 const ALWAYS: &[Check] = &[
     frame::check_ports,
     frame::check_header_types,
@@ -117,8 +117,7 @@ const ALWAYS: &[Check] = &[
     check_values,
 ];
 
-/// What can only be checked where every file could be parsed: that something is missing or unused, since what is looked
-/// for may stand in a file that could not.
+/// Checks for missing or unused things. They need every file, because the thing may be in a file that failed to parse.
 const ONLY_IF_ALL_FILES_PARSED: &[Check] = &[
     references::check_types,
     references::check_structs,
@@ -138,15 +137,15 @@ const ONLY_IF_ALL_FILES_PARSED: &[Check] = &[
     answers::check_sections,
 ];
 
-/// All checks, at the same time; what they find comes in the order of the lists.
+/// Runs all checks in parallel and reports their errors in the order of the lists.
 ///
-/// `whole`: every file could be parsed.
+/// `whole`: `true` if every file was parsed.
 pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &mut Faults) {
     let checks = ALWAYS
         .iter()
         .chain(ONLY_IF_ALL_FILES_PARSED.iter().filter(|_| whole));
     let checks: Vec<&Check> = checks.collect();
-    // Some take much longer than their neighbours: each is taken by itself.
+    // Durations differ widely, so each check is a task of the pool.
     let found: Vec<_> = checks
         .par_iter()
         .with_max_len(1)
@@ -164,14 +163,14 @@ pub(super) fn check(draft: &Draft<'_>, sources: &Sources, whole: bool, faults: &
     faults.append(all);
 }
 
-/// Where codes lie makes sense only within sound ranges.
+/// Places codes in ranges only if the ranges are valid.
 fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
     if codes::check_ranges(draft, faults) {
         codes::check_ranges_of_codes(draft, faults);
     }
 }
 
-/// What holds itself has no end, no size and no example.
+/// Skips sizes and examples if a type contains itself, because they would be infinite.
 fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
     if expand::check_recursion(draft, faults) {
         if expand::check_size(draft, faults) {

@@ -1,4 +1,4 @@
-//! Names: each its own, and each usable in code.
+//! Checks that names are distinct and usable in code.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMON, FIELD, GROUP};
@@ -11,7 +11,7 @@ use crate::text;
 use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
-/// Each file holds a group of its own.
+/// Checks that each file has its own group.
 pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for group in &draft.groups {
@@ -30,10 +30,10 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Names of the files of vectors that belong to no operation, beside those of each.
+/// Names of vector files that belong to no operation. The other vector files are named after their operation.
 const RESERVED_OPERATIONS: [&str; 2] = ["frames", "bodies"];
 
-/// No two operations have one name, of whatever kind they are.
+/// Checks that all operations have different names, regardless of kind.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for operation in &draft.operations {
@@ -67,7 +67,8 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Groups, operations and types become files. Windows keeps some names for devices, in any case and with any extension.
+/// Checks names that become file names: groups, operations and types. Windows reserves some names for devices, in any
+/// case and with any extension.
 pub(super) fn check_files(draft: &Draft<'_>, faults: &mut Faults) {
     let groups = draft.groups.iter();
     let groups = groups.map(|it| (it.item.id.as_str(), it.origin.at(GROUP.id)));
@@ -86,7 +87,7 @@ pub(super) fn check_files(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No two tables have one id.
+/// Checks that all tables have different ids.
 pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for table in &draft.tables {
@@ -105,7 +106,7 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No two types have one name, whether declared or made for a body.
+/// Checks that all types have different names, whether declared or made for a body.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     let mut repeated_operations = HashSet::new();
     for (index, ty) in draft.types.iter().enumerate() {
@@ -118,7 +119,7 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
         if *first == index {
             continue;
         }
-        // Operations of one name have been reported, and so have all types made for them.
+        // Operations with the same name have an error, which also covers the types made for them.
         if let (Some(body), Some(other)) = (&ty.def.body_of, &earlier.def.body_of)
             && body.operation == other.operation
             && body.path.is_empty()
@@ -151,7 +152,7 @@ fn reserved(span: Span, message: Text) -> Diagnostic {
         .note(text!("换一个名称", "choose another name"))
 }
 
-/// Fields of a struct have names in code, each its own.
+/// Checks that fields of a struct have distinct names in code.
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, (&Field, Span)> = HashMap::new();
     for ty in &draft.types {
@@ -162,7 +163,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
         for (field, part) in shape.fields.iter().zip(&ty.parts) {
             let span = part.origin.name();
             if !names::is_snake(&field.name) {
-                // A malformed `name` has been reported.
+                // A malformed `name` has its own error.
                 if COMMON.name.of(part.origin.node).is_none() {
                     faults.push(unusable(&field.wire, span));
                 }
@@ -188,7 +189,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A wire name with characters that do not show.
+/// Returns the error for a wire name with invisible characters.
 pub(super) fn hidden(wire: &str, span: Span) -> Option<Diagnostic> {
     let message = text!(
         "名称中有看不见的字符",
@@ -197,7 +198,7 @@ pub(super) fn hidden(wire: &str, span: Span) -> Option<Diagnostic> {
     (!names::is_line(wire)).then(|| Diagnostic::error(FaultCode::HiddenCharacter, span, message))
 }
 
-/// A wire name from which no name in code can be made.
+/// Returns the error for a wire name that yields no name in code.
 pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
     Diagnostic::error(
         FaultCode::UnusableName,
@@ -210,7 +211,7 @@ pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
     .note(text!("给它写上 `name`", "give it a `name`"))
 }
 
-/// A wire key, spelt as a key or as another spelling, stands once in a struct and not in the envelope beside it.
+/// Checks that a wire key or alternative spelling occurs once in a struct, and not in the envelope of the same object.
 pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     let operations = draft.operations.iter().map(|operation| &operation.item);
@@ -278,7 +279,7 @@ fn also<'f>(field: &'f Field, origin: Origin<'_>) -> impl Iterator<Item = (&'f s
     also.iter().map(String::as_str).zip(spans)
 }
 
-/// Wire keys of the envelope that a body shares its object with.
+/// Returns the envelope fields that share the object of a body.
 fn envelope_of<'d, 'a>(
     draft: &'d Draft<'a>,
     body: Option<&BodyField>,
@@ -292,7 +293,7 @@ fn envelope_of<'d, 'a>(
     }
 }
 
-/// Names that become variants of one Rust enum: no two may be spelt alike there.
+/// Checks names that become variants of one Rust enum, where no two may have the same spelling.
 pub(super) fn check_distinct<'n>(
     what: &Text,
     named: impl IntoIterator<Item = (&'n str, Span)>,

@@ -1,4 +1,4 @@
-//! What has to hold before a command is accepted.
+//! Checks the preconditions of commands.
 
 use super::unused_types::each_name;
 use super::value::check_type;
@@ -11,7 +11,7 @@ use crate::syntax::{Entry, Node};
 use crate::text;
 use std::collections::{HashMap, HashSet};
 
-/// The preconditions of each command that has some, with its name.
+/// Returns each command name with its preconditions, if it has any.
 fn preconditions<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d str, Node<'a>)> {
     draft.operations.iter().filter_map(|operation| {
         let node = COMMAND.accepted.of(operation.origin.node)?;
@@ -20,7 +20,7 @@ fn preconditions<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d str,
     })
 }
 
-/// Preconditions say something.
+/// Checks that preconditions are not empty.
 pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, node) in preconditions(draft) {
         let is_empty = ACCEPTED.r#in.of(node).is_none() && ACCEPTED.after.of(node).is_none();
@@ -37,14 +37,14 @@ pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// States are values of enums that messages of the robot carry, each once.
+/// Checks that states are values of enums that messages of the robot carry, each once.
 pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
-    // Most specs name none.
+    // Computed on demand, because most specs name no states.
     let mut carried = None;
     for (_, node) in preconditions(draft) {
         let enums = ACCEPTED.r#in.of(node).and_then(Node::as_mapping);
         for Entry { key, value } in enums.into_iter().flatten() {
-            // An unknown one is reported with other references.
+            // The check of references reports an unknown enum.
             let Some(ty) = key.as_str().and_then(|name| draft.type_named(name)) else {
                 continue;
             };
@@ -89,7 +89,7 @@ fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Fa
     );
 }
 
-/// Names of all types in what the robot sends: reports and responses to commands.
+/// Returns the names of all types that the robot sends in reports and responses.
 fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
     let bodies = draft.operations.iter().filter_map(|operation| {
         let messages = operation.item.messages()?;
@@ -110,7 +110,7 @@ fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
     carried
 }
 
-/// The enums of states are declared.
+/// Checks that the enums of states are declared.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     for (occurrence, name) in draft.references_to(Enum::KINDS) {
         if draft.type_named(name).is_none() {
@@ -124,14 +124,14 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// No command comes before itself, not even by way of others.
+/// Checks that no command precedes itself, directly or through others.
 pub(super) fn check_circles(draft: &Draft<'_>, faults: &mut Faults) {
     let after: HashMap<&str, Vec<Node<'_>>> = preconditions(draft)
         .map(|(name, node)| (name, ACCEPTED.after.items(node).collect()))
         .collect();
     let mut done: HashSet<&str> = HashSet::new();
     for (start, _) in preconditions(draft) {
-        // The way here, each with how many of the commands before it have been looked at.
+        // The current path. Each command has the number of its predecessors that were already visited.
         let mut way: Vec<(&str, usize)> = vec![(start, 0)];
         while let Some((name, looked)) = way.last_mut() {
             let next = after.get(name).and_then(|before| before.get(*looked));

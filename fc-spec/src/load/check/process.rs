@@ -1,4 +1,4 @@
-//! By which keys a report belongs to what has set it off, and which of its keys has the state.
+//! Checks the keys that tie a report to its command, and the key of its state.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMAND, REPORT, SET_OFF};
@@ -10,7 +10,7 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::{HashMap, HashSet};
 
-/// Both ends of a tie are there, and hold ids of the same type.
+/// Checks that both ends of a tie exist and hold ids of the same type.
 pub(super) fn check_ties(draft: &Draft<'_>, faults: &mut Faults) {
     for command in &draft.operations {
         let mut seen: HashMap<&str, Span> = HashMap::new();
@@ -93,7 +93,7 @@ fn check_tie(
     }
 }
 
-/// The type of the field that keys lead to; a fault where they lead nowhere.
+/// Returns the type of the field at the keys. Reports an error if there is no such field.
 fn end<'d>(
     draft: &'d Draft<'_>,
     operation: &'d Sourced<'_, Operation>,
@@ -129,7 +129,8 @@ fn what(operation: &Operation, side: Direction) -> Text {
     }
 }
 
-/// What a report names as its state is one; a report that a command sets off has one, or says which.
+/// Checks that `state_in` of a report names the state of a process. A report that a command sets off needs `state_in`
+/// if several fields qualify.
 pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
     let commands = draft.operations.iter();
     let set_off: HashSet<&str> = commands

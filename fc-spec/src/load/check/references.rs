@@ -1,4 +1,4 @@
-//! Names that must stand for something.
+//! Checks that referenced names exist.
 
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -13,16 +13,17 @@ use crate::syntax::{Node, Style};
 use crate::text;
 use std::collections::HashMap;
 
-/// "Did you mean" looks through all names, so a spec with very many faults goes without.
+/// Maximum number of errors with a suggestion. A suggestion compares all names, which is slow for a spec with many
+/// errors.
 const SUGGESTIONS: usize = 100;
 
-/// Every named type of a field exists.
+/// Checks that every named type of a field exists.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.origin));
     let envelope = draft.envelope.iter();
     let envelope = envelope.flat_map(|envelope| envelope.request.iter().chain(&envelope.response));
     let envelope = envelope.map(|field| (field.item.ty.clone(), field.origin));
-    // A name of several fields that stands for nothing is one fault: it is declared nowhere, or under another name.
+    // An unknown name in several fields counts as one error, because one declaration or one rename fixes them all.
     let mut found: Vec<(String, Vec<Node<'_>>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
     for (ty, origin) in fields.chain(envelope) {
@@ -59,7 +60,7 @@ fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
     }
 }
 
-/// The scalar that names the type, inside any YAML lists around it.
+/// Returns the scalar that names the type, inside any YAML lists around it.
 fn innermost(origin: Origin<'_>) -> Node<'_> {
     let mut node = FIELD.r#type.of(origin.node).unwrap_or(origin.node);
     loop {
@@ -96,13 +97,13 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
     }
 }
 
-/// Where a scalar that starts with this name spells it, unless with escapes.
+/// Returns the span of a name at the start of a scalar, unless the scalar has escapes.
 fn spelled(node: Node<'_>, name: &str) -> Option<Span> {
     let start = at_start(node, name)?;
     Some(Span::new(node.span().file, start, start + name.len()))
 }
 
-/// Byte at which a scalar that starts with this name has it, unless it is written with escapes.
+/// Returns the byte offset of a name at the start of a scalar, unless the scalar has escapes.
 fn at_start(node: Node<'_>, name: &str) -> Option<usize> {
     let scalar = node
         .as_scalar()
@@ -118,7 +119,7 @@ fn at_start(node: Node<'_>, name: &str) -> Option<usize> {
     }
 }
 
-/// What other languages call the built-in types.
+/// Names of the built-in types in other languages.
 const FOREIGN: &[(&str, &str)] = &[
     ("boolean", "bool"),
     ("byte", "u8"),
@@ -146,7 +147,7 @@ const FOREIGN: &[(&str, &str)] = &[
     ("uint64", "u64"),
 ];
 
-/// Variants of a choice and rows of a table are structs.
+/// Checks that variants of a choice and rows of a table are structs.
 pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     for (occurrence, name) in draft.references_to(Struct::KINDS) {
         let what = if occurrence.part == Constants::NAME {
@@ -179,7 +180,7 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
     }
 }
 
-/// Another operation replaces a deprecated one.
+/// Checks that another operation replaces a deprecated one.
 pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     for operation in &draft.operations {
         let deprecated = operation.item.deprecated.as_ref();
@@ -201,7 +202,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Result codes that an operation may answer exist.
+/// Checks that the error codes of an operation exist.
 pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
     if draft.results_place.is_none() {
         return;

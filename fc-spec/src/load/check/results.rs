@@ -1,4 +1,4 @@
-//! Result codes.
+//! Checks result codes.
 
 use super::frame::check_each_once;
 use super::names::check_distinct;
@@ -10,7 +10,7 @@ use crate::syntax::Node;
 use crate::text;
 use std::collections::HashMap;
 
-/// The engine has a result code for each of its own answers.
+/// Checks that the runtime has a result code for each response that it creates.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(origin) = draft.results_place else {
         return;
@@ -29,7 +29,7 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     );
 }
 
-/// Each result code has a name of its own.
+/// Checks that result codes have different names.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     let names = draft
         .results
@@ -38,7 +38,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     check_distinct(&text!("结果码", "result codes"), names, faults);
 }
 
-/// Each error of an operation is declared once.
+/// Checks that an operation declares each error once.
 pub(super) fn check_errors(draft: &Draft<'_>, faults: &mut Faults) {
     let at = |error| ERROR.code.of(error).unwrap_or(error);
     for operation in &draft.operations {

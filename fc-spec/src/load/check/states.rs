@@ -1,4 +1,4 @@
-//! Enums whose values are the states of a process.
+//! Checks enums whose values are the states of a process.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{ENUM, ENUM_VALUE};
@@ -7,7 +7,7 @@ use crate::model::{EnumType, EnumValue, TypeShape};
 use crate::text;
 use std::collections::HashSet;
 
-/// Enums with their drafts.
+/// Returns the enums with their drafts.
 fn enums<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d EnumType)> {
     draft.types.iter().filter_map(|ty| match &ty.def.shape {
         TypeShape::Enum(shape) => Some((ty, shape)),
@@ -15,7 +15,7 @@ fn enums<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = (&'d TypeDraft<'a
     })
 }
 
-/// Values with their places.
+/// Returns the values with their places.
 fn values<'d, 'a>(
     ty: &'d TypeDraft<'a>,
     shape: &'d EnumType,
@@ -23,7 +23,7 @@ fn values<'d, 'a>(
     shape.values.iter().zip(&ty.parts)
 }
 
-/// What follows what is claimed in one sense, and a sense has something that it is of.
+/// Checks that an enum has `order` exactly if a value has `then` or `start`.
 pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         let node = ENUM.order.of(ty.origin.node);
@@ -68,7 +68,7 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// What follows a value is a value of the same enum.
+/// Checks that `then` names values of the same enum.
 pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         let names: HashSet<&str> = shape.values.iter().map(|it| it.name.as_str()).collect();
@@ -91,7 +91,7 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Nothing follows what is final.
+/// Checks that a final value has no `then`.
 pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         for (value, part) in values(ty, shape) {
@@ -112,7 +112,8 @@ pub(super) fn check_final(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// A process comes to each of its states: it begins there, or another leads there. Failing may happen anywhere.
+/// Checks that each state is reachable: it is a start, or another state leads to it. An error state needs no
+/// predecessor.
 pub(super) fn check_reached(draft: &Draft<'_>, faults: &mut Faults) {
     for (ty, shape) in enums(draft) {
         if shape.values.iter().all(|value| value.then.is_empty()) {

@@ -1,4 +1,4 @@
-//! Streams: what a frame carries, and the commands that start and stop them.
+//! Checks the content of stream frames, and the commands that start and stop streams.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::STREAM;
@@ -6,7 +6,7 @@ use crate::load::draft::{Draft, Sourced};
 use crate::model::{Kind, Operation};
 use crate::text;
 
-/// A frame carries bytes of a media type or a JSON object.
+/// Checks that a frame carries bytes of a media type or a JSON object, not both.
 pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
     for stream in streams(draft) {
         let node = stream.origin.node;

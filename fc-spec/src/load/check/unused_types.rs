@@ -1,11 +1,11 @@
-//! Types that nothing uses.
+//! Checks for unused types.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::TypeShape;
 use crate::text;
 
-/// Every declared type is used by an operation or a table, directly or within another type.
+/// Checks that an operation or a table uses every declared type, directly or through another type.
 pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     let mut used = vec![false; draft.types.len()];
     let mut open: Vec<usize> = Vec::new();
@@ -29,7 +29,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
         }
     }
     for (index, (ty, used)) in draft.types.iter().zip(&used).enumerate() {
-        // A second type of one name has been reported; one made for a declared type goes with it.
+        // A repeated type has its own error, which also covers the types made for its fields.
         let is_first = draft.type_index.get(&ty.def.name) == Some(&index);
         let is_declared = ty.origin.key.as_str() == Some(ty.def.name.as_str());
         if !used && is_first && is_declared {
@@ -48,7 +48,7 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Names of the types in a type's fields or variants.
+/// Calls `each` with the names of the types in a type's fields or variants.
 pub(super) fn each_name<'d>(ty: &'d TypeDraft<'_>, mut each: impl FnMut(&'d str)) {
     match &ty.def.shape {
         TypeShape::Struct(shape) => {

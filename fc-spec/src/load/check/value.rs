@@ -1,4 +1,4 @@
-//! Whether a value of the spec is one that the wire could carry.
+//! Checks that values of the spec could occur in a message.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::ambiguous_scalar::misread;
@@ -12,15 +12,15 @@ use crate::source::Span;
 use crate::syntax::{Node, NodeKind, quoted};
 use crate::text;
 
-/// What is wrong with a value.
+/// A mismatch between a value and its type or field.
 pub(super) struct Mismatch {
-    /// Which fault it is in an example.
+    /// Error code for an example.
     pub code: FaultCode,
-    /// The smallest part that is wrong.
+    /// The smallest mismatched part.
     pub span: Span,
-    /// One sentence.
+    /// The message, in one sentence.
     pub message: Text,
-    /// What to write instead, if that is known.
+    /// The replacement and its description, if known.
     pub fix: Option<(String, Text)>,
 }
 
@@ -34,7 +34,7 @@ impl Mismatch {
         }
     }
 
-    /// As a fault of an example.
+    /// Returns the error for an example.
     pub fn into_fault(self) -> Diagnostic {
         let fault = Diagnostic::error(self.code, self.span, self.message);
         match self.fix {
@@ -44,14 +44,14 @@ impl Mismatch {
     }
 }
 
-/// Reports what is wrong with an example of a type that no field constrains.
+/// Reports mismatches of an example whose type has no field constraints.
 pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: Node<'_>, faults: &mut Faults) {
     let mut found = Vec::new();
     check_type(draft, ty, node, &mut found);
     faults.extend(found.into_iter().map(Mismatch::into_fault));
 }
 
-/// Finds what is wrong with a value of a field, which is in wire form.
+/// Collects mismatches of a field's value, which is in wire form.
 pub(super) fn check_field(
     draft: &Draft<'_>,
     field: &Field,
@@ -68,24 +68,24 @@ pub(super) fn check_field(
     match (field.wire_form, &field.ty) {
         (WireForm::String, _) => return check_in_string(field, node, found),
         (WireForm::Number, Type::Bool) => return check_bool_as_number(node, found),
-        // On any other type `wire: number` is the fault, not the value.
+        // On any other type `wire: number` is the error, not the value.
         (WireForm::Number | WireForm::Plain, _) => {}
     }
     let before = found.len();
     check_type(draft, &field.ty, node, found);
-    // What is not even of its type breaks every constraint; once is enough.
+    // A value of the wrong type breaks every constraint; one error is enough.
     if found.len() == before && field.details.is_some() {
         check_constraints(field, node, &value(node), found);
     }
 }
 
-/// A spelling that readers disagree about, which has been reported.
+/// Returns `true` for a spelling that YAML readers disagree about. It has its own error.
 fn is_doubtful(node: Node<'_>) -> bool {
     node.as_plain()
         .is_some_and(|text| misread(text).is_some() || scalar::has_leading_zero(text))
 }
 
-/// `wire: string`: the text holds the number or bool.
+/// Checks a field with `wire: string`, whose string holds a number or bool.
 fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let wrong = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
     let Some(Value::String(text)) = Some(value(node)) else {
@@ -128,7 +128,7 @@ fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
     }
 }
 
-/// `wire: number`: 1 is true, 0 is false. A bool has no constraints.
+/// Checks a field with `wire: number`: 1 is true, 0 is false. A bool has no constraints.
 fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
     let held = value(node);
     if matches!(held, Value::Number(Number::Int(0 | 1))) {
@@ -150,7 +150,7 @@ fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
     found.push(mismatch);
 }
 
-/// Finds what is wrong with a value of a type.
+/// Collects mismatches between a value and a type.
 pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &mut Vec<Mismatch>) {
     if is_doubtful(node) {
         return;
@@ -277,7 +277,7 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
         "`{text}` is not a value of `{name}`"
     );
     let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
-    // Most often the name in code was written instead of the value that is sent.
+    // Often the spec has the name in code instead of the wire value.
     let named = shape.values.iter().find(|value| value.name == text);
     mismatch.fix = named.map(|value| {
         let spelling = match &value.wire {
@@ -332,7 +332,7 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &m
     }
 }
 
-/// The first variant whose required keys are all there, as a decoder takes it.
+/// Checks the first variant whose required keys are all present, like a decoder.
 fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut Vec<Mismatch>) {
     let shapes = choice.variants.iter().filter_map(|variant| {
         match &draft.type_named(variant.ty.name())?.def.shape {
@@ -357,14 +357,14 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
     }
 }
 
-/// Finds which of the field's bounds a value of the right type breaks.
+/// Collects the constraints of the field that a value of the correct type breaks.
 pub(super) fn check_constraints(
     field: &Field,
     node: Node<'_>,
     value: &Value,
     found: &mut Vec<Mismatch>,
 ) {
-    // No value lies between bounds that are the wrong way round.
+    // Inverted bounds admit no value, so they are not applied.
     let details = field.details.as_deref();
     let bounds = details.and_then(|it| Some((it.min.as_ref()?, it.max.as_ref()?)));
     let is_inverted = bounds.is_some_and(|(min, max)| scalar::compare(min, max).is_gt());
@@ -453,7 +453,7 @@ pub(super) fn check_constraints(
     found.extend(broken.map(|(code, message)| Mismatch::new(code, node, message)));
 }
 
-/// How many there are of what `length` counts of a value.
+/// Returns the number that `length` limits: characters, bytes or items.
 fn length(ty: &Type, value: &Value) -> Option<usize> {
     match (ty, value) {
         (Type::String, Value::String(text)) => Some(text.chars().count()),
@@ -467,7 +467,7 @@ fn show(number: &Number) -> Value {
     Value::Number(number.clone())
 }
 
-/// What a value is, as the wire would carry it.
+/// Describes a value in its wire form.
 fn describe(node: Node<'_>) -> Text {
     match node.kind() {
         NodeKind::Null => text!("空值", "null"),
@@ -482,13 +482,13 @@ fn describe(node: Node<'_>) -> Text {
     }
 }
 
-/// The text of a node that the wire would carry as a string.
+/// Returns the text of a node that is a string on the wire.
 fn text_of(node: Node<'_>) -> Option<&str> {
     let is_other = scalar::bool(node).is_some() || scalar::number(node).is_some();
     node.as_str().filter(|_| !is_other)
 }
 
-/// Number of bytes that a base64 text stands for; `None` if it is none.
+/// Returns the number of bytes in a base64 string; `None` if it is malformed.
 fn base64_len(text: &str) -> Option<usize> {
     let data = text.trim_end_matches('=');
     let padding = text.len() - data.len();

@@ -1,4 +1,4 @@
-//! Lists of values, each of a type and each once.
+//! Checks lists of distinct values of one type.
 
 use super::value::Mismatch;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -8,20 +8,20 @@ use crate::source::Span;
 use crate::syntax::Node;
 use crate::text;
 
-/// How the values of a list are reported.
+/// The error codes and messages for a list of values.
 pub(super) struct ValueList {
-    /// The code of a value that is not of the type.
+    /// The code for a value of the wrong type.
     pub wrong: FaultCode,
-    /// The place of the type, if the report shows it.
+    /// The place of the type, if the error shows it.
     pub ty: Option<(Span, Text)>,
-    /// The code of a repeated value.
+    /// The code for a repeated value.
     pub repeated: FaultCode,
-    /// The message about a repeated value.
+    /// The message for a repeated value.
     pub message: Text,
 }
 
 impl ValueList {
-    /// Reports values that `check` finds wrong, and repeated values.
+    /// Reports repeated values, and values with mismatches from `check`.
     pub fn check<'t>(
         &self,
         values: impl Iterator<Item = Node<'t>>,

@@ -1,13 +1,14 @@
-//! Waivers.
+//! Checks waivers.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, Sourced};
 use crate::text;
 
-/// Hex digits of a fingerprint.
+/// Number of hex digits in a fingerprint.
 const DIGITS: usize = 12;
 
-/// Each names a finding as `fcproto diff` and `fcproto lint` print it. Whether there is such a finding depends on what is compared.
+/// Checks that each waiver has the id of a finding, in the format of `fcproto diff` and `fcproto lint`. The finding may
+/// not exist: that depends on the compared versions.
 pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
     for Sourced { item, origin } in &draft.waivers {
         if !is_id(&item.id) {

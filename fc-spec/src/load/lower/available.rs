@@ -1,4 +1,4 @@
-//! `availability:` and `available:`.
+//! Lowers `availability:` and `available:`.
 
 use super::Lowering;
 use crate::language::grammar::{AVAILABILITY, AVAILABLE, COMMON, both_languages as text};
@@ -29,7 +29,7 @@ impl<'a> Lowering<'a, '_> {
     }
 }
 
-/// What `available:` of a mapping says.
+/// Returns the limit in `available:` of a mapping.
 pub(super) fn available<'a>(node: impl Into<Option<Node<'a>>>) -> Option<Available> {
     let node = COMMON.available.of(node)?;
     Some(Available {

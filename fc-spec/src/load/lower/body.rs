@@ -1,4 +1,4 @@
-//! Bodies, inline objects and fields.
+//! Lowers bodies, inline objects and fields.
 
 use super::Lowering;
 use super::available::available;
@@ -16,16 +16,16 @@ use crate::model::{
 use crate::names;
 use crate::syntax::{Entries, Entry, Node};
 
-/// What made types are named after and belong to.
+/// The owner of a made type, which determines its name.
 pub(super) struct Owner {
     /// Name of the type that holds the field.
     pub type_name: String,
-    /// Body that it lies in, if any.
+    /// The body that contains it, if any.
     pub body_of: Option<BodyField>,
 }
 
 impl Owner {
-    /// What a type made for the field of this wire key belongs to.
+    /// Returns the owner of a type made for the field with this wire key.
     fn inner(&self, field_name: &str, suffix: &str, wire: &str) -> Self {
         let mut body_of = self.body_of.clone();
         if let Some(body) = &mut body_of {
@@ -37,13 +37,13 @@ impl Owner {
         }
     }
 
-    /// The same for a type that is given a name of its own.
+    /// Returns the owner with this type name, if there is one.
     fn called(self, type_name: Option<String>) -> Self {
         let type_name = type_name.unwrap_or(self.type_name);
         Self { type_name, ..self }
     }
 
-    /// What a type made for a variant belongs to.
+    /// Returns the owner of a type made for a variant.
     fn variant(&self, name: &str) -> Self {
         Self {
             type_name: format!("{}{}", self.type_name, names::pascal(&names::snake(name))),
@@ -53,7 +53,7 @@ impl Owner {
 }
 
 impl<'a> Lowering<'a, '_> {
-    /// Makes a struct type of these fields; returns its name.
+    /// Makes a struct type from the fields and returns its name.
     pub(super) fn made_struct(
         &mut self,
         owner: &Owner,
@@ -88,7 +88,7 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    /// Keeps a type, so that it stands before those made while its parts are lowered; returns where.
+    /// Adds a type before those made for its parts. Returns its index.
     pub(super) fn push_type(&mut self, def: TypeDef, origin: Origin<'a>) -> usize {
         self.draft.types.push(TypeDraft {
             def,
@@ -109,7 +109,7 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    /// Lowers the variants of the one-of at `index`.
+    /// Lowers the variants of the choice at `index`.
     pub(super) fn fill_one_of(&mut self, index: usize, owner: &Owner, variants: Node<'a>) {
         let entries = variants.entries();
         let (variants, parts) = entries.map(|entry| self.variant(owner, entry)).unzip();
@@ -172,7 +172,7 @@ impl<'a> Lowering<'a, '_> {
         };
         let misread = misread_marker(node).is_some() || lacks_form(node);
         let marker = marker(node).filter(|_| !misread);
-        // The short forms have no keys of their own.
+        // A short form has no keys. Its mapping, if any, holds wire keys.
         let keys = marker.map(|_| node);
         let is_typed = marker.is_some_and(|(mark, _)| mark == FIELD.r#type.name);
         let name = COMMON.name.read(keys);
@@ -219,7 +219,7 @@ impl<'a> Lowering<'a, '_> {
             text: title,
             example: example_of(FIELD.example.of(keys)),
             wire_form: match FIELD.wire.of(keys) {
-                // Another word has been reported. The commonest stands in, so that no fault follows from it.
+                // Another word has its own error. The most common form replaces it, so that no further error follows.
                 Some(_) if is_typed => FIELD.wire.read(keys).unwrap_or(WireForm::String),
                 _ => WireForm::Plain,
             },
@@ -229,7 +229,7 @@ impl<'a> Lowering<'a, '_> {
         (field, part)
     }
 
-    /// What is written in place, by the key that marks its form; a bare object has none.
+    /// Lowers an inline type. The key of `marker` selects its form; a bare object has no such key.
     fn inline(
         &mut self,
         made: &Owner,
@@ -246,7 +246,7 @@ impl<'a> Lowering<'a, '_> {
             self.fill_one_of(index, made, content);
             return Type::Named(TypeRef::named(&made.type_name));
         }
-        // A bare object has no keys of its own.
+        // All keys of a bare object are wire keys.
         let coordinates = marker.and_then(|_| FIELD.coordinates.read(origin.node));
         let shape = StructType::new(BodyState::Stated, coordinates);
         let shape = self.made_struct(made, origin, content.entries(), title, shape);
@@ -258,16 +258,16 @@ impl<'a> Lowering<'a, '_> {
     }
 }
 
-/// The key that says in which form a field is written, and what stands under it.
+/// Returns the key that marks the form of a field, and its value.
 fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
     let mut forms = FIELD_FORMS.into_iter();
     forms.find_map(|(mark, _)| Some((mark, node.get(mark)?)))
 }
 
-/// The rarer keys of a field of the form that `mark` marks, if it has any. What has no place in it has been
-/// reported as misplaced.
+/// Returns the rarer keys of a field in the form of `mark`, if it has any. The shape check reports keys that do not
+/// belong to the form.
 fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
-    // Most fields have nothing but these, and each key is looked for in all that are there.
+    // Most fields have only these keys. Skipping the others saves many lookups.
     let plain = [
         FIELD.r#type.name,
         TEXT.zh.name,
@@ -301,7 +301,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
     (details != FieldDetails::default()).then(|| Box::new(details))
 }
 
-/// `when:`, or `unless:` where there is none; both is a fault.
+/// Returns the condition in `when:`, otherwise in `unless:`. A separate check reports a field with both.
 fn condition(node: Node<'_>) -> Option<Condition> {
     let asked = |entry: Entry<'_>| Asked {
         wire: entry.name().to_owned(),
@@ -323,7 +323,8 @@ fn example_of(node: Option<Node<'_>>) -> Example {
     }
 }
 
-/// The type at a node; where it is none an optional `json`, whose absence is no fault, and a broken part.
+/// Returns the type at a node. For a malformed type, returns an optional `json`, whose absence causes no error, and
+/// flags the part as broken.
 fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
     scalar::field_type(node).unwrap_or_else(|| {
         part.broken = true;
@@ -334,7 +335,7 @@ fn type_at(node: Node<'_>, part: &mut Part<'_>) -> (Type, bool) {
 /// Wire key of the inline object that needs no text.
 pub(in crate::load) const USUAL_OBJECT: &str = "data";
 
-/// Title of an inline object under [`USUAL_OBJECT`] that has none of its own.
+/// Title of an inline object under [`USUAL_OBJECT`] without a title.
 fn default_title() -> Text {
     Text {
         zh: "业务数据".to_owned(),

@@ -1,7 +1,7 @@
-//! From syntax trees to the draft.
+//! Lowers syntax trees to the draft.
 //!
-//! Shape faults have been reported before: what is malformed is skipped or gets a neutral value here
-//! without a word, and what depends on it is flagged so that no check complains a second time.
+//! The shape check has already reported malformed parts. Lowering silently skips them or uses a neutral value, and
+//! flags their dependents, so that no check reports them again.
 
 mod available;
 mod body;
@@ -24,7 +24,7 @@ use crate::source::{Sources, Span};
 use crate::syntax::{Entry, Node};
 use std::collections::HashMap;
 
-/// Makes the draft of all sections.
+/// Makes the draft from all sections.
 pub(super) fn lower<'a>(
     sections: &[Section<'a>],
     sources: &Sources,
@@ -52,8 +52,8 @@ pub(super) fn lower<'a>(
     draft
 }
 
-/// Names each answer after its first id, apart from others of its file that begin with the same. Without an id it has
-/// the name of what it stands in.
+/// Names each answer after its first id. Numbers the later answers of a file with the same first id. An answer without
+/// ids keeps the name of the entry that contains it.
 fn name_answers(draft: &mut Draft<'_>) {
     let mut taken: HashMap<(String, String), usize> = HashMap::new();
     for AnswerDraft { item, .. } in &mut draft.answers {
@@ -71,13 +71,13 @@ fn name_answers(draft: &mut Draft<'_>) {
     }
 }
 
-/// The draft as far as it is made. What lowers each part is a method of it, in the file of that part.
+/// The draft under construction. Methods in the file of each part lower that part.
 struct Lowering<'a, 's> {
     draft: Draft<'a>,
     sources: &'s Sources,
-    /// Group of the file that is being lowered.
+    /// Group of the current file.
     group: Option<String>,
-    /// Keys of the entry that is being lowered: `commands.get_station`.
+    /// Keys of the current entry, such as `commands.get_station`.
     entry: String,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Lowering<'a, '_> {
             (FILE.availability.name, Self::availability),
             (FILE.changes.name, Self::changes),
         ];
-        // What lies below the messages is checked as a whole, which makes no sense where it is broken.
+        // Later steps use the sections below the messages as a whole, so a malformed one is left out.
         let clean: [Lower<'a, Self>; 10] = [
             (FILE.protocol.name, Self::protocol),
             (FILE.transport.name, Self::transport),
@@ -150,7 +150,7 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    /// Keeps the entries of `answers:`.
+    /// Lowers the entries of `answers:`.
     fn answers(&mut self, holder: Node<'a>, subject: &Subject) {
         for node in COMMON.answers.items(holder) {
             let Some(kind) = ANSWER.r#as.read(node) else {
@@ -183,7 +183,7 @@ impl<'a> Lowering<'a, '_> {
     }
 }
 
-/// An entry of `about:`; `None` for what is no single value, which has been reported.
+/// Lowers an entry of `about:`; `None` for a mapping or list, which has its own error.
 fn governed(entry: Entry<'_>) -> Option<Governed> {
     Some(Governed {
         path: entry.key.as_str()?.to_owned(),
@@ -191,7 +191,7 @@ fn governed(entry: Entry<'_>) -> Option<Governed> {
     })
 }
 
-/// `confirmed:`.
+/// Lowers `confirmed:`.
 fn confirmation(node: Node<'_>) -> Confirmation {
     Confirmation {
         by: CONFIRMED.by.get(node),

@@ -1,11 +1,11 @@
-//! What has to hold before a command is accepted, and when a report is sent.
+//! Lowers preconditions of commands and cadences of reports.
 
 use crate::language::grammar::{ACCEPTED, CADENCE, STEP};
 use crate::language::scalar;
 use crate::model::{Accepted, AcceptedIn, Cadence, Scalar, StateSet, Step, TypeRef};
 use crate::syntax::{Entry, Node};
 
-/// `accepted:` of a command.
+/// Lowers `accepted:` of a command.
 pub(super) fn accepted(node: Node<'_>) -> Accepted {
     let states = ACCEPTED.r#in.of(node).map(|node| match node.as_mapping() {
         Some(enums) => AcceptedIn::States(enums.map(state_set).collect()),
@@ -26,7 +26,7 @@ fn state_set(Entry { key, value }: Entry<'_>) -> StateSet {
     }
 }
 
-/// `cadence:` of a report; `None` where it is malformed, which is reported.
+/// Lowers `cadence:` of a report; `None` if it is malformed, which has its own error.
 pub(super) fn cadence(node: Node<'_>) -> Option<Cadence> {
     if let Some(step) = CADENCE.step.of(node) {
         return Some(Cadence::Step(Step {

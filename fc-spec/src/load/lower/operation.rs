@@ -1,4 +1,4 @@
-//! Groups and operations.
+//! Lowers groups and operations.
 
 use super::available::available;
 use super::body::Owner;
@@ -52,7 +52,7 @@ impl<'a> Lowering<'a, '_> {
         let mut operation = Sourced { item, origin };
         operation.item.sender = Side::Robot;
         operation.item.exchange = Exchange::Report {
-            // Without its own, that of all reports, once it is known.
+            // A report without `ack` gets the default in a later step.
             ack: REPORT
                 .ack
                 .of(origin.node)
@@ -86,7 +86,7 @@ impl<'a> Lowering<'a, '_> {
         self.draft.operations.push(operation);
     }
 
-    /// What all operations have in common, as a stream.
+    /// Lowers the common keys of all operations. The result is a stream until the caller sets its exchange.
     fn operation(&mut self, origin: Origin<'a>) -> Operation {
         let node = origin.node;
         let name = origin.key.as_str().unwrap_or_default().to_owned();
@@ -96,7 +96,7 @@ impl<'a> Lowering<'a, '_> {
         errors.sort_by_key(|error| error.code);
         errors.dedup_by_key(|error| error.code);
         let lost = SOURCE.lost.get(source);
-        // Nothing else in the file says that a heading or a type byte is lost.
+        // No other key of the file tells that a heading or a type byte is lost.
         let state = |fact| {
             if lost.contains(&fact) {
                 BodyState::Inferred
@@ -133,7 +133,7 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    /// Both sides of an operation, and the types made for them.
+    /// Lowers both sides of an operation and makes their types.
     fn messages(
         &mut self,
         operation: &Sourced<'a, Operation>,
@@ -145,7 +145,7 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    /// One side of an operation, and the type made for it.
+    /// Lowers one side of an operation and makes its type.
     fn body(&mut self, operation: &Sourced<'a, Operation>, side: &BodySide) -> Body {
         let Sourced { item, origin } = operation;
         let (state, note) = body_state(side.state_key.of(origin.node));
@@ -180,16 +180,16 @@ impl<'a> Lowering<'a, '_> {
     }
 }
 
-/// How one side of an operation is written and called.
+/// The keys and names of one side of an operation.
 struct BodySide {
     direction: Direction,
     /// Key of the body.
     key: BodyKey,
     /// Key of its state.
     state_key: StateKey,
-    /// What its type's name appends to the operation's.
+    /// Suffix that its type name appends to the operation's.
     suffix: &'static str,
-    /// What it is; empty for a report, which is called by its own title.
+    /// Title of the side; empty for a report, which uses its own title.
     zh: &'static str,
     en: &'static str,
 }
@@ -221,7 +221,7 @@ const REPORT_BODY: BodySide = BodySide {
     en: "",
 };
 
-/// The frame of a stream: its state is not said, and so it is as stated.
+/// The frame of a stream. It has no state key, so its state is stated.
 const STREAM_BODY: BodySide = BodySide {
     key: STREAM.body,
     ..REPORT_BODY
@@ -236,7 +236,7 @@ const REPORT_ACK: BodySide = BodySide {
     en: "Acknowledgement",
 };
 
-/// What a command sets off; what is listed twice, which has been reported, once.
+/// Returns the reports that a command sets off, without repetitions. Repetitions have their own error.
 fn sets_off(node: Node<'_>) -> Vec<SetOff> {
     let mut all: Vec<SetOff> = Vec::new();
     for set_off in COMMAND.sets_off.items(node).filter_map(process::set_off) {
@@ -247,7 +247,7 @@ fn sets_off(node: Node<'_>) -> Vec<SetOff> {
     all
 }
 
-/// State and reason of `request_state:` or `response_state:`.
+/// Returns state and reason of `request_state:` or `response_state:`.
 fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     let Some(node) = node else {
         return (STATED, None);
@@ -256,7 +256,7 @@ fn body_state(node: Option<Node<'_>>) -> (BodyState, Option<Text>) {
     (state, node.as_mapping().map(|_| text(node)))
 }
 
-/// A code, or a code with what it means; `None` for what is none, which has been reported.
+/// Lowers a code with an optional cause; `None` for a malformed code, which has its own error.
 fn error(node: Node<'_>) -> Option<DeclaredError> {
     Some(DeclaredError {
         code: ERROR.code.read_in_or_at(node)?,
@@ -264,7 +264,7 @@ fn error(node: Node<'_>) -> Option<DeclaredError> {
     })
 }
 
-/// An effect and how sure it is; `None` for what is none, which has been reported.
+/// Lowers an effect and its state; `None` for a malformed effect, which has its own error.
 fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
     let effect = EFFECT.value.read_in_or_at(node)?;
     let state = match effect {
@@ -274,12 +274,12 @@ fn effect(node: Node<'_>) -> Option<(Effect, BodyState)> {
     Some((effect, state))
 }
 
-/// The `state` beside a `value`; what stands alone is stated.
+/// Returns the `state` next to a `value`. A plain value is stated.
 fn fact_state(node: Node<'_>) -> BodyState {
     CODE.state.read(node).unwrap_or(STATED)
 }
 
-/// `unassigned` for what is no code, which has been reported.
+/// Lowers a code. A malformed code, which has its own error, becomes `unassigned`.
 fn code(node: Option<Node<'_>>) -> Code {
     match node.and_then(|node| CODE.value.read_in_or_at(node)) {
         Some((code, spelling)) => Code {

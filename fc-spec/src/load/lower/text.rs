@@ -1,4 +1,4 @@
-//! Texts and history.
+//! Lowers texts and history.
 
 use crate::language::grammar::{
     ALIASES, CHANGE, COMMON, DEPRECATED, FIELD_DEPRECATED, both_languages,
@@ -7,7 +7,7 @@ use crate::load::draft::{Origin, Sourced};
 use crate::model::{Aliases, Change, Deprecation};
 use crate::syntax::Node;
 
-/// `aliases:`.
+/// Lowers `aliases:`.
 pub(super) fn aliases(node: Node<'_>) -> Aliases {
     let aliases = COMMON.aliases.of(node);
     Aliases {
@@ -16,7 +16,7 @@ pub(super) fn aliases(node: Node<'_>) -> Aliases {
     }
 }
 
-/// Entries of a list of changes.
+/// Lowers the entries of a list of changes.
 pub(super) fn changes<'a>(items: impl Iterator<Item = Node<'a>>) -> Vec<Sourced<'a, Change>> {
     let change = |node| Sourced {
         item: Change {
@@ -28,7 +28,7 @@ pub(super) fn changes<'a>(items: impl Iterator<Item = Node<'a>>) -> Vec<Sourced<
     items.map(change).collect()
 }
 
-/// `changes:` of an operation or type.
+/// Lowers `changes:` of an operation or type.
 pub(super) fn own_changes(node: Node<'_>) -> Vec<Change> {
     changes(COMMON.changes.items(node))
         .into_iter()
@@ -36,7 +36,7 @@ pub(super) fn own_changes(node: Node<'_>) -> Vec<Change> {
         .collect()
 }
 
-/// `deprecated:`.
+/// Lowers `deprecated:`.
 pub(super) fn deprecation(node: Option<Node<'_>>) -> Option<Deprecation> {
     let node = node?;
     Some(Deprecation {

@@ -1,4 +1,4 @@
-//! Things with a name and a text: entities, coordinate systems, stores, terms, waivers.
+//! Lowers things with a name and a text: entities, coordinate systems, stores, terms, waivers.
 
 use super::Lowering;
 use crate::language::grammar::{COMMON, OTHER_FORMS, STORE, TERM, WAIVER, both_languages as text};

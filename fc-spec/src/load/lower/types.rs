@@ -1,4 +1,4 @@
-//! Declared types and tables.
+//! Lowers declared types and tables.
 
 use super::Lowering;
 use super::available::available;
@@ -83,7 +83,7 @@ impl<'a> Lowering<'a, '_> {
 }
 
 fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>) {
-    // A text among the values of an integer enum stays one; a check reports it.
+    // A string among the values of an integer enum stays a string; a check reports it.
     let wire = match (repr, scalar::int(entry.key)) {
         (Some(EnumRepr::Int(_)), Some(value)) => Scalar::Number(Number::Int(value)),
         _ => Scalar::String(entry.name().to_owned()),

@@ -1,4 +1,4 @@
-//! What lies below the messages.
+//! Lowers the sections below the messages.
 
 use super::Lowering;
 use super::text::aliases;
@@ -26,7 +26,7 @@ fn places(entries: Entries<'_>) -> impl Iterator<Item = Origin<'_>> {
     })
 }
 
-/// Name of a wire name in code.
+/// Returns the name in code of a wire name.
 pub(super) fn code_name(wire: &str, node: Node<'_>) -> String {
     COMMON.name.read(node).unwrap_or_else(|| names::snake(wire))
 }
@@ -124,7 +124,7 @@ impl<'a> Lowering<'a, '_> {
         Sourced {
             item: HeaderField {
                 name: code_name(&wire, node),
-                // No bytes at all for what is no header type, which a check reports.
+                // A malformed header type, which a check reports, has no bytes.
                 ty: (HEADER_FIELD.r#type.read(node)).unwrap_or(HeaderType::Bytes(0)),
                 offset,
                 role,
@@ -206,7 +206,7 @@ impl<'a> Lowering<'a, '_> {
             timeout_ms: CALLS.timeout_ms.get(node),
             handler_timeout_ms: CALLS.handler_timeout_ms.get(node),
             max_age_ms: CALLS.max_age_ms.of(node).and_then(scalar::small_int),
-            // `ack:` may stand behind `calls:`; resolving puts it in.
+            // `ack:` may follow `calls:`, so a later step sets this value.
             ack: ack(node),
         };
         self.draft.calls = Some(Sourced { item, origin });
@@ -279,7 +279,7 @@ impl<'a> Lowering<'a, '_> {
     }
 }
 
-/// `{ timeout_ms, retries }`.
+/// Lowers `{ timeout_ms, retries }`.
 pub(super) fn ack(node: Node<'_>) -> Ack {
     Ack {
         timeout_ms: ACK.timeout_ms.get(node),
@@ -324,7 +324,7 @@ fn range(node: Node<'_>) -> Option<CodeRange> {
     })
 }
 
-/// Whether an envelope field of this type can have this role.
+/// Returns `true` if an envelope field of this type can have this role.
 pub(crate) fn envelope_type_fits(role: EnvelopeRole, ty: &Type) -> bool {
     match role {
         EnvelopeRole::Time => *ty == Type::TimestampMs,

@@ -1,4 +1,4 @@
-//! Messages about values of the wrong kind.
+//! Builds messages about values of the wrong kind.
 
 use super::keys::article;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
@@ -20,7 +20,7 @@ pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut
     }
     let span = if node.is_null() { at } else { node.span() };
     faults.hide(node.span());
-    // A file that breaks off here had more in it.
+    // If the file ends here, the rest of it is lost.
     if node.ends_file() {
         faults.lose();
     }

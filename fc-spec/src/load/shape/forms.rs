@@ -1,4 +1,4 @@
-//! Values that may have one of several forms.
+//! Checks values that may have one of several forms.
 
 use super::expected::{describe_either, wrong_kind};
 use super::{check_kind, check_map};
@@ -10,7 +10,8 @@ use crate::source::Span;
 use crate::syntax::{Entry, Node};
 use crate::text;
 
-/// Takes the first alternative that the node could be meant as; the last for scalars that fit none.
+/// Checks the node against the most likely alternative: an exact match, otherwise a similar word, otherwise the first
+/// candidate.
 pub(super) fn check_either(
     kinds: &[Kind],
     node: Node<'_>,
@@ -32,7 +33,7 @@ pub(super) fn check_either(
     }
 }
 
-/// Whether a scalar is exactly what the kind asks for.
+/// Returns `true` if a scalar is exactly a value of the kind.
 fn fits(kind: &Kind, node: Node<'_>) -> bool {
     match kind.form() {
         Kind::Code => scalar::code(node).is_some(),
@@ -44,7 +45,7 @@ fn fits(kind: &Kind, node: Node<'_>) -> bool {
     }
 }
 
-/// Whether a scalar is a slip of one of the kind's words.
+/// Returns `true` if a scalar is similar to one of the kind's words.
 fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
     match (kind, node.as_str()) {
         (Kind::Word(words), Some(text)) => {
@@ -113,7 +114,7 @@ pub(super) fn check_by_key(
     check_map(table, node, at, texts, faults);
 }
 
-/// The table of a mapping that lacks the key which decides, where its other keys tell what it was meant as.
+/// Returns the likely table of a mapping that lacks the deciding key, judged by its other keys.
 fn likely(
     tables: &'static [(&'static str, &'static Table)],
     otherwise: &Kind,
@@ -145,8 +146,8 @@ fn likely(
         .filter(|_| !is_otherwise && node.entries().count() > 0)
 }
 
-/// Whether a mapping has the text of a field's long form, and nothing that says which form it is: its keys are no wire
-/// keys.
+/// Returns `true` for a field with the text of the long form but without a key that marks its form. Its keys are not
+/// wire keys.
 pub(in crate::load) fn lacks_form(node: Node<'_>) -> bool {
     let has_form = FIELD_FORMS
         .iter()
@@ -154,13 +155,13 @@ pub(in crate::load) fn lacks_form(node: Node<'_>) -> bool {
     !has_form && has_text(node)
 }
 
-/// Whether it has a text that is no type, as a field's long form has.
+/// Returns `true` if the node has a text that is not a type, like the long form of a field.
 fn has_text(node: Node<'_>) -> bool {
     let text = TEXT.zh.of(node).or(TEXT.en.of(node));
     text.is_some_and(|text| text.as_scalar().is_some() && scalar::field_type(text).is_none())
 }
 
-/// The key of a field that marks a longhand and was most likely meant as a wire key.
+/// Returns the key of a field that marks a long form, but most likely is a wire key.
 pub(in crate::load) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
     if has_text(node) {
         return None;
@@ -180,7 +181,7 @@ pub(in crate::load) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
         let text = TEXT.zh.of(marker.value).or(TEXT.en.of(marker.value));
         ty.is_some_and(|ty| ty.as_mapping().is_none()) && text.is_some()
     };
-    // Fields beside it, where only keys of the longhand may stand.
+    // Only keys of the long form may follow the marker, but these are fields.
     let has_fields_beside = node
         .entries()
         .any(|entry| table.key(entry.name()).is_none() && is_field(entry.value));

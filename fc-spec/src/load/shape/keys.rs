@@ -1,4 +1,4 @@
-//! Keys that a mapping should not have, or should have.
+//! Checks unknown and missing keys of a mapping.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::Cursor;
@@ -12,7 +12,7 @@ use crate::syntax::{Entry, Node, visible};
 use crate::text;
 use std::collections::HashSet;
 
-/// Required keys that are not there, all at one place.
+/// Returns one error for all missing required keys.
 pub(super) fn missing_keys(table: &Table, keys: &[&str], at: Span) -> Diagnostic {
     let language = |key: &str| match key {
         _ if key == TEXT.zh.name => Some(text!("中文", "Chinese")),
@@ -47,7 +47,7 @@ pub(super) fn missing_keys(table: &Table, keys: &[&str], at: Span) -> Diagnostic
     Diagnostic::error(FaultCode::MissingTranslation, at, message)
 }
 
-/// Keys as a sentence lists them.
+/// Lists keys in a sentence.
 fn keys_and(keys: &[&str]) -> Text {
     let quoted = |keys: &[&str]| Text::listed(keys.iter().map(|key| format!("`{key}`")));
     match keys {
@@ -61,8 +61,8 @@ fn keys_and(keys: &[&str]) -> Text {
     }
 }
 
-/// Reports the keys of a mapping that its table does not have; what they are known to be meant as, and how many there are
-/// of which nobody knows.
+/// Reports the unknown keys of a mapping. Returns the keys that they probably mean, and the number of keys with a value
+/// but without a guess.
 pub(super) fn unknown_keys(
     table: &Table,
     node: Node<'_>,
@@ -79,8 +79,8 @@ pub(super) fn unknown_keys(
             continue;
         }
         faults.hide(entry.span());
-        // Of what belongs together the first is enough: the rest of a text behind its comma, entries without the line that
-        // begins their section.
+        // Related keys get one error: the rest of a text after its comma, or entries without the line that starts their
+        // section.
         let goes_on = before.replace(entry).is_some_and(|before| {
             let is_rest = before.value.is_null() && entry.value.is_null();
             let looks = |entry: Entry<'_>| looks_like(entry.value).map(|table| table.name);
@@ -89,7 +89,7 @@ pub(super) fn unknown_keys(
         if goes_on {
             continue;
         }
-        // Characters that do not show have been reported.
+        // Invisible characters have their own error.
         let visible = visible(entry.name());
         if visible != entry.name() {
             meant.push(visible);
@@ -108,23 +108,23 @@ pub(super) fn unknown_keys(
     (meant, strangers)
 }
 
-/// Reports the keys of a mapping that the grammar does not have there.
+/// Reports the keys of a mapping that the grammar does not allow there.
 pub(crate) fn check_keys(cursor: Cursor, mapping: Node<'_>, faults: &mut Faults) {
     if let Cursor::Declared(table) = cursor {
         unknown_keys(table, mapping, faults);
     }
 }
 
-/// The key with which a text begins that was meant as a key and a value: `zh` of `zh：标签` and of `zh 标签`.
+/// Returns the first word of a key that contains a key and its value: `zh` of `zh：标签` and of `zh 标签`.
 fn word_of(entry: Entry<'_>) -> Option<String> {
     let name = half_width_text(entry.name());
     let word = name.split([':', ' ']).find(|word| !word.is_empty())?;
     (word.len() < name.len()).then(|| word.to_owned())
 }
 
-/// What an entry of a file is by the keys it has: an operation or a type.
+/// Guesses from the keys of an entry of a file which operation or type it is.
 pub(super) fn looks_like(node: Node<'_>) -> Option<&'static Table> {
-    /// Fewer keys say too little.
+    /// Fewer keys are too vague.
     const FEWEST: usize = 3;
     let kinds = [
         Command::TABLE,
@@ -141,7 +141,7 @@ pub(super) fn looks_like(node: Node<'_>) -> Option<&'static Table> {
     fitting.next().filter(|_| node.entries().count() >= FEWEST)
 }
 
-/// A key that the table does not have. `free` are the keys of the table that the mapping lacks.
+/// Returns the error for an unknown key. `free` are the keys of the table that the mapping lacks.
 fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
     let name = entry.name();
     let span = entry.key.span();
@@ -181,7 +181,7 @@ fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
     fault.suggest(nearest(name, free.iter().copied()), Some(note))
 }
 
-/// The name of a table, in English with the indefinite article.
+/// Returns the name of a table, in English with the indefinite article.
 pub(super) fn article(table: &Table) -> Text {
     let (zh, en) = (table.name_zh, table.name);
     let article = if en.starts_with(['a', 'e', 'i', 'o', 'u']) {
@@ -192,7 +192,7 @@ pub(super) fn article(table: &Table) -> Text {
     text!("{zh}", "{article} {en}")
 }
 
-/// The table among those easily mixed up with this one that has the key.
+/// Returns the table that has the key, among tables similar to this one.
 fn owner_of_key(table: &Table, key: &str) -> Option<&'static Table> {
     let operations = [Command::TABLE, Report::TABLE, Stream::TABLE];
     let forms = FIELD_FORMS.map(|(_, table)| table);

@@ -1,5 +1,5 @@
-//! Whether a file has the shape that the grammar's tables give: keys known and present, values of the
-//! right kind, scalars well formed. One walk; everything it reports is left out of the draft.
+//! Checks that a file has the shape of the grammar's tables: known and required keys, values of the correct kind,
+//! well-formed scalars. One walk covers a file, and the draft omits everything it reports.
 
 mod expected;
 mod forms;
@@ -25,7 +25,7 @@ use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 use stray::{is_split, misplaced, misplaced_entry, section_of};
 
-/// Reports the root of a file that is no mapping.
+/// Reports the root of a file if it is not a mapping.
 pub(crate) fn check_root(root: Node<'_>, faults: &mut Faults) {
     if root.as_mapping().is_none() {
         let kind = Kind::Map(File::TABLE);
@@ -33,7 +33,7 @@ pub(crate) fn check_root(root: Node<'_>, faults: &mut Faults) {
     }
 }
 
-/// Reports what `node` lacks of `kind`. Each text has to be in the languages `texts`.
+/// Reports differences between `node` and `kind`. Each text must be in the languages `texts`.
 pub(super) fn check_kind(
     kind: &Kind,
     node: Node<'_>,
@@ -92,7 +92,7 @@ fn check_map(
             check_kind(&key.kind, entry.value, entry.key.span(), texts, faults);
         }
     }
-    // A key that an unknown one is a slip of is not missing as well.
+    // A misspelled key does not count as missing as well.
     let (meant, strangers) = unknown_keys(table, node, faults);
     if table.key(TEXT.zh.name).is_some() {
         texts::check(node, faults);
@@ -111,13 +111,14 @@ fn check_map(
         .map(|key| key.name)
         .filter(|name| is_needed(name) && missing(name))
         .collect();
-    // Nor is one that any of them may be meant as.
+    // Each unrecognized key may also replace one missing key.
     if missing.len() > strangers && !node.lacks(faults.gaps(), at) {
         faults.push(missing_keys(table, &missing, at));
     }
 }
 
-/// Whether what was to stand below an empty key stands behind it, where it is no key: that is reported.
+/// Returns `true` if the content of an empty key follows it on the same level as an unknown key, which has its own
+/// error.
 pub(super) fn is_left_behind(table: &Table, node: Node<'_>, entry: Entry<'_>) -> bool {
     let mut behind = node
         .entries()
@@ -210,9 +211,9 @@ fn check_key(kind: &Kind, key: Node<'_>, faults: &mut Faults) {
     }
 }
 
-/// A wire key is a text, whatever it looks like.
+/// Checks a wire key. It is a string regardless of its spelling.
 fn check_wire_key(key: Node<'_>, faults: &mut Faults) {
-    // A plain `y` is common (coordinates) and read alike everywhere that matters, as is an integer in decimal.
+    // All relevant readers agree on a plain `y`, which is common for coordinates, and on a decimal integer.
     let is_common = |text: &str| {
         matches!(text, "y" | "n" | "Y" | "N")
             || scalar::int_text(text).is_some_and(|number| number.to_string() == text)
@@ -292,7 +293,7 @@ fn check_list(
     }
 }
 
-/// Lists of words say each once.
+/// Reports repeated words in a list.
 fn check_repeated(items: Items<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for item in items {
@@ -312,7 +313,7 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
     }
 }
 
-/// Values of examples and rows: any form, but no scalar that YAML readers disagree about.
+/// Checks values of examples and rows: any form, except scalars that YAML readers disagree about.
 fn check_json(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
     match node.kind() {
         NodeKind::Null => {}

@@ -1,4 +1,4 @@
-//! Scalars that are not what they should be.
+//! Checks scalars.
 
 use super::expected::{describe, list_words, wrong_kind};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -14,7 +14,7 @@ use crate::syntax::{Node, Style, quoted};
 use crate::text;
 use crate::vocabulary::Meaning;
 
-/// What a value is most likely meant to be.
+/// The kind that a value most likely has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     Text,
@@ -23,7 +23,7 @@ pub(super) enum Wanted {
 }
 
 impl Wanted {
-    /// By the `type` of the field whose value it is.
+    /// Returns the kind for the `type` of the field that holds the value.
     pub(super) fn of(field: Node<'_>) -> Self {
         let ty = FIELD.r#type.read(field);
         let Some((mut ty, _)) = ty.filter(|_| FIELD.wire.of(field).is_none()) else {
@@ -40,8 +40,7 @@ impl Wanted {
     }
 }
 
-/// Reports a scalar that is a text, a number or a truth value and that other YAML readers take for something else, or of
-/// which a part is taken for a comment.
+/// Reports a scalar that other YAML readers interpret differently, or that is cut off by a comment.
 pub(super) fn check_spelling(node: Node<'_>, wanted: Wanted, faults: &mut Faults) {
     let Some(text) = node.as_plain() else {
         return;
@@ -128,7 +127,7 @@ fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
     }
 }
 
-/// Reports what is wrong with a value that should be one scalar.
+/// Reports errors in a value that must be one scalar.
 pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut Faults) {
     let Some(scalar) = node.as_scalar() else {
         wrong_kind(&describe(kind), node, at, faults);
@@ -144,7 +143,7 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
         faults.push(leading_zero(scalar.text, node.span(), wanted));
         return;
     }
-    // What is no value of its kind would not become one in quotes.
+    // Quotes do not fix a value of the wrong kind.
     let Some(fault) = check_form(kind, node, scalar.text, scalar.style) else {
         match kind {
             Kind::Date | Kind::Code | Kind::Bool => {}
@@ -162,7 +161,7 @@ pub(super) fn check_scalar(kind: &Kind, node: Node<'_>, at: Span, faults: &mut F
     });
 }
 
-/// What is no value of its kind because of a keyboard that was set to Chinese.
+/// Returns the error for a value with full-width characters from a Chinese input method.
 fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     node.as_plain()?;
     let character = text.chars().find(|c| half_width(*c).is_some())?;
@@ -174,7 +173,7 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     let fault = Diagnostic::error(FaultCode::FullWidth, node.span(), message);
     let wanted = half_width_text(text);
     let wanted = wanted.trim_end_matches(['.', ',', ';']);
-    // Units that cannot stand there without quotes.
+    // These units need quotes.
     let wanted = match wanted {
         "%" | "N" => quoted(wanted),
         _ => wanted.to_owned(),
@@ -186,7 +185,7 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
     ))
 }
 
-/// What is wrong with a scalar as a value of its kind.
+/// Returns the error for a scalar that is not a value of its kind.
 fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<Diagnostic> {
     let span = node.span();
     let error = |code, message: Text| Diagnostic::error(code, span, message);
@@ -257,7 +256,7 @@ fn bad_unit(text: &str, span: Span) -> Diagnostic {
     }
 }
 
-/// A number as other languages write it, if it is one.
+/// Returns the error for a number, with a fix if it is a number in another language.
 fn bad_number(text: &str, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadNumber,
@@ -273,7 +272,7 @@ fn bad_number(text: &str, span: Span) -> Diagnostic {
     }
 }
 
-/// The number that `1_000`, `+5`, `.5` and `5.` are elsewhere.
+/// Returns the plain form of numbers such as `1_000`, `+5`, `.5` and `5.`.
 fn number_of(text: &str) -> Option<String> {
     let plain = text.trim().replace('_', "");
     let unsigned = plain.trim_start_matches(['+', '-']);
@@ -285,7 +284,7 @@ fn number_of(text: &str) -> Option<String> {
     (is_agreed && number != text).then_some(number)
 }
 
-/// A text that other readers would take for a number or boolean.
+/// Returns the error for a text that other readers could take for a number or boolean.
 fn check_text(node: Node<'_>) -> Option<Diagnostic> {
     let text = node.as_plain()?;
     let taken_for = match (scalar::bool(node), scalar::number(node)) {
@@ -367,7 +366,7 @@ fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
     }
 }
 
-/// A date as others write it, if it is one.
+/// Returns the error for a date, with a fix if it has another common format.
 fn bad_date(text: &str, span: Span) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadDate,

@@ -1,4 +1,4 @@
-//! Entries in the section of another kind, and items that are the halves of one.
+//! Detects entries in the wrong section and list items that are split in two.
 
 use super::keys::{article, looks_like};
 use crate::diagnostic::{Diagnostic, FaultCode};
@@ -6,7 +6,7 @@ use crate::language::grammar::{Command, Enum, FILE, Kind, OneOf, Report, Stream,
 use crate::syntax::{Entry, Node};
 use crate::text;
 
-/// What an operation or a type is by its keys, where entries of another kind stand.
+/// Returns the table of an operation or type that is in a section of another kind.
 pub(super) fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> {
     let homes: Vec<&Table> = match value {
         Kind::Map(table) => vec![table],
@@ -14,10 +14,10 @@ pub(super) fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> 
         _ => return None,
     };
     let is_home = |table: &Table| homes.iter().any(|home| home.name == table.name);
-    // Of entries of other kinds nothing is known.
+    // Only entries of operations and types can be recognized by their keys.
     let is_known = SECTIONS.iter().any(|(_, table)| is_home(table));
     let table = looks_like(node).filter(|table| is_known && !is_home(table))?;
-    // One key of another kind is a slip in an entry of this one, unless it lacks what one has.
+    // One foreign key is a misspelling, unless the entry also lacks several required keys.
     let is_stranger = |home: &&Table| {
         let foreign = node
             .entries()
@@ -33,7 +33,7 @@ pub(super) fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> 
     homes.iter().all(is_stranger).then_some(table)
 }
 
-/// The sections of operations and types, and what stands in each.
+/// The sections of operations and types, and the table of each.
 const SECTIONS: [(&str, &Table); 6] = [
     (FILE.commands.name, Command::TABLE),
     (FILE.reports.name, Report::TABLE),
@@ -43,13 +43,13 @@ const SECTIONS: [(&str, &Table); 6] = [
     (FILE.types.name, Struct::TABLE),
 ];
 
-/// The section in which what is like this stands.
+/// Returns the section for entries of this table.
 pub(super) fn section_of(table: &Table) -> &'static str {
     let section = SECTIONS.iter().find(|(_, home)| home.name == table.name);
     section.map_or("", |(section, _)| section)
 }
 
-/// The fault of entries that belong in another section: the first, what it is, and how many more there are.
+/// Returns the error for misplaced entries: the first, its table, and the number of further ones.
 pub(super) fn misplaced_entry((entry, table, more): (Entry<'_>, &Table, usize)) -> Diagnostic {
     let name = entry.name();
     let message = text!(
@@ -72,7 +72,7 @@ pub(super) fn misplaced_entry((entry, table, more): (Entry<'_>, &Table, usize)) 
     }
 }
 
-/// Whether two items of a list lack of their table just what the other one has.
+/// Returns `true` if two items of a list each have exactly the keys that the other lacks.
 pub(super) fn is_split(of: &Kind, first: Node<'_>, second: Node<'_>) -> bool {
     let Kind::Map(table) = of else { return false };
     let lacks = |item: Node<'_>| -> Vec<&str> {
