@@ -10,7 +10,7 @@ use crate::source::{Edits, FileId, SourceFile, Sources, Span};
 use crate::syntax::quoted;
 use std::collections::BTreeMap;
 
-/// The maximum number of rounds. One error seldom hides more than two others.
+/// The maximum number of rounds. A fix can reveal further errors, but seldom more than twice in a row.
 const ROUNDS: usize = 8;
 
 /// Shorter words are similar to too many others.

@@ -1,6 +1,6 @@
-//! The places where a spec declares and names each thing: for editors, for renames, and for messages about a model.
+//! The places where a spec declares and names each thing, for editors, renames and messages about a model.
 //!
-//! It reads each file alone, in sound and unsound specs, and keeps its results for unchanged files.
+//! It reads each file separately, also in specs with errors, and keeps the results of unchanged files.
 
 mod definitions;
 mod references;

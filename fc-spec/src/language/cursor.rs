@@ -19,7 +19,7 @@ pub(crate) enum Cursor {
     },
     /// A list, with the form of its items.
     Items(&'static Kind),
-    /// A scalar, a JSON value, or a node of another form than the grammar asks for.
+    /// A scalar, a JSON value, or a node with an unexpected form.
     Free,
 }
 

@@ -302,7 +302,7 @@ impl<'t> Occurrence<'t> {
         self.owner
     }
 
-    /// Returns the use of the ranges for the operations of a section, for the key of the section.
+    /// For the key of a section, returns the use of the code ranges for its operations.
     #[must_use]
     pub fn operations(&self) -> Option<RangeUse> {
         if self.part != File::TABLE.name || self.role != Role::Key {
@@ -316,7 +316,7 @@ impl<'t> Occurrence<'t> {
         .find_map(|(key, usage)| (self.key == Some(key)).then_some(usage))
     }
 
-    /// Returns the use of the ranges for the code of an operation, for the code.
+    /// For the code of an operation, returns the use of its code ranges.
     #[must_use]
     pub fn code_of(&self) -> Option<RangeUse> {
         if self.role != Role::Value || self.key != Some(OPERATION.code.name) {
@@ -331,7 +331,7 @@ impl<'t> Occurrence<'t> {
     }
 }
 
-/// Collects the tables whose keys a mapping may have. Several if no key decides yet.
+/// Collects the tables whose keys a mapping can have. There are several if no key selects one yet.
 fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table>) {
     match kind {
         Kind::Map(table) => tables.push(table),

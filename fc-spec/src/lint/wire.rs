@@ -107,7 +107,7 @@ pub(super) const RULES: &[Rule] = &[
     },
 ];
 
-/// The largest integer that a double holds exactly, together with every smaller one.
+/// The largest safe integer, 2^53 − 1. Larger integers can share a double.
 const SAFE: f64 = 9_007_199_254_740_991.0;
 
 fn integer_beyond_double(search: &mut Search<'_>) {

@@ -24,14 +24,14 @@ pub struct Pattern {
     portable: String,
 }
 
-/// The reason why a text is not a valid pattern.
+/// The reason why a string is not a valid pattern.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PatternError {
-    /// It is not a regular expression. Holds the parser's explanation.
+    /// The source is not a regular expression. Holds the parser's explanation.
     Syntax(String),
-    /// It uses a construct that not all languages have. Holds its name.
+    /// The source uses a construct that not all languages have. Holds its name.
     NotPortable(Text),
-    /// Its repetitions expand to too many parts.
+    /// The repetitions expand to too many parts.
     TooLarge,
 }
 

@@ -49,7 +49,7 @@ pub enum Languages {
     All,
     /// Only this language.
     Only(Lang),
-    /// Any of the two, for a spec with unknown settings, such as an old version in git.
+    /// Either language is enough. For a spec with unknown settings, such as an old version in git.
     Any,
 }
 
@@ -273,7 +273,7 @@ pub enum Subject {
     Envelope(Option<String>),
     /// The result codes, or one of them.
     Results(Option<i64>),
-    /// A range of codes or the code map.
+    /// A code range or the code map.
     Codes,
     /// An operation, by name.
     Operation(String),

@@ -188,7 +188,7 @@ impl<T: Whole, const MIN: i128, const MAX: i128> Form for Int<T, MIN, MAX> {
     }
 }
 
-/// A result code. Any integer that all JSON readers represent exactly is valid.
+/// A result code: a signed 64-bit integer.
 pub(crate) type ResultNumber = Int<i64, { i64::MIN as i128 }>;
 
 /// A list of at least `MIN` and at most `MAX` items.

@@ -62,7 +62,7 @@ pub(crate) enum Kind {
     },
     /// A mapping with known keys.
     Map(&'static Table),
-    /// A mapping whose keys are chosen freely.
+    /// A mapping with freely chosen keys.
     Entries {
         /// The kind of each key.
         key: &'static Kind,
@@ -75,9 +75,9 @@ pub(crate) enum Kind {
     Body,
     /// The first of these that fits.
     Either(&'static [Kind]),
-    /// A mapping whose table depends on which key it has.
+    /// A mapping with one of several tables. Its keys select the table.
     ByKey {
-        /// The keys that decide, and their tables.
+        /// The keys that select a table, and their tables.
         tables: &'static [(&'static str, &'static Table)],
         /// The kind of a mapping without any of these keys.
         otherwise: &'static Kind,
@@ -105,7 +105,7 @@ impl Kind {
         }
     }
 
-    /// Returns the form of a value: of a reference, that of the name.
+    /// Returns the form of a value. For a reference, this is the form of the name.
     pub fn form(&self) -> &Self {
         match self {
             Self::Ref { name, .. } => name,

@@ -92,7 +92,7 @@ impl View<'_> {
     }
 }
 
-/// Removes states of enums that are no longer in the model.
+/// Removes conditions on states, and paths to states, that the reduced model no longer has.
 pub(super) fn keep_states(operation: &mut Operation, types: &Types) {
     match &mut operation.exchange {
         Exchange::Command { accepted, .. } => {
