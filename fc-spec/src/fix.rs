@@ -1,7 +1,7 @@
-//! Fixes that can be made without asking anybody.
+//! Automatic fixes: finds the fixes that need no review, and applies them.
 //!
-//! Most fixes of a fault are guesses, which a person has to look at. A few are certain: there is one thing that can be meant, and it is the
-//! same whoever is asked. [`certain`] says which; [`fix_all`] makes them, looks again, and goes on until there is none left.
+//! Most fixes of an error are guesses, and a person must review them. A few are certain, because only one correction is possible.
+//! [`certain`] identifies these. [`fix_all`] applies them and checks again, until no such fix is left.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, Fix};
 use crate::format::edited;
@@ -10,35 +10,35 @@ use crate::source::{Edits, FileId, SourceFile, Sources, Span};
 use crate::syntax::quoted;
 use std::collections::BTreeMap;
 
-/// Times that faults are looked for and fixed: one hides another seldom more than twice.
+/// The maximum number of rounds. A fix can reveal further errors, but seldom more than twice in a row.
 const ROUNDS: usize = 8;
 
-/// Shorter words are near to too many others.
+/// Shorter words are similar to too many others.
 const SHORTEST: usize = 4;
 
-/// A fix that was made.
+/// An applied fix.
 #[derive(Clone, Debug)]
 pub struct Done {
-    /// Of what.
+    /// The code of the fixed error.
     pub code: FaultCode,
-    /// Path of the file.
+    /// The path of the file.
     pub path: String,
-    /// Line, counted from 1, in the file as it was before.
+    /// The line before the fixes, counted from 1.
     pub line: usize,
-    /// What it did.
+    /// A description of the fix.
     pub message: Text,
 }
 
-/// A spec with fewer faults than before.
+/// A spec with fewer errors than before.
 #[derive(Clone, Debug)]
 pub struct Fixed {
-    /// Its files.
+    /// The files.
     pub sources: Sources,
-    /// What was done, in the order in which it was done.
+    /// The applied fixes, in the order of application.
     pub done: Vec<Done>,
 }
 
-/// The fix of a fault that nobody has to look at, if it has one: the only one, and of a kind that leaves no choice.
+/// Returns the fix of an error that needs no review, if it has one. It is the only fix of the error, and its kind leaves no choice.
 #[must_use]
 pub fn certain<'f>(fault: &'f Diagnostic, sources: &Sources) -> Option<&'f Fix> {
     let [fix] = fault.fixes.as_slice() else {
@@ -48,22 +48,22 @@ pub fn certain<'f>(fault: &'f Diagnostic, sources: &Sources) -> Option<&'f Fix> 
     let bare = old.trim_matches(['"', '\'']);
     let new = fix.replacement.as_str();
     let is_certain = match fault.code {
-        // Characters that mean nothing here but one other.
+        // Each of these characters has only one possible meaning here.
         FaultCode::ControlCharacter
         | FaultCode::Tab
         | FaultCode::FullWidth
         | FaultCode::MissingSpace
         | FaultCode::TextSpacing => true,
-        // The same in quotes, so that every reader takes it for a text.
+        // The fix only adds quotes, so that every YAML reader parses a string.
         FaultCode::AmbiguousWord | FaultCode::WrongKind | FaultCode::LeadingZero => {
             new == quoted(old)
         }
-        // Only two words may stand there, and this is one of them elsewhere.
+        // Only two words are valid here, and other formats write one of them this way.
         FaultCode::BadBool => !bare.chars().all(|c| c.is_ascii_digit()),
-        // The same without quotes.
+        // The fix only removes the quotes.
         FaultCode::BadInteger => new == bare,
         FaultCode::BadCode => hex(bare).is_some_and(|code| hex(new) == Some(code)),
-        // The year stands first, so that month and day cannot be taken for one another.
+        // The year comes first, so month and day are not ambiguous.
         FaultCode::BadDate => new.get(..4).is_some_and(|year| bare.starts_with(year)),
         FaultCode::UnknownKey | FaultCode::BadWord => is_slip(bare, new),
         _ => false,
@@ -71,7 +71,7 @@ pub fn certain<'f>(fault: &'f Diagnostic, sources: &Sources) -> Option<&'f Fix> 
     is_certain.then_some(fix)
 }
 
-/// The number behind `0x`.
+/// Returns the number after `0x`.
 fn hex(text: &str) -> Option<u16> {
     let digits = text
         .strip_prefix("0x")
@@ -79,14 +79,15 @@ fn hex(text: &str) -> Option<u16> {
     u16::from_str_radix(digits, 16).ok()
 }
 
-/// Whether one letter is wrong, missing, too many, or has changed places with the next one.
+/// Returns `true` if one letter is wrong, missing or extra, or two neighbouring letters are swapped.
 fn is_slip(old: &str, new: &str) -> bool {
     let distance = strsim::damerau_levenshtein(&old.to_lowercase(), &new.to_lowercase());
     distance <= 1 && old.chars().count() >= SHORTEST
 }
 
-/// Makes all fixes that are certain, of what `check` finds in the files, and again of what it finds then. `None` if that leaves as
-/// many faults as there were.
+/// Applies the certain fixes of the errors that `check` finds, then checks and fixes again.
+///
+/// Returns the round with the fewest errors and warnings. Returns `None` if no round has fewer than the original.
 #[must_use]
 pub fn fix_all(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<Fixed> {
     let mut faults = check(sources);
@@ -104,7 +105,7 @@ pub fn fix_all(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<
             now = with(&now, file, &fixes, &mut done);
         }
         faults = check(&now);
-        // Behind a fault of the YAML there may be others, which are only seen now; they may be fixed in the next round.
+        // A fixed YAML error can reveal others, which the next round may fix.
         let left = faults.errors() + faults.warnings();
         if left < fewest {
             fewest = left;
@@ -116,7 +117,8 @@ pub fn fix_all(sources: &Sources, check: impl Fn(&Sources) -> Faults) -> Option<
     Some(Fixed { sources, done })
 }
 
-/// The [`certain`] fixes of each file with their faults, in the order of their places; of two that overlap, the first.
+/// Returns the [`certain`] fixes of each file with their errors, in the order of their places. Of two overlapping fixes, it keeps the
+/// first.
 #[must_use]
 pub fn in_files<'f>(
     faults: &'f Faults,
@@ -144,7 +146,7 @@ pub fn in_files<'f>(
     files
 }
 
-/// The files with these fixes made in one of them.
+/// Returns the files with these fixes applied to one of them.
 fn with(
     sources: &Sources,
     file: FileId,

@@ -1,11 +1,13 @@
-//! The spec language: from a protocol written in YAML to its model, or to every fault in it.
+//! The spec language: reads a protocol in YAML and returns its model, or all of its errors.
 //!
-//! Source text ([`source`]) becomes a spanned syntax tree ([`syntax`]), is compared with the grammar ([`language`]), and
-//! becomes a resolved model ([`model`], [`load`]). [`scaffold`] begins a new operation, [`retire`] takes one out, [`rename`] gives a thing another name, [`revision`] gives the whole another number, [`mod@format`] lays out the text of a file, and
-//! [`mod@merge`] makes one of three versions of it.
+//! The source text ([`source`]) becomes a syntax tree with spans ([`syntax`]). [`load`] compares the tree with the grammar ([`language`])
+//! and builds a resolved model ([`model`]).
 //!
-//! **Architecture invariant:** nothing here knows what is made of a model, and nothing writes. What makes
-//! products depends on this crate and sees no YAML.
+//! Other modules edit a spec. [`scaffold`] adds an operation, [`retire`] removes one, [`rename`] renames a thing, and [`revision`] changes
+//! the version. [`mod@format`] formats a file, and [`mod@merge`] merges three versions of it.
+//!
+//! **Architecture invariant:** this crate does not know the products made from a model, and it writes no files. The crates that make
+//! products depend on this crate and never see YAML.
 
 pub mod diagnostic;
 pub mod fix;
@@ -25,7 +27,7 @@ pub mod source;
 pub mod syntax;
 mod vocabulary;
 
-/// Its examples compile.
+/// Compiles the examples in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

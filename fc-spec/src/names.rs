@@ -1,11 +1,13 @@
-//! Words of a spec that become code: names, codes, dates and the like. Each kind has one pattern. The loader holds the
-//! YAML to it, and [`Dump::read`](crate::model::Dump::read) holds a dump to it.
+//! The patterns of names, codes, dates and other words of a spec.
+//!
+//! The loader applies the patterns to the YAML, and [`Dump::read`](crate::model::Dump::read) applies them to a dump.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-/// True for a `snake_case` name: lower-case letters and digits in parts joined by single underscores,
-/// starting with a letter.
+/// Returns `true` for a `snake_case` name.
+///
+/// Its parts consist of lower-case letters and digits, are joined by single underscores, and start with a letter.
 pub(crate) fn is_snake(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.split('_').all(|part| {
@@ -16,13 +18,13 @@ pub(crate) fn is_snake(name: &str) -> bool {
         })
 }
 
-/// True for a `PascalCase` name: ASCII letters and digits, starting with an upper-case letter.
+/// Returns `true` for a `PascalCase` name: ASCII letters and digits, starting with an upper-case letter.
 pub(crate) fn is_pascal(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric())
 }
 
-/// True for a name that Windows keeps for a device, in any case.
+/// Returns `true` for a name that Windows reserves for a device, in any case.
 pub(crate) fn is_device(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     let numbered = ["com", "lpt"]
@@ -32,7 +34,7 @@ pub(crate) fn is_device(name: &str) -> bool {
     is_numbered || matches!(&*name, "aux" | "con" | "nul" | "prn")
 }
 
-/// True for a character that does not show, or that changes how the text after it shows. Lines and tabs do neither.
+/// Returns `true` for a character that is invisible or changes the display of the following text, except newlines and tabs.
 #[must_use]
 pub const fn is_hidden(character: char) -> bool {
     matches!(
@@ -55,14 +57,14 @@ pub const fn is_hidden(character: char) -> bool {
     )
 }
 
-/// True for text with a control or hidden character. Most text is decided by its bytes.
+/// Returns `true` for text with a control or hidden character. The bytes alone decide most texts.
 #[must_use]
 #[allow(
     clippy::needless_bitwise_bool,
     reason = "without branches it becomes vector instructions"
 )]
 pub fn has_unprintable(text: &str) -> bool {
-    // First bytes of all such characters, and of some others.
+    // The first bytes of all such characters, and of some others.
     let is_suspect = text.bytes().fold(false, |found, byte| {
         let is_ascii = (byte < 0x20) | (byte == 0x7F);
         let is_lead =
@@ -72,18 +74,19 @@ pub fn has_unprintable(text: &str) -> bool {
     is_suspect && text.contains(|c: char| c.is_control() || is_hidden(c))
 }
 
-/// True for one line of visible characters.
+/// Returns `true` for one line of visible characters.
 pub(crate) fn is_line(word: &str) -> bool {
     !word.contains(|c| matches!(c, '\n' | '\t') || is_hidden(c))
 }
 
-/// True for a path of a file or of keys, which comments show as code.
+/// Returns `true` for a path of a file or of keys. Comments show such a path as code.
 fn is_place(place: &str) -> bool {
     is_line(place) && !place.contains(['`', '*', '<'])
 }
 
-/// `snake_case` of a wire name: `robotSn` becomes `robot_sn`, `HTTPPort` `http_port`, `MD5` `md5`.
-/// Characters that no name may hold separate its parts; the result may still be no name at all.
+/// Returns the `snake_case` of a wire name: `robotSn` becomes `robot_sn`, `HTTPPort` `http_port`, `MD5` `md5`.
+///
+/// Characters that no name can contain separate its parts. The result is not always a valid name.
 pub(crate) fn snake(wire: &str) -> String {
     let mut out = String::with_capacity(wire.len() + 4);
     let mut last: Option<char> = None;
@@ -112,7 +115,7 @@ pub(crate) fn snake(wire: &str) -> String {
     out
 }
 
-/// `PascalCase` of a `snake_case` name: `get_station` becomes `GetStation`.
+/// Returns the `PascalCase` of a `snake_case` name: `get_station` becomes `GetStation`.
 pub(crate) fn pascal(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     for part in name.split('_') {
@@ -125,7 +128,7 @@ pub(crate) fn pascal(name: &str) -> String {
     out
 }
 
-/// The number of a code in its only spelling: `0x` and four upper-case hex digits.
+/// Returns the number of a code in its only spelling: `0x` and four upper-case hex digits.
 pub(crate) fn code(text: &str) -> Option<u16> {
     let digits = text.strip_prefix("0x")?;
     let well_formed = digits.len() == 4
@@ -137,7 +140,7 @@ pub(crate) fn code(text: &str) -> Option<u16> {
         .flatten()
 }
 
-/// Year, month and day (0 where left out) of `YYYY-MM` or `YYYY-MM-DD`.
+/// Returns the year, month and day of `YYYY-MM` or `YYYY-MM-DD`. The day is 0 if it is missing.
 pub(crate) fn date(text: &str) -> Option<(u16, u8, u8)> {
     let mut parts = text.split('-');
     let mut part = |length: usize| {
@@ -166,13 +169,13 @@ fn days(year: u16, month: u8) -> u8 {
     }
 }
 
-/// True for the id of a conflict: `C` and at least three digits.
+/// Returns `true` for the id of a conflict: `C` and at least three digits.
 pub(crate) fn is_conflict_id(text: &str) -> bool {
     text.strip_prefix('C')
         .is_some_and(|digits| digits.len() >= 3 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// True for a media type in lower case, without parameters.
+/// Returns `true` for a media type in lower case, without parameters.
 pub(crate) fn is_media_type(text: &str) -> bool {
     let is_name = |name: &str| {
         let inside = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit();
@@ -183,7 +186,7 @@ pub(crate) fn is_media_type(text: &str) -> bool {
         .is_some_and(|(ty, subtype)| is_name(ty) && is_name(subtype))
 }
 
-/// Defines a function for `deserialize_with`: it refuses words that do not fit the pattern of their kind.
+/// Defines functions for `deserialize_with`. Each refuses words that do not match the pattern of their kind.
 macro_rules! readers {
     ($($(#[$doc:meta])* $name:ident, $fits:expr, $wanted:literal;)+) => { $(
         $(#[$doc])*
@@ -225,7 +228,7 @@ readers! {
 
 /// The words in a value of a dump.
 pub(crate) trait Words {
-    /// All of them.
+    /// Returns all words.
     fn words(&self) -> impl Iterator<Item = &str>;
 }
 

@@ -1,6 +1,6 @@
-//! Giving a thing another name, wherever the spec names it.
+//! Renames a thing everywhere in a spec.
 //!
-//! What is sent stays as it is: a field gets another name in code, beside the wire key that it keeps.
+//! The messages stay the same: a field gets another name in code and keeps its wire key.
 
 use crate::index::{DefId, DefSite, Index, described, entry_at};
 use crate::language::grammar::{
@@ -10,10 +10,11 @@ use crate::load::yaml_scalar;
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Entry, Node};
 
-/// What is replaced by what, so that a thing is called `new`; `None` of what has no name of its own, such as a type that
-/// is named after its operation.
+/// Returns the replacements that rename a thing to `new`.
 ///
-/// Whether the name is free, and one that a thing can have, shows when the result is loaded.
+/// Returns `None` for a thing without its own name, such as a type named after its operation.
+///
+/// It does not check the new name. [`load`](crate::load::load) reports a name that is taken or not valid.
 #[must_use]
 pub fn rename(
     index: &Index,
@@ -36,7 +37,7 @@ pub fn rename(
     (!changes.is_empty()).then_some(changes)
 }
 
-/// The keys of a thing whose own key is sent, so that its name stands beside it.
+/// Returns the keys of a thing whose own key is part of the messages. Its name in code is a separate key.
 fn sent(item: &DefId) -> Option<&'static Table> {
     let sent = [
         Field::TABLE,
@@ -47,7 +48,7 @@ fn sent(item: &DefId) -> Option<&'static Table> {
     sent.into_iter().find(|table| table.name == item.kind)
 }
 
-/// Sets the name in code of what has a wire key.
+/// Returns the edit that sets the name in code of a thing with a wire key.
 fn code_name(
     index: &Index,
     (table, entry): (&'static Table, Entry<'_>),
@@ -99,7 +100,7 @@ fn code_name(
     })
 }
 
-/// A field in its short form has no room for a name, and takes its text from its type.
+/// Returns the long form of a field in its short form. The short form has no key for a name and takes its text from its type.
 fn longhand(index: &Index, file: &SourceFile, node: Node<'_>, pair: &str) -> Option<String> {
     let span = node.span();
     let short = file.text.get(span.start..span.end)?;
@@ -130,7 +131,7 @@ fn before_key(entry: Entry<'_>) -> Span {
     Span::point(span.file, span.start)
 }
 
-/// What stands before a key on its line, as blanks.
+/// Returns blanks as wide as the text before a key on its line.
 fn indent(file: &SourceFile, key: Span) -> String {
     let line = file.line(key.start);
     let start = file.lines(line, line).map_or(key.start, |(start, _)| start);

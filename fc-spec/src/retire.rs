@@ -1,5 +1,7 @@
-//! Taking an operation out of the spec: its code is kept from ever being given out again, and what only it has used
-//! goes with it.
+//! Removes an operation from a spec.
+//!
+//! Its code becomes retired, so that no other operation gets it. Types, entities, coordinate systems and stores that only this operation
+//! uses are removed as well.
 
 use crate::diagnostic::{FaultCode, Faults, nearest};
 use crate::format::{Edited, edited};
@@ -11,7 +13,7 @@ use crate::syntax::{Entry, Tree, parse, quoted};
 use crate::text;
 use std::fmt;
 
-/// Faults of what nothing uses any more; their place is its key.
+/// Errors about unused things. The place of such an error is the key of the thing.
 const UNUSED: [FaultCode; 4] = [
     FaultCode::UnusedType,
     FaultCode::UnusedEntity,
@@ -22,38 +24,37 @@ const UNUSED: [FaultCode; 4] = [
 /// A spec without one of its operations.
 #[derive(Clone, Debug)]
 pub struct Retired {
-    /// Its files.
+    /// The files.
     pub sources: Sources,
-    /// The code that nobody gets any more, as the spec writes it; `None` if it had none, or if another operation has
-    /// it as well.
+    /// The retired code in the spelling of the spec. `None` if the operation had no code, or shared it with another one.
     pub code: Option<String>,
-    /// Names of what only it has used, in the order in which it went.
+    /// The names of the removed things that only this operation used, in the order of removal.
     pub with_it: Vec<String>,
-    /// Path and lines of each change, as diffs without line numbers.
+    /// The path and the lines of each change, as diffs without line numbers.
     pub diffs: Vec<(String, String)>,
 }
 
-/// Why an operation cannot be taken out.
+/// The reason why an operation cannot be removed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RetireError {
-    /// There is no such operation.
+    /// The spec has no such operation.
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What it may be a slip of.
+        /// The most similar name.
         nearest: Option<String>,
     },
-    /// What is to change is not written line by line.
+    /// The part to change is not in block style.
     Layout {
-        /// Path of the file.
+        /// The path of the file.
         path: String,
-        /// What it is.
+        /// The name of the part.
         what: String,
     },
 }
 
 impl RetireError {
-    /// The sentence for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -84,12 +85,12 @@ impl fmt::Display for RetireError {
 
 impl std::error::Error for RetireError {}
 
-/// Takes an operation out, with the comments above it; `why` stands beside its code from then on.
+/// Removes an operation and the comments above it. `why` becomes the text of its retired code.
 ///
-/// [`load`](crate::load::load) reports the errors of the result, such as uses of the operation that are left.
+/// [`load`](crate::load::load) reports the errors of the result, such as remaining uses of the operation.
 ///
 /// # Errors
-/// [`RetireError`].
+/// [`RetireError`] if the spec has no such operation, or if a part to change is not in block style.
 pub fn retire(
     model: &Model,
     sources: &Sources,
@@ -147,15 +148,16 @@ pub fn retire(
     })
 }
 
-/// What is left of a spec.
+/// The spec during the removal.
 struct Rest {
     sources: Sources,
     diffs: Vec<(String, String)>,
 }
 
 impl Rest {
-    /// Changes the file that has what is to change; the others have no word of it (`None`), or it does not stand on
-    /// lines of its own there (`Some(None)`).
+    /// Changes the first file for which `edits` does not return `None`.
+    ///
+    /// `edits` returns `None` if the file does not contain the part, and `Some(None)` if the part is not on its own lines.
     fn change(
         &mut self,
         what: &str,
@@ -179,7 +181,7 @@ impl Rest {
     }
 }
 
-/// The first thing that nothing uses.
+/// Returns the place of the first unused thing.
 fn unused(sources: &Sources) -> Option<Span> {
     let mut faults = Faults::new();
     let _ = Trees::new(sources).load(Languages::Any, &mut faults);
@@ -187,7 +189,7 @@ fn unused(sources: &Sources) -> Option<Span> {
     Some(fault.primary.span)
 }
 
-/// The entry with this key, somewhere below another, and the one that it stands in.
+/// Returns the entry with this key at any depth below another, and its parent.
 fn find(parent: Entry<'_>, key: Span) -> Option<(Entry<'_>, Entry<'_>)> {
     let value = parent.value.span();
     if value.file != key.file || key.start < value.start || value.end < key.end {
@@ -203,8 +205,9 @@ fn find(parent: Entry<'_>, key: Span) -> Option<(Entry<'_>, Entry<'_>)> {
     })
 }
 
-/// Without an entry and the comments above it; without what it stands in if nothing else is there. `None` if it does
-/// not stand on lines of its own.
+/// Returns the edits that remove an entry and the comments above it.
+///
+/// They remove the parent if it has no other entry. `None` if the entry is not on its own lines.
 fn without(file: &SourceFile, entry: Entry<'_>, parent: Entry<'_>) -> Option<Edits> {
     if is_flow(file, parent) {
         return None;
@@ -216,13 +219,13 @@ fn without(file: &SourceFile, entry: Entry<'_>, parent: Entry<'_>) -> Option<Edi
     Some(edits)
 }
 
-/// An entry, the comments above it, and the blank line above if there is one below as well.
+/// Returns the span of an entry with the comments above it. The span includes the blank line above if another one follows.
 pub(crate) fn with_comments(file: &SourceFile, gone: Entry<'_>) -> Span {
     let key = gone.key.span();
     let above = gone.key.comments().find(|it| it.start < key.start);
     let mut start = above.map_or(key.start, |comment| comment.start.min(key.start));
     let end = gone.value.span().end.max(key.end);
-    // One of the blank lines around it is enough.
+    // One of the two blank lines is enough.
     let is_blank = |line: usize| {
         let text = file.lines(line, line);
         let text = text.and_then(|(start, end)| file.text.get(start..end));
@@ -235,7 +238,7 @@ pub(crate) fn with_comments(file: &SourceFile, gone: Entry<'_>) -> Span {
     Span::new(key.file, start, end)
 }
 
-/// With a code among the retired ones. `None` if there is no line for it.
+/// Returns the edits that add a code to the retired ones. `None` if the section is in flow style.
 fn buried(file: &SourceFile, codes: Entry<'_>, code: &str, why: &Text) -> Option<Edits> {
     let one_line = |text: &str| quoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let texts = [(TEXT.zh.name, &why.zh), (TEXT.en.name, &why.en)].into_iter();
@@ -264,7 +267,7 @@ fn buried(file: &SourceFile, codes: Entry<'_>, code: &str, why: &Text) -> Option
     Some(edits)
 }
 
-/// The blanks at the start of the line on which something begins.
+/// Returns the indentation of the line on which the span begins.
 fn indent(file: &SourceFile, span: Span) -> String {
     let line = file.line(span.start);
     let line = file.lines(line, line);
@@ -273,7 +276,7 @@ fn indent(file: &SourceFile, span: Span) -> String {
     " ".repeat(text.len() - text.trim_start_matches(' ').len())
 }
 
-/// Whether what stands under a key begins on its line.
+/// Returns `true` if the value is empty or begins on the line of its key.
 pub(crate) fn is_flow(file: &SourceFile, entry: Entry<'_>) -> bool {
     let value = entry.value.span();
     value.start == value.end || file.line(value.start) == file.line(entry.key.span().start)

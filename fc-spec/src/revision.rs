@@ -1,4 +1,4 @@
-//! What a release changes in the text of a spec: the number of its version, and the waivers that have served.
+//! Edits of a spec for a release: sets the version and removes old waivers.
 
 use crate::diagnostic::Faults;
 use crate::format::{Edited, edited};
@@ -7,32 +7,34 @@ use crate::retire::{is_flow, with_comments};
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Tree, parse, quoted};
 
-/// A spec in which one thing is written differently.
+/// A spec after one edit.
 #[derive(Clone, Debug)]
 pub struct Revised {
-    /// Its files.
+    /// The files.
     pub sources: Sources,
-    /// Path of the file that has the thing.
+    /// The path of the edited file.
     pub path: String,
-    /// The lines that have changed, as a diff without line numbers; empty where it was like that before.
+    /// The changed lines, as a diff without line numbers. Empty if the edit changes nothing.
     pub diff: String,
 }
 
-/// Writes `version` as that of the protocol; everything else stays as it is, to the byte. `None` where no file says of
-/// which version the protocol is, which [`load`](crate::load::load) reports.
+/// Sets the version of the protocol. All other bytes stay the same.
+///
+/// Returns `None` if no file has the version of the protocol, which [`load`](crate::load::load) reports.
 #[must_use]
 pub fn renumbered(sources: &Sources, version: &str) -> Option<Revised> {
     revised(sources, |tree, _| {
         let written = PROTOCOL.version.of(FILE.protocol.of(tree.root()))?;
         let mut edits = Edits::default();
-        // Always in quotes: without them other parsers read it as a number.
+        // The quotes are necessary: without them, other parsers read a number.
         edits.replace(written.span(), quoted(version));
         Some(edits)
     })
 }
 
-/// Takes a waiver out, with the comments above it; of the last one `waivers: {}` is left. `None` where none has this id, or
-/// where it is not written on lines of its own.
+/// Removes a waiver and the comments above it. The edit leaves `waivers: {}` if it was the last one.
+///
+/// Returns `None` if no waiver has this id, or if it is not on its own lines.
 #[must_use]
 pub fn without_waiver(sources: &Sources, id: &str) -> Option<Revised> {
     revised(sources, |tree, file| {
@@ -50,7 +52,7 @@ pub fn without_waiver(sources: &Sources, id: &str) -> Option<Revised> {
     })
 }
 
-/// That of a key.
+/// Returns the span of the colon after a key.
 fn colon(file: &SourceFile, key: Span) -> Option<Span> {
     let at = key.end + file.text.get(key.end..)?.find(':')?;
     Some(Span::new(key.file, at, at + 1))
@@ -82,7 +84,7 @@ fn revised(
 mod tests {
     use super::*;
 
-    /// The texts of all files; none where nothing could be revised.
+    /// Returns the texts of all files. Empty if there was no edit.
     fn texts(revised: Option<&Revised>) -> Vec<String> {
         let files = revised.into_iter().flat_map(|it| it.sources.iter());
         files.map(|(_, file)| file.text.clone()).collect()

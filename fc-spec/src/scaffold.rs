@@ -1,4 +1,4 @@
-//! The YAML that a new operation begins as, and the place in its group's file where it belongs.
+//! Adds a new operation to the file of its group, as YAML with placeholders.
 
 use crate::diagnostic::Faults;
 use crate::format::edited;
@@ -11,84 +11,84 @@ use crate::syntax::{Entry, Node, parse};
 use crate::text;
 use std::fmt;
 
-/// What is wanted.
+/// The description of a new operation.
 #[derive(Clone, Copy, Debug)]
 pub struct NewOperation<'a> {
-    /// Its name, in `snake_case`.
+    /// The name, in `snake_case`.
     pub name: &'a str,
-    /// Id of the group it belongs to.
+    /// The id of its group.
     pub group: &'a str,
-    /// What it is.
+    /// The kind of operation.
     pub kind: Kind,
-    /// Its code; `None` for the next free one, or, of a stream, for that of the command that starts it.
+    /// The code. `None` selects the next free one. For a stream, it selects the code of the command that starts it.
     pub code: Option<u16>,
-    /// The command that starts it, of a stream.
+    /// For a stream, the command that starts it.
     pub started_by: Option<&'a str>,
-    /// Language of its comments.
+    /// The language of its comments.
     pub lang: Lang,
-    /// Languages of its texts.
+    /// The languages of its texts.
     pub texts: Languages,
 }
 
-/// A new operation in its place.
+/// The file of a group with a new operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scaffold {
-    /// Path of the group's file from the project's root.
+    /// The path of the file from the project root.
     pub path: String,
-    /// The file's new text.
+    /// The new text of the file.
     pub text: String,
-    /// Line on which the operation begins, counted from 1.
+    /// The line on which the operation begins, counted from 1.
     pub line: usize,
-    /// Its code; `None` of a stream that has none yet.
+    /// The code. `None` for a stream without a code.
     pub code: Option<u16>,
 }
 
-/// Why there is no place for a new operation.
+/// The reason why an operation cannot be added.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScaffoldError {
     /// The name is not in `snake_case`.
     Name(String),
-    /// There is no such group.
+    /// The spec has no such group.
     Group {
-        /// What was asked for.
+        /// The requested id.
         wanted: String,
-        /// Ids of all groups.
+        /// The ids of all groups.
         known: Vec<String>,
     },
     /// Another operation has the name.
     Taken {
         /// The name.
         name: String,
-        /// File and line of the other.
+        /// The file and line of the other operation.
         place: String,
     },
-    /// What is to start a stream is not a command.
+    /// The operation that is to start the stream is not a command.
     NotACommand(String),
-    /// The code cannot be given to it.
+    /// The operation cannot have the code.
     Code {
         /// The code.
         code: u16,
-        /// Why, as the end of a sentence.
+        /// The reason, as the end of a sentence.
         why: Text,
-        /// The next free one.
+        /// The next free code.
         next: Option<u16>,
     },
-    /// All codes are taken from which new operations of the group get theirs.
+    /// The code ranges of the group have no free code.
     Codes {
         /// The group.
         group: String,
     },
-    /// The section that it belongs to is not written line by line.
+    /// The section of the operation is not in block style.
     Layout {
-        /// Path of the file.
+        /// The path of the file.
         path: String,
-        /// Name of the section.
+        /// The name of the section.
         section: &'static str,
     },
 }
 
 impl ScaffoldError {
-    /// The sentence for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -140,13 +140,12 @@ impl fmt::Display for ScaffoldError {
 
 impl std::error::Error for ScaffoldError {}
 
-/// Puts the beginning of a new operation behind the last of its kind in its group's file.
+/// Adds the YAML of a new operation after the last one of its kind in the file of its group.
 ///
-/// Whether the result is sound in all else, its name usable in code for instance, is for [`load`](crate::load::load)
-/// to say.
+/// [`load`](crate::load::load) reports other errors of the result, such as a name that is not usable in code.
 ///
 /// # Errors
-/// [`ScaffoldError`].
+/// [`ScaffoldError`] if the operation cannot be added.
 pub fn scaffold(
     model: &Model,
     sources: &Sources,
@@ -235,7 +234,7 @@ pub fn scaffold(
     })
 }
 
-/// Line on which an operation begins.
+/// Returns the line on which an operation begins.
 fn line_of(source: &SourceFile, section: &str, name: &str) -> Option<usize> {
     let tree = parse(FileId(0), &source.text, &mut Faults::new())?;
     let entry = tree.root().entry(section)?.value.entry(name)?;
@@ -246,7 +245,7 @@ fn place(location: &Location) -> String {
     format!("{}:{}", location.file, location.line)
 }
 
-/// Why a new operation cannot have this code.
+/// Returns the reason why a new operation cannot have this code, or `None` if it can.
 fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
     let mut operations = model.operations.iter();
     let is_shared = |operation: &Operation| new.started_by == Some(operation.name.as_str());
@@ -303,21 +302,22 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
     ))
 }
 
-/// Where an operation is put.
+/// The position of a new operation.
 struct Place {
-    /// Byte offset, at the start of a line or at the end of the file.
+    /// A byte offset, at the start of a line or at the end of the file.
     at: usize,
-    /// Columns in front of the operation's name.
+    /// The indentation of the name of the operation.
     indent: usize,
-    /// The section begins here as well.
+    /// `true` if the key of the section is missing and must be added.
     heading: bool,
-    /// Another section follows.
+    /// `true` if another section follows.
     is_above: bool,
 }
 
 impl Place {
-    /// Where a section begins that a file does not have yet: above the first one that comes later in the order of the
-    /// grammar, and above what is said of that one.
+    /// Returns the position of a section that a file lacks.
+    ///
+    /// It is above the first section that comes later in the grammar, and above the comments of that section.
     fn of_section(source: &SourceFile, root: Node<'_>, section: &str) -> Self {
         let order = Cursor::file(root);
         let rank = order.rank(section);
@@ -344,7 +344,7 @@ impl Place {
     }
 }
 
-/// Behind the last operation of a section; `None` if the section is not written line by line.
+/// Returns the position after the last operation of a section. `None` if the section is not in block style.
 fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
     let value = section.value.span();
     let first = section.value.entries().next()?;
@@ -364,8 +364,7 @@ fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
     })
 }
 
-/// An operation that says nothing yet: sound as it stands, with a note wherever something is to be
-/// written.
+/// Returns the YAML of an operation with placeholders. It is valid, and a comment marks each part to write.
 fn beginning(new: &NewOperation<'_>, code: Option<u16>) -> String {
     let name = new.name;
     let code = code.map_or_else(|| "unassigned".to_owned(), |code| format!("0x{code:04X}"));

@@ -1,32 +1,32 @@
-//! The closed sets of words: what may stand where the spec language knows every value.
+//! The closed sets of words in the spec language.
 //!
-//! Each set is declared here and nowhere else. Its word, its meaning and its enum are one entry; the grammar, the
-//! JSON Schema, the model, its dump and every product ask it.
+//! Each set is declared only here. One entry holds a word, its meaning and its enum variant. The grammar, the JSON Schema, the model, its
+//! dump and every product use this entry.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A word of a closed set and what it means, in English and in Chinese.
+/// A word of a closed set and its meaning, in English and in Chinese.
 pub type Meaning = (&'static str, &'static str, &'static str);
 
-/// A member of a closed set, for what does the same with each of them.
+/// A word of any closed set, for code that handles all sets alike.
 pub(crate) trait Word: Copy + PartialEq + 'static {
-    /// All of them.
+    /// All variants.
     const SET: &'static [Self];
-    /// Their words and what they mean.
+    /// The words and their meanings.
     const WORDS: &'static [Meaning];
 
-    /// Its word in the spec.
+    /// Returns the word in the spec.
     fn word(self) -> &'static str;
 
-    /// The one with this word, if there is one.
+    /// Returns the variant for a word, if there is one.
     fn named(word: &str) -> Option<Self> {
         Self::SET.iter().copied().find(|known| known.word() == word)
     }
 }
 
-/// Declares an enum whose variants are words of the spec, each with one sentence that says what it means, in English
-/// and, on a second line, in Chinese.
+/// Declares an enum whose variants are words of the spec. The first line of a variant's doc is its meaning in English, the second its
+/// meaning in Chinese.
 macro_rules! words {
     (
         $(#[$about:meta])+
@@ -44,19 +44,19 @@ macro_rules! words {
         }
 
         impl $Set {
-            /// All of them, in the order in which they are listed.
+            /// All variants, in the order of their declaration.
             pub const ALL: &'static [Self] = &[$(Self::$Word,)+];
 
-            /// The words and what they mean.
+            /// The words and their meanings.
             pub const WORDS: &'static [Meaning] = &[$(Self::$Word.entry(),)+];
 
-            /// Its word in the spec, and in all that is made from it.
+            /// Returns the word in the spec and in all products.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 self.entry().0
             }
 
-            /// Its word and what it means.
+            /// Returns the word and its meaning.
             #[must_use]
             pub const fn entry(self) -> Meaning {
                 match self {
@@ -135,7 +135,7 @@ words! {
 }
 
 impl DigestAlgorithm {
-    /// What it is called in any language.
+    /// Returns the name of the algorithm, the same in every language.
     #[must_use]
     pub const fn term(self) -> &'static str {
         match self {
@@ -144,7 +144,7 @@ impl DigestAlgorithm {
         }
     }
 
-    /// The type of a header field that holds it, as the spec writes it.
+    /// Returns the type of a header field for the digest, as the spec writes it.
     #[must_use]
     pub const fn field_type(self) -> &'static str {
         match self {
@@ -315,7 +315,7 @@ words! {
 }
 
 impl Kind {
-    /// What its frames carry.
+    /// Returns the role of its frames.
     #[must_use]
     pub fn role(self) -> KindRole {
         match self {
@@ -444,7 +444,7 @@ words! {
 }
 
 impl IntKind {
-    /// Smallest and largest value.
+    /// Returns the smallest and the largest value.
     #[must_use]
     pub fn range(self) -> (i128, i128) {
         match self {

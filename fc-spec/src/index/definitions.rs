@@ -22,12 +22,13 @@ pub struct DefId {
     pub kind: &'static str,
     /// The thing around it, if the name alone is not unique: the type of a field.
     pub owner: Option<String>,
-    /// Its name; a code as the spec writes it, a number in decimal; its place among its like, from 1, where it has neither.
+    /// The name. A code is in the spelling of the spec, and a number is decimal. A thing without either has its position in its kind, from
+    /// 1.
     pub name: String,
 }
 
 impl DefId {
-    /// The name with the kind: `field Station.name`, `字段 Station.name`.
+    /// Returns the name with the kind: `field Station.name`, `字段 Station.name`.
     #[must_use]
     pub fn text(&self) -> Text {
         let parts = reference();
@@ -43,7 +44,7 @@ impl DefId {
 }
 
 impl DefId {
-    /// Returns `true` for a type, declared or made of a body.
+    /// Returns `true` for a type, declared or built from a body.
     #[must_use]
     pub fn is_type(&self) -> bool {
         TYPES.contains(&self.kind)
@@ -56,7 +57,7 @@ impl DefId {
     }
 }
 
-/// With its kind: `field Station.name`.
+/// Writes the kind and the name: `field Station.name`.
 impl fmt::Display for DefId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, owner, name } = self;
@@ -75,24 +76,24 @@ pub struct DefSite {
     pub key: Span,
     /// All of it.
     pub whole: Span,
-    /// The comments that are about it.
+    /// The comments about it.
     pub comments: Vec<Span>,
 }
 
-/// The declaration of each thing that could be read. Of two with one name, the first.
+/// The declaration of each thing that could be read. Of two things with the same name, the first.
 #[derive(Clone, Debug, Default)]
 pub struct Definitions {
     files: Vec<Arc<FileDefinitions>>,
-    /// The answers, which are counted through all files.
+    /// The answers, numbered across all files.
     answers: FileDefinitions,
-    /// All of them in order, as the number of their file and their own in it.
+    /// All declarations in order, as the index of their file and their index in it.
     order: OnceLock<Vec<(usize, usize)>>,
 }
 
 /// The declarations in one file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FileDefinitions {
-    /// In the order of [`Item`].
+    /// In the order of [`DefId`].
     all: Vec<(DefId, DefSite)>,
     answers: Vec<DefSite>,
 }
@@ -145,7 +146,7 @@ impl Definitions {
         self.parts().find_map(|part| part.get(item))
     }
 
-    /// All of them, in the order of [`Item`].
+    /// Returns all declarations, in the order of [`DefId`].
     pub fn iter(&self) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let order = self.order.get_or_init(|| self.ordered());
         let parts: Vec<&FileDefinitions> = self.parts().collect();
@@ -169,7 +170,7 @@ impl Definitions {
         all.into_iter().map(|(_, at)| at).collect()
     }
 
-    /// Those of one file, also those of a name that stands in an earlier file too.
+    /// Returns the declarations in one file, including those whose name an earlier file also declares.
     pub fn in_file(&self, file: FileId) -> impl Iterator<Item = (&DefId, &DefSite)> {
         let own = usize::try_from(file.0).ok();
         let own = own.and_then(|at| self.files.get(at));
@@ -178,7 +179,7 @@ impl Definitions {
         own.chain(answers.filter(move |(_, place)| place.key.file == file))
     }
 
-    /// All of this name, with or without that of what it is part of: `Station.name`, `name`.
+    /// Returns all things with this name. The name may include the owner: `Station.name`, `name`.
     pub fn named(&self, name: &str) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.iter().filter(move |(item, _)| {
             let own = match &item.owner {
@@ -191,7 +192,7 @@ impl Definitions {
         })
     }
 
-    /// The name that this one is most likely a slip of.
+    /// Returns the most similar name.
     #[must_use]
     pub fn nearest(&self, name: &str) -> Option<&str> {
         nearest(name, self.iter().map(|(item, _)| item.name.as_str()))
@@ -217,7 +218,7 @@ impl Collector {
         self.add(kind, None, kind.name, origin);
     }
 
-    /// The same, if it is there.
+    /// Adds the only thing of a kind, if the file has it.
     fn if_there<T>(&mut self, kind: &'static Table, placed: Option<&Sourced<'_, T>>) {
         if let Some(Sourced { origin, .. }) = placed {
             self.one(kind, *origin);
@@ -359,7 +360,7 @@ fn types(places: &mut Collector, draft: &Draft<'_>) {
     }
 }
 
-/// The entry whose key stands there.
+/// Returns the entry with the key at this place.
 pub(crate) fn entry_at(node: Node<'_>, key: Span) -> Option<Entry<'_>> {
     let has = |node: Node<'_>| node.span().start <= key.start && key.end <= node.span().end;
     for entry in node.entries() {

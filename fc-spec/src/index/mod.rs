@@ -1,6 +1,6 @@
-//! The places where a spec declares and names each thing: for editors, for renames, and for messages about a model.
+//! The places where a spec declares and names each thing, for editors, renames and messages about a model.
 //!
-//! It reads each file alone, in sound and unsound specs, and keeps its results for unchanged files.
+//! It reads each file separately, also in specs with errors, and keeps the results of unchanged files.
 
 mod definitions;
 mod references;
@@ -31,13 +31,13 @@ struct FileIndex {
     references: OnceLock<Arc<FileReferences>>,
 }
 
-/// Where each thing of a spec is written.
+/// Returns the place of each declaration in a spec.
 #[must_use]
 pub fn definitions(sources: &Sources) -> Definitions {
     Index::new(Trees::new(sources)).definitions()
 }
 
-/// Every place at which a thing of a spec is named, as far as its files can be read as YAML.
+/// Returns all references in a spec. Skips files that are not valid YAML.
 #[must_use]
 pub fn references(sources: &Sources) -> References {
     Index::new(Trees::new(sources)).references()
@@ -64,13 +64,13 @@ impl Index {
         }
     }
 
-    /// The files as trees.
+    /// Returns the files as trees.
     #[must_use]
     pub fn trees(&self) -> &Trees {
         &self.trees
     }
 
-    /// Where each thing is written.
+    /// Returns the place of each declaration.
     #[must_use]
     pub fn definitions(&self) -> Definitions {
         Definitions::of_files(self.each(
@@ -79,7 +79,7 @@ impl Index {
         ))
     }
 
-    /// Every place at which a thing is named.
+    /// Returns all references.
     #[must_use]
     pub fn references(&self) -> References {
         References::of_files(self.each(
@@ -88,8 +88,10 @@ impl Index {
         ))
     }
 
-    /// Finds one part of the index in each file. On all processors, unless a single file is new: that is not handed to
-    /// other threads, which may be busy with something longer.
+    /// Computes one part of the index for each file.
+    ///
+    /// It uses all processors if several files are new. It computes a single new file directly, because other threads may be busy with a
+    /// longer task.
     fn each<T: Default + Send + Sync>(
         &self,
         part: impl Fn(&FileIndex) -> &OnceLock<Arc<T>> + Sync,

@@ -66,7 +66,7 @@ impl Reference {
         self.name == item.name && self.kinds.contains(&item.kind) && self.owner == item.owner
     }
 
-    /// Returns the thing with its place; `None` if the spec does not declare it.
+    /// Returns the thing with its place. `None` if the spec does not declare it.
     #[must_use]
     pub fn found<'p>(&self, places: &'p Definitions) -> Option<(DefId, &'p DefSite)> {
         self.kinds.iter().find_map(|kind| {

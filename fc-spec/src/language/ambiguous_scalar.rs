@@ -1,5 +1,6 @@
-//! Plain scalars of which YAML readers make different things: those of YAML 1.1 and 1.2 do not agree on all numbers, truth
-//! values and dates.
+//! Plain scalars that YAML readers parse differently.
+//!
+//! YAML 1.1 and 1.2 disagree on some numbers, booleans and dates.
 
 use super::scalar::number_text;
 use crate::model::{Number, Text};
@@ -7,10 +8,10 @@ use crate::text;
 use regex_lite::Regex;
 use std::sync::LazyLock;
 
-/// Words that other YAML readers take for truth values.
+/// Words that other YAML readers parse as booleans.
 const AMBIGUOUS: &[&str] = &["on", "off", "yes", "no", "y", "n"];
 
-/// Whether other YAML readers may take this plain word for a truth value.
+/// Returns `true` if other YAML readers may parse this plain word as a boolean.
 fn is_ambiguous(word: &str) -> bool {
     // Most words are longer than all of these.
     word.len() <= 3
@@ -19,7 +20,7 @@ fn is_ambiguous(word: &str) -> bool {
             .any(|ambiguous| ambiguous.eq_ignore_ascii_case(word))
 }
 
-/// What other YAML readers may take a plain text for that is a text, or a number, here.
+/// Returns the type that other YAML readers may give to a plain scalar, if this crate reads it as a string or a number.
 pub(crate) fn misread(text: &str) -> Option<Text> {
     if is_ambiguous(text) || matches!(text, "True" | "TRUE" | "False" | "FALSE") {
         return Some(text!("布尔值", "a boolean"));
@@ -49,7 +50,7 @@ pub(crate) fn misread(text: &str) -> Option<Text> {
     is(&OTHER_NUMBERS).then_some(text!("数值", "a number"))
 }
 
-/// A number that all readers take for one, for one that only some do.
+/// Returns a notation that all YAML readers parse as this number.
 pub(crate) fn agreed_number(text: &str) -> Option<String> {
     let number = number_text(text)?;
     let Some((mantissa, exponent)) = text.split_once(['e', 'E']).filter(|_| !text.contains('x'))
@@ -68,7 +69,7 @@ pub(crate) fn agreed_number(text: &str) -> Option<String> {
     Some(format!("{mantissa}{fraction}e{sign}{exponent}"))
 }
 
-/// Numbers of YAML 1.1 and 1.2 that are not those of JSON: `1_000`, `0o17`, `0b1`, `12:30:00`, `+5`, `.5`, `5.`, `.inf`.
+/// Numbers of YAML 1.1 and 1.2 that JSON does not have: `1_000`, `0o17`, `0b1`, `12:30:00`, `+5`, `.5`, `5.`, `.inf`.
 static OTHER_NUMBERS: LazyLock<Option<Regex>> = LazyLock::new(|| {
     Regex::new(
         r"^([-+]?([0-9][0-9_]*(\.[0-9_]*)?([eE][-+]?[0-9]+)?|\.[0-9][0-9_]*([eE][-+]?[0-9]+)?|0b[01_]+|0o?[0-7_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?|\.(inf|Inf|INF))|\.(nan|NaN|NAN))$",
@@ -76,7 +77,7 @@ static OTHER_NUMBERS: LazyLock<Option<Regex>> = LazyLock::new(|| {
     .ok()
 });
 
-/// Days, also with a time behind them.
+/// Dates, optionally followed by a time.
 static OTHER_DATES: LazyLock<Option<Regex>> = LazyLock::new(|| {
     Regex::new(r"^[0-9]{4}-[0-9]{1,2}-[0-9]{1,2}(([Tt]|[ \t]+)[0-9:.]+.*)?$").ok()
 });

@@ -8,9 +8,9 @@ use crate::syntax::Node;
 pub(crate) enum Cursor {
     /// A mapping with known keys.
     Declared(&'static Table),
-    /// A mapping with keys of two forms, which is an error. The first form.
+    /// A mapping with the keys of two forms, which is an error. Holds the first form.
     Ambiguous(&'static Table),
-    /// A mapping whose keys the spec chooses. Their order is the spec's own.
+    /// A mapping whose keys the spec chooses, in an order with a meaning.
     Chosen {
         /// The form of the keys.
         key: &'static Kind,
@@ -19,7 +19,7 @@ pub(crate) enum Cursor {
     },
     /// A list, with the form of its items.
     Items(&'static Kind),
-    /// A scalar, a JSON value, or a node of another form than the grammar asks for.
+    /// A scalar, a JSON value, or a node with an unexpected form.
     Free,
 }
 
@@ -32,7 +32,7 @@ impl Cursor {
         Self::new(&FILE_KIND, root)
     }
 
-    /// Returns the cursor at a node that should be of this kind. Of several kinds, the first that the node could be.
+    /// Returns the cursor at a node that should be of this kind. With alternatives, the first one that the node could be applies.
     pub fn new(kind: &'static Kind, node: Node<'_>) -> Self {
         let is_mapping = node.as_mapping().is_some();
         match kind {
@@ -73,7 +73,7 @@ impl Cursor {
         matches!(self, Self::Declared(_))
     }
 
-    /// Returns `true` if the grammar has no order and no keys for the content.
+    /// Returns `true` if the grammar specifies neither keys nor an order for the content.
     pub fn is_free(self) -> bool {
         matches!(self, Self::Free | Self::Ambiguous(_))
     }

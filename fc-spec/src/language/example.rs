@@ -1,14 +1,16 @@
-//! What may stand under a key, as an example.
+//! An example for the value of each key.
 
 use crate::language::grammar::{AnyKey, Kind};
 
-/// As the key's declaration has it, or any value where one is as good as another.
+/// Returns the example in the declaration of the key, or else one that follows from its kind.
 pub(super) fn of(key: &AnyKey) -> Option<String> {
     let said = key.said.example.map(str::to_owned);
     said.or_else(|| any(&key.kind))
 }
 
-/// A value of a kind of which all are alike. None of what is made of keys, which is shown with its part.
+/// Returns a value of a kind whose values are all equally good examples.
+///
+/// Returns `None` for a mapping, because its part has an example.
 fn any(kind: &Kind) -> Option<String> {
     let value = match kind.form() {
         Kind::Bool => "true",

@@ -1,5 +1,4 @@
-//! What can be wrong at each key: what follows from its kind, as [`shape`](crate::load) looks at it, and what its
-//! declaration adds.
+//! The possible errors of each key: those that its kind implies in [`shape`](crate::load), and those in its declaration.
 
 use crate::diagnostic::FaultCode;
 use crate::language::grammar::{
@@ -7,7 +6,7 @@ use crate::language::grammar::{
     Table,
 };
 
-/// Faults of a mapping as a whole, wherever it stands: of its keys, not of their values.
+/// Returns the errors of a mapping as a whole: errors of its keys, not of their values.
 pub(super) fn of_table(table: &Table) -> Vec<FaultCode> {
     let is_one_of = |tables: &[&Table]| tables.iter().any(|other| other.name == table.name);
     let forms = FIELD_FORMS.map(|(_, table)| table);
@@ -44,7 +43,7 @@ pub(super) fn of_table(table: &Table) -> Vec<FaultCode> {
     sorted(found)
 }
 
-/// Faults of what stands under a key. Those of a mapping with known keys are told of its own part.
+/// Returns the errors of the value of a key. The part of a mapping with known keys lists the errors of that mapping.
 pub(super) fn of_key(table: &Table, key: &AnyKey) -> Vec<FaultCode> {
     let mut found = key.said.faults.to_vec();
     of_kind(&key.kind, &mut found);
@@ -95,7 +94,7 @@ fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
         Kind::Word(_) => &[FaultCode::BadWord],
         Kind::WireKey => &[],
         Kind::Body => BODY,
-        // Of what it holds, its own part tells.
+        // The part of the mapping lists its errors.
         Kind::Map(_) | Kind::ByKey { .. } | Kind::Ref { .. } => return,
         Kind::Either(kinds) => return kinds.iter().for_each(|kind| of_kind(kind, found)),
         Kind::List { of, min, max } => {
@@ -132,7 +131,7 @@ fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
     );
 }
 
-/// Those of wire keys and of types that stand behind them without more words.
+/// The errors of wire keys, and of types written directly as their value.
 const BODY: &[FaultCode] = &[
     FaultCode::BadType,
     FaultCode::UnknownType,

@@ -1,7 +1,7 @@
-//! The spec language: its keys and words, declared once, with a reference for people and a JSON Schema for editors.
+//! The spec language: declares its keys and words once, and builds a reference and a JSON Schema from them.
 //!
-//! **Architecture invariant.** The loader, the reference and the schema read the same tables, so they cannot disagree.
-//! All of this depends on the language alone, not on any spec.
+//! **Architecture invariant.** The loader, the reference and the schema read the same tables, so they cannot disagree. The module depends
+//! on the language only, not on any spec.
 
 pub(crate) mod ambiguous_scalar;
 mod cursor;

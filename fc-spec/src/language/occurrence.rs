@@ -31,9 +31,9 @@ pub struct Occurrence<'t> {
 /// The role of a key or value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A key that the language has, or a slip of one.
+    /// A key of the language, or a misspelt one.
     Key,
-    /// A key that the spec chooses: the name of a thing, a wire key.
+    /// A key that the spec chooses: the name of a thing, or a wire key.
     Chosen,
     /// A value, or an item of a list.
     Value,
@@ -50,10 +50,10 @@ pub struct OtherKey {
     pub opens_lines: bool,
 }
 
-/// A name of a thing, which the spec may lack.
+/// A name that refers to a thing. The spec may lack the thing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// The kinds that it may have, as in [`DefId`](crate::index::DefId).
+    /// The possible kinds of the thing, as in [`DefId`](crate::index::DefId).
     pub kinds: &'static [&'static str],
     /// The thing around it: for an enum value, its enum.
     pub owner: Option<String>,
@@ -75,7 +75,7 @@ pub fn visit<'t>(root: Node<'t>, see: &mut dyn FnMut(Occurrence<'t>)) {
     walk.through(&FILE_KIND, root, see);
 }
 
-/// The values and keys below a top key of a file that name a thing, except types of fields.
+/// Returns the values and keys below a top key of a file that name a thing, except types of fields.
 pub(crate) fn references<'t>(section: &'static AnyKey, node: Node<'t>) -> Vec<Occurrence<'t>> {
     let walk = Walk {
         part: File::NAME,
@@ -98,14 +98,14 @@ pub fn occurrence_at<'t>(root: Node<'t>, offset: usize) -> Option<Occurrence<'t>
     visit(root, &mut |occurrence| {
         let span = occurrence.node.span();
         if span.start <= offset && offset <= span.end {
-            // One that begins here goes before one that ends here.
+            // A node that begins at the offset wins over a node that ends there.
             found = Some(occurrence);
         }
     });
     found
 }
 
-/// The state on the way down.
+/// The position of the visit.
 #[derive(Clone, Copy)]
 struct Walk<'t> {
     part: &'static str,
@@ -191,7 +191,7 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// Returns the alternatives of a kind, also those of the items of a list.
+/// Returns the alternatives of a kind, including those of list items.
 fn each(kind: &'static Kind) -> Vec<&'static Kind> {
     match kind {
         Kind::Either(kinds) => kinds.iter().flat_map(each).collect(),
@@ -225,7 +225,7 @@ impl<'t> Occurrence<'t> {
         keys
     }
 
-    /// Returns the words that may be here, including built-in types and units.
+    /// Returns the words that are valid here, including built-in types and units.
     #[must_use]
     pub fn words(&self) -> Vec<Word> {
         if self.role == Role::Key {
@@ -235,7 +235,7 @@ impl<'t> Occurrence<'t> {
         kinds.into_iter().flat_map(words).collect()
     }
 
-    /// Returns the kinds of things that may be named here, as in [`DefId`](crate::index::DefId).
+    /// Returns the kinds of things that the value can name, as in [`DefId`](crate::index::DefId).
     #[must_use]
     pub fn names(&self) -> &'static [&'static str] {
         match self.role {
@@ -245,7 +245,7 @@ impl<'t> Occurrence<'t> {
         }
     }
 
-    /// Returns the name of a thing that is here.
+    /// Returns the reference to a thing in this node.
     #[must_use]
     pub fn reference(&self) -> Option<Reference> {
         let kinds = self.names();
@@ -302,7 +302,7 @@ impl<'t> Occurrence<'t> {
         self.owner
     }
 
-    /// Returns the use of the ranges for the operations of a section, for the key of the section.
+    /// For the key of a section, returns the use of the code ranges for its operations.
     #[must_use]
     pub fn operations(&self) -> Option<RangeUse> {
         if self.part != File::TABLE.name || self.role != Role::Key {
@@ -316,7 +316,7 @@ impl<'t> Occurrence<'t> {
         .find_map(|(key, usage)| (self.key == Some(key)).then_some(usage))
     }
 
-    /// Returns the use of the ranges for the code of an operation, for the code.
+    /// For the code of an operation, returns the use of its code ranges.
     #[must_use]
     pub fn code_of(&self) -> Option<RangeUse> {
         if self.role != Role::Value || self.key != Some(OPERATION.code.name) {
@@ -331,7 +331,7 @@ impl<'t> Occurrence<'t> {
     }
 }
 
-/// Collects the tables whose keys a mapping may have. Several if no key decides yet.
+/// Collects the tables whose keys a mapping can have. There are several if no key selects one yet.
 fn possible(kind: &'static Kind, node: Node<'_>, tables: &mut Vec<&'static Table>) {
     match kind {
         Kind::Map(table) => tables.push(table),

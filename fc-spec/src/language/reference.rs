@@ -1,4 +1,4 @@
-//! From grammar tables to the reference of the language, in both languages.
+//! Builds the reference of the language from the grammar tables, in both languages.
 
 use super::{example, faults};
 use crate::diagnostic::FaultCode;
@@ -10,62 +10,62 @@ use crate::vocabulary::{FloatKind, IntKind, Meaning};
 /// A part of the language: a mapping with its keys, or a set of words.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Its name in faults and in the schema: "header field". No two parts have one name.
+    /// The unique name in errors and in the schema, such as "header field".
     pub id: &'static str,
-    /// Its name.
+    /// The display name.
     pub name: Text,
-    /// What it describes.
+    /// The description.
     pub text: Text,
-    /// A small one, as YAML. None of a set of words.
+    /// A small example, as YAML. `None` for a set of words.
     pub example: Option<&'static str>,
-    /// What can be wrong with a mapping of it as a whole.
+    /// The errors of a mapping as a whole.
     pub faults: Vec<FaultCode>,
-    /// Its keys, in the order in which they are best written.
+    /// The keys, in the recommended order.
     pub keys: Vec<Key>,
-    /// Its words.
+    /// The words.
     pub words: Vec<Word>,
 }
 
 /// A key of a mapping.
 #[derive(Clone, Debug)]
 pub struct Key {
-    /// The key.
+    /// The name.
     pub name: &'static str,
-    /// Whether it must be there.
+    /// `true` if the mapping must have the key.
     pub required: bool,
-    /// One sentence.
+    /// The documentation.
     pub text: Text,
-    /// What may stand under it; where there are several, one of them.
+    /// The forms of the value. The value has one of them.
     pub takes: Vec<Takes>,
-    /// What it is taken for where it is not there.
+    /// The value that the loader uses for a missing key.
     pub default: Option<&'static str>,
-    /// What may stand under it, as YAML. None where it is a mapping of another part, which has one.
+    /// An example of the value, as YAML. `None` if the value is a mapping of another part, because that part has an example.
     pub example: Option<String>,
-    /// What can be wrong with what stands under it.
+    /// The errors of the value.
     pub faults: Vec<FaultCode>,
 }
 
-/// What may stand under a key.
+/// A form of a value.
 #[derive(Clone, Debug)]
 pub struct Takes {
-    /// What it is; empty where the parts or words say it.
+    /// The description. Empty if the parts or words describe the form.
     pub text: Text,
-    /// Names of the parts that say what it is made of.
+    /// The names of the parts that describe its content.
     pub parts: Vec<&'static str>,
-    /// The words of which one stands here.
+    /// The words. The value is one of them.
     pub words: Vec<Word>,
 }
 
-/// A word and what it means.
+/// A word and its meaning.
 #[derive(Clone, Debug)]
 pub struct Word {
     /// The word.
     pub word: &'static str,
-    /// What it means.
+    /// The meaning.
     pub text: Text,
 }
 
-/// The whole language, from a file of the spec to the last detail.
+/// Returns the reference of the whole language, beginning with a file of the spec.
 #[must_use]
 pub fn reference() -> Vec<Part> {
     let parts = tables().into_iter().map(|table| Part {
@@ -80,7 +80,7 @@ pub fn reference() -> Vec<Part> {
     parts.chain([types(), units()]).collect()
 }
 
-/// All mappings of the language.
+/// Returns all mappings of the language.
 pub(crate) fn tables() -> Vec<&'static Table> {
     let mut tables: Vec<&Table> = vec![File::TABLE];
     let mut at = 0;
@@ -100,7 +100,7 @@ pub(crate) fn tables() -> Vec<&'static Table> {
     tables
 }
 
-/// The words of which one may stand where a value of this kind does.
+/// Returns the words that a value of this kind can be.
 pub(crate) fn words(kind: &Kind) -> Vec<Word> {
     match kind {
         Kind::Type => types().words,
@@ -129,7 +129,7 @@ fn types() -> Part {
     }
 }
 
-/// Built-in types that are no numbers.
+/// Built-in types that are not numbers.
 const PLAIN: [Meaning; 6] = [
     ("bool", "`true` or `false`.", "`true` 或 `false`。"),
     ("string", "A text.", "文本。"),
@@ -182,7 +182,7 @@ fn key(table: &Table, key: &AnyKey) -> Key {
     }
 }
 
-/// The tables that a kind leads to.
+/// Collects the tables that a kind contains.
 fn inside(kind: &Kind, found: &mut Vec<&'static Table>) {
     match kind {
         Kind::Map(table) => found.push(table),
@@ -223,7 +223,7 @@ fn takes(kind: &Kind) -> Vec<Takes> {
     }]
 }
 
-/// What stands there, where no part and no word says it.
+/// Describes a kind that has no part and no words.
 fn describe(kind: &Kind) -> Text {
     let (en, zh) = match kind {
         Kind::Ref { name, .. } => return describe(name),
@@ -272,7 +272,7 @@ fn describe(kind: &Kind) -> Text {
                 zh: format!("映射；键：{}；其下为：{}", key.zh, value.zh),
             };
         }
-        // Of what a part says, a link follows.
+        // The page adds a link for each part.
         Kind::Either(kinds) => {
             let texts: Vec<Text> = kinds.iter().map(describe).collect();
             let en: Vec<&str> = texts.iter().map(|text| &*text.en).collect();

@@ -1,17 +1,17 @@
-//! What a scalar of the spec means. Numbers and truth values count only where they are plain: `"5"` is a text.
+//! The values of scalars in a spec. Only plain scalars are numbers and booleans: `"5"` is a string.
 
 use crate::model::{Number, Scalar, Type, Value};
 use crate::names;
 use crate::syntax::{Node, NodeKind};
 use std::cmp::Ordering;
 
-/// Whether this plain text is a decimal integer with zeros in front, which some readers take for octal.
+/// Returns `true` for a decimal integer with leading zeros, which some YAML readers parse as octal.
 pub(crate) fn has_leading_zero(text: &str) -> bool {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
     digits.len() > 1 && digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit())
 }
 
-/// `true` or `false`.
+/// Returns the value of a plain `true` or `false`.
 pub(crate) fn bool(node: Node<'_>) -> Option<bool> {
     match node.as_plain()? {
         "true" => Some(true),
@@ -20,12 +20,12 @@ pub(crate) fn bool(node: Node<'_>) -> Option<bool> {
     }
 }
 
-/// A plain integer.
+/// Returns the value of a plain integer.
 pub(crate) fn int(node: Node<'_>) -> Option<i128> {
     int_text(node.as_plain()?)
 }
 
-/// A decimal integer without leading zeros, or a hexadecimal one after `0x`.
+/// Parses a decimal integer without leading zeros, or a hexadecimal one after `0x`.
 pub(crate) fn int_text(text: &str) -> Option<i128> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),
@@ -45,17 +45,17 @@ pub(crate) fn int_text(text: &str) -> Option<i128> {
     Some(if negative { -value } else { value })
 }
 
-/// A plain integer that fits `T`.
+/// Returns the value of a plain integer that fits `T`.
 pub(crate) fn small_int<T: TryFrom<i128>>(node: Node<'_>) -> Option<T> {
     T::try_from(int(node)?).ok()
 }
 
-/// A plain number.
+/// Returns the value of a plain number.
 pub(crate) fn number(node: Node<'_>) -> Option<Number> {
     number_text(node.as_plain()?)
 }
 
-/// An integer, or a decimal fraction as JSON writes it.
+/// Parses an integer, or a decimal fraction in JSON notation.
 pub(crate) fn number_text(text: &str) -> Option<Number> {
     if !text.starts_with(|first: char| first == '-' || first.is_ascii_digit()) {
         return None;
@@ -86,7 +86,7 @@ pub(crate) fn number_text(text: &str) -> Option<Number> {
     value.is_finite().then_some(Number::Float(value))
 }
 
-/// Which of two numbers is greater. Exact between integers; fractions are finite.
+/// Compares two numbers. The comparison of integers is exact. Fractions are finite.
 pub(crate) fn compare(a: &Number, b: &Number) -> Ordering {
     match (a, b) {
         (Number::Int(a), Number::Int(b)) => a.cmp(b),
@@ -94,7 +94,7 @@ pub(crate) fn compare(a: &Number, b: &Number) -> Ordering {
     }
 }
 
-/// A number as a float; large integers are rounded.
+/// Returns the number as a float. Large integers are rounded.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn float(number: &Number) -> f64 {
     match number {
@@ -103,13 +103,14 @@ pub(crate) fn float(number: &Number) -> f64 {
     }
 }
 
-/// A code: `0x` and four upper-case hex digits.
+/// Returns the value of a code: `0x` and four upper-case hex digits.
 pub(crate) fn code(node: Node<'_>) -> Option<u16> {
     names::code(node.as_plain()?)
 }
 
-/// A type, and whether it carries the mark of an optional field. `[T]` may also be written as a YAML list
-/// of one type. Names are not looked up.
+/// Returns a type, and `true` if it has the mark of an optional field.
+///
+/// `[T]` may also be a YAML list of one type. Names are not resolved.
 pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {
     if let Some(mut items) = node.as_sequence() {
         let (Some(item), None) = (items.next(), items.next()) else {
@@ -127,13 +128,13 @@ pub(crate) fn field_type(node: Node<'_>) -> Option<(Type, bool)> {
     }
 }
 
-/// The text of a scalar, without the line end that a block scalar leaves behind.
+/// Returns the text of a scalar without the newline at the end of a block scalar.
 pub(crate) fn text(node: Node<'_>) -> Option<String> {
     let text = node.as_str()?;
     Some(text.strip_suffix('\n').unwrap_or(text).to_owned())
 }
 
-/// A bool, number or text.
+/// Returns a bool, a number or a string.
 pub(crate) fn scalar(node: Node<'_>) -> Option<Scalar> {
     match value(node) {
         Value::Bool(value) => Some(Scalar::Bool(value)),
@@ -143,13 +144,13 @@ pub(crate) fn scalar(node: Node<'_>) -> Option<Scalar> {
     }
 }
 
-/// The single values of a node: itself, or the items of a list.
+/// Returns the node itself, or the items of a list.
 pub(crate) fn each_value(node: Node<'_>) -> impl Iterator<Item = Node<'_>> {
     let single = node.as_scalar().map(|_| node);
     node.items().chain(single)
 }
 
-/// The JSON value that a node stands for.
+/// Returns the JSON value of a node.
 pub(crate) fn value(node: Node<'_>) -> Value {
     match node.kind() {
         NodeKind::Null => Value::Null,

@@ -1,4 +1,4 @@
-//! The JSON Schema (draft 2020-12) of the spec language, made of the grammar's tables.
+//! The JSON Schema (draft 2020-12) of the spec language, built from the grammar tables.
 
 use crate::diagnostic::Faults;
 use crate::language::grammar::unit::UNITS;
@@ -16,7 +16,7 @@ const CONFLICT_ID: &str = "^C[0-9]{3,}$";
 const MEDIA_TYPE: &str = "^[a-z0-9][a-z0-9!#$&^_.+-]*/[a-z0-9][a-z0-9!#$&^_.+-]*$";
 const DATE: &str = "^[0-9]{4}-[0-9]{2}(-[0-9]{2})?$";
 const INTEGER_KEY: &str = "^(-?[0-9]+|0x[0-9A-Fa-f]+)$";
-/// Lists of lists are as deep as anyone would write them.
+/// The maximum nesting of lists in a type. Deeper types are not expected.
 const LISTS_IN_TYPE: usize = 4;
 
 /// Returns the schema for specs whose texts are in these languages, indented, with a newline at its end.
@@ -55,8 +55,9 @@ fn whole(texts: Languages) -> Value {
     Value::Object(root)
 }
 
-/// The `$defs` made so far, by name. A name stands there from when it is first asked for, so that a table may
-/// hold itself.
+/// The `$defs` built so far, by name.
+///
+/// A name is entered before its definition is built, so that a table can contain itself.
 struct Definitions {
     /// Languages of required texts.
     texts: Languages,
@@ -64,7 +65,7 @@ struct Definitions {
 }
 
 impl Definitions {
-    /// A reference to a definition, which is made unless it is there.
+    /// Returns a reference to a definition. Builds the definition first if it does not exist.
     fn add(&mut self, name: &str, make: impl FnOnce(&mut Self) -> Value) -> Value {
         let name = name.replace(' ', "_");
         if !self.done.contains_key(&name) {
@@ -188,8 +189,10 @@ impl Definitions {
         Value::Object(entries)
     }
 
-    /// One of several. Which of them is meant is told by what JSON calls the value, so that a fault is one of that
-    /// alternative and not "none of them". What is none of them (nothing yet, or something else) is taken for the last.
+    /// Returns the schema of alternatives.
+    ///
+    /// The JSON type of the value selects the alternative. An editor then reports an error of that alternative instead of "none of them".
+    /// The last alternative applies to every other value, also to a missing one.
     fn either(&mut self, kinds: &'static [Kind]) -> Value {
         let mut by_type: Vec<(&str, Vec<Value>)> = Vec::new();
         for kind in kinds {
@@ -224,8 +227,10 @@ impl Definitions {
             })
     }
 
-    /// The first table whose key is there decides. Without any, what has a text that is no type is the long form of a field
-    /// that lacks its type, and no object whose keys are `zh` and `en`.
+    /// Returns the schema of a mapping whose first marking key selects the table.
+    ///
+    /// Without a marking key, a mapping with a text that is not a type is the long form of a field without its type. It is not an object
+    /// with the wire keys `zh` and `en`.
     fn by_key(
         &mut self,
         tables: &'static [(&'static str, &'static Table)],
@@ -260,7 +265,7 @@ impl Definitions {
         })
     }
 
-    /// A type; `mark` is the pattern of what may stand behind it.
+    /// Returns the schema of a type. `mark` is the pattern of the text after it.
     fn type_expression(&mut self, mark: &str) -> Value {
         let word = "[A-Za-z][A-Za-z0-9_]*".to_owned();
         let ty = (0..LISTS_IN_TYPE).fold(word.clone(), |ty, _| format!(r"({word}|\[\s*{ty}\s*\])"));
@@ -278,14 +283,14 @@ impl Definitions {
                 object([
                     ("type", string("string")),
                     ("pattern", string(&format!("^{ty}{mark}$"))),
-                    // An editor offers these; the names of declared types it cannot know.
+                    // An editor offers these types. The schema does not know the names of declared types.
                     ("examples", Type::built_in().map(string).collect()),
                 ]),
             ),
         ])
     }
 
-    /// A list written as one of YAML.
+    /// Returns the schema of a list type that is written as a YAML list.
     fn type_list(&mut self) -> Value {
         object([
             ("type", string("array")),
@@ -295,13 +300,13 @@ impl Definitions {
         ])
     }
 
-    /// What a list may hold: a type without the mark of an optional field.
+    /// Returns the schema of an item type, which has no mark of an optional field.
     fn item_type(&mut self) -> Value {
         self.add("item_type", |definitions| definitions.type_expression(""))
     }
 }
 
-/// What JSON calls the values of a kind.
+/// Returns the JSON types of the values of a kind.
 fn json_types(kind: &Kind) -> &'static [&'static str] {
     match kind {
         Kind::Ref { name, .. } => json_types(name),
@@ -312,7 +317,7 @@ fn json_types(kind: &Kind) -> &'static [&'static str] {
         Kind::Type => &["string", "array"],
         Kind::List { .. } => &["array"],
         Kind::Map(_) | Kind::Entries { .. } | Kind::ByKey { .. } | Kind::Body => &["object"],
-        // No kind of which one alternative is anything, or again several, is one of several.
+        // The grammar has no alternatives that contain any JSON value or further alternatives.
         Kind::Json | Kind::Either(_) => &[],
         Kind::Text
         | Kind::Date
@@ -326,7 +331,7 @@ fn json_types(kind: &Kind) -> &'static [&'static str] {
     }
 }
 
-/// What the YAML of a default or an example says; tests hold that it is YAML.
+/// Returns the value of a default or an example. Tests check that it is valid YAML.
 fn parsed(yaml: &'static str) -> Option<Value> {
     let tree = parse(FileId(0), yaml, &mut Faults::new())?;
     Some(scalar::value(tree.root()))
@@ -364,7 +369,7 @@ fn size(size: usize) -> Value {
     Value::Number(Number::Int(i128::try_from(size).unwrap_or(i128::MAX)))
 }
 
-/// One of these words, with what each means.
+/// Returns the schema of a set of words, with the meaning of each.
 fn one_of(words: &[Meaning]) -> Value {
     object([
         (

@@ -1,4 +1,4 @@
-//! DOCS: texts.
+//! DOCS: rules about texts.
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
@@ -118,7 +118,7 @@ pub(super) const RULES: &[Rule] = &[
 fn words(text: &str) -> Vec<String> {
     let words = text.split(|c: char| !c.is_ascii_alphanumeric());
     let words = words.map(str::to_ascii_lowercase);
-    // Words that say no more than the name does.
+    // These words add nothing to the name.
     let little = ["", "a", "an", "the", "of", "is", "id"];
     let mut words: Vec<_> = words.filter(|it| !little.contains(&it.as_str())).collect();
     words.sort_unstable();
@@ -144,7 +144,7 @@ fn text_repeats_name(search: &mut Search<'_>) {
 
 fn full_stop(search: &mut Search<'_>) {
     for (item, is_short, text) in search.texts() {
-        // In the middle of a text, a stop ends a first sentence.
+        // A full stop inside the text means several sentences.
         let one = |text: &str, stop: char, inside: &str| {
             text.strip_suffix(stop)
                 .is_some_and(|rest| !rest.contains(inside) && !rest.ends_with('.'))
@@ -163,7 +163,7 @@ fn full_stop(search: &mut Search<'_>) {
     }
 }
 
-/// What stands between back quotes, and in blocks of code, is in no language.
+/// Returns the text outside back quotes and code blocks.
 fn prose(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').step_by(2)
 }
@@ -214,7 +214,7 @@ fn is_full_width(character: char) -> bool {
     )
 }
 
-/// What stands between single back quotes; nothing where a block of code makes them hard to tell.
+/// Returns the names in single back quotes. The set is empty if the text has a code block, because the quotes are ambiguous there.
 fn quoted_names(text: &str) -> BTreeSet<&str> {
     if text.contains("```") {
         return BTreeSet::new();

@@ -1,32 +1,32 @@
-//! What a rule has found.
+//! A finding of a rule.
 
 use super::rule::Rule;
 use crate::index::DefId;
 use crate::model::{Text, Waiver, fingerprint};
 
-/// Something that a rule objects to.
+/// A violation of a rule.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The rule.
+    /// The rule that found it.
     pub rule: &'static Rule,
-    /// Id of the house rule, where [`rule`](Self::rule) is the one that stands for all of them.
+    /// The id of the rule of the project, if [`rule`](Self::rule) is the shared [`Rule`] for all of them.
     pub house: Option<String>,
-    /// What it is about.
+    /// The thing that violates the rule.
     pub item: DefId,
-    /// What is wrong, in one sentence.
+    /// The message, in one sentence.
     pub message: Text,
-    /// What else there is to see, and why.
+    /// Other things that show the violation, each with a message.
     pub also: Vec<(DefId, Text)>,
-    /// What to do.
+    /// The advice.
     pub note: Option<Text>,
-    /// What tells two findings about one thing apart, whatever is written of it elsewhere.
+    /// A key that distinguishes two findings about one thing. It must not depend on other parts of the spec.
     pub(super) about: String,
-    /// The waiver that accepts it.
+    /// The waiver that accepts this finding.
     pub waived: Option<Waiver>,
 }
 
 impl Finding {
-    /// About a thing.
+    /// Returns a finding about a thing.
     pub(super) fn new(rule: &'static Rule, item: impl Into<DefId>, message: Text) -> Self {
         Self {
             rule,
@@ -40,25 +40,27 @@ impl Finding {
         }
     }
 
-    /// Another thing that shows it.
+    /// Adds another thing that shows the violation.
     pub(super) fn with(mut self, item: DefId, text: Text) -> Self {
         self.also.push((item, text));
         self
     }
 
-    /// What to do.
+    /// The advice.
     pub(super) fn note(mut self, note: Text) -> Self {
         self.note = Some(note);
         self
     }
 
-    /// What tells it apart from others about the same thing.
+    /// Sets the key that distinguishes two findings about one thing.
     pub(super) fn about(mut self, about: impl Into<String>) -> Self {
         self.about = about.into();
         self
     }
 
-    /// What a waiver calls it: `FC0802-1a2b3c4d5e6f`. It depends on the rule and on what it is about, on no line and no wording.
+    /// Returns the id for a waiver: `FC0802-1a2b3c4d5e6f`.
+    ///
+    /// The id depends on the rule and the thing, not on a line or a wording.
     #[must_use]
     pub fn waiver_id(&self) -> String {
         let item = self.item.to_string();

@@ -1,4 +1,4 @@
-//! MINIMAL: what no protocol should have.
+//! MINIMAL: rules that every protocol should keep.
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
@@ -76,7 +76,7 @@ fn group_file(search: &mut Search<'_>) {
     }
 }
 
-/// A key without what is easily mixed up.
+/// Returns the key in lower case, without `_` and `-`.
 pub(super) fn folded(key: &str) -> String {
     let plain = key.chars().filter(|c| !matches!(c, '_' | '-'));
     plain.flat_map(char::to_lowercase).collect()

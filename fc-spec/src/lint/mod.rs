@@ -1,11 +1,11 @@
-//! What is no error and better otherwise: rules over a model, with levels, waivers and rules of the project's own.
+//! The lint: style rules over a model, with levels, waivers and the rules of a project.
 //!
-//! A rule says what it is in a table ([`Rule`]) and looks for it with a function over the model. Those of one category are in one file.
-//! STANDARD contains MINIMAL, as in buf: who sets the level of STANDARD sets that of both, unless MINIMAL has one of its own.
-//! DOCS, WIRE and SUNSET stand beside them, since a project wants each of them or not.
+//! A [`Rule`] holds the data of a rule and a function that searches the model. Each category has one file. STANDARD contains MINIMAL, as in
+//! buf: the level of STANDARD also applies to MINIMAL, unless MINIMAL has a level. DOCS, WIRE and SUNSET are separate, so that a project
+//! can enable each of them independently.
 //!
-//! [`settings`] are the key `lint` of `fc.yaml`; [`lint`] finds, [`waive`] applies waivers, [`faults`] gives each finding its level and its
-//! place.
+//! [`settings`] reads the key `lint` of `fc.yaml`. [`lint`] searches, [`waive`] applies waivers, and [`faults`] gives each finding its
+//! level and its place.
 
 mod docs;
 mod finding;
@@ -41,8 +41,9 @@ const RULES: &[&[Rule]] = &[
     project_rules::RULES,
 ];
 
-/// What the rules find in a model on a day, `YYYY-MM-DD`, those of the project included: of any level, since a waiver is not unused
-/// because a level is off.
+/// Returns the findings of all rules in a model on a day, `YYYY-MM-DD`, including the rules of the project.
+///
+/// The result includes rules with the level off: a waiver is not unused because a level is off.
 #[must_use]
 pub fn lint(model: &Model, settings: &Settings, today: &str) -> Vec<Finding> {
     let mut findings = Vec::new();

@@ -1,4 +1,4 @@
-//! Which paths the dump of a thing has, by the schema of the dump.
+//! The paths in the dump of a thing, from the JSON Schema of the dump.
 
 use super::project_rules::GROUPS;
 use crate::language::grammar as language;
@@ -7,10 +7,10 @@ use schemars::{Schema, schema_for};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Most references that are followed from one place; the schema has no such chain.
+/// The maximum number of references followed from one place. The schema has no chain of this length.
 const DEPTH: u8 = 16;
 
-/// Every kind of thing that a rule may be about.
+/// Returns every kind of thing that a rule can name in `for`.
 pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     let several = GROUPS.iter().flat_map(|(_, kinds)| kinds.iter().copied());
     several.chain([
@@ -21,11 +21,11 @@ pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
     ])
 }
 
-/// The shape of what `fcproto inspect` prints of a kind of thing.
+/// The schema of the output of `fcproto inspect` for one kind of thing.
 pub(super) struct Shape(Schema);
 
 impl Shape {
-    /// Of a kind of [`kinds`].
+    /// Returns the schema of one of [`kinds`].
     pub fn of(kind: &str) -> Self {
         let [operations, types] = GROUPS.map(|(_, kinds)| kinds.contains(&kind));
         Self(match kind {
@@ -38,7 +38,7 @@ impl Shape {
         })
     }
 
-    /// What stands at the beginning of every path.
+    /// Returns the start of every path.
     pub fn root(&self) -> At<'_> {
         At {
             shape: self,
@@ -46,7 +46,7 @@ impl Shape {
         }
     }
 
-    /// All that a place may be, without references and alternatives.
+    /// Returns the schemas that a place can have, with references and alternatives resolved.
     fn flat<'s>(&'s self, node: &'s Value, depth: u8) -> Vec<&'s Value> {
         let Some(depth) = depth.checked_sub(1) else {
             return Vec::new();
@@ -72,7 +72,7 @@ pub(super) struct At<'s> {
 }
 
 impl<'s> At<'s> {
-    /// The keys there, and what stands under each.
+    /// Returns the keys at this place, each with the place below it.
     pub fn keys(&self) -> BTreeMap<&'s str, Self> {
         let mut keys: BTreeMap<&str, Self> = BTreeMap::new();
         for node in &self.nodes {
@@ -88,7 +88,7 @@ impl<'s> At<'s> {
         keys
     }
 
-    /// Whether a list stands there.
+    /// Returns `true` if the value can be a list.
     pub fn is_list(&self) -> bool {
         let is = |ty: &Value| ty.as_str() == Some("array");
         self.nodes.iter().any(|node| {
@@ -97,7 +97,7 @@ impl<'s> At<'s> {
         })
     }
 
-    /// The words that may stand there; none where anything else may.
+    /// Returns the words that the value can be. The list is empty if it can also be another value.
     pub fn words(&self) -> Vec<&'s str> {
         let mut words = Vec::new();
         for node in &self.nodes {

@@ -1,4 +1,4 @@
-//! Findings as faults: each with its level and its place.
+//! Turns findings into errors and warnings with a place.
 
 use super::finding::Finding;
 use super::rule::Level;
@@ -9,8 +9,9 @@ use crate::source::{FileId, Span};
 use crate::text;
 use std::borrow::Borrow;
 
-/// What is to be shown of the findings: those that no waiver accepts and whose level is not off, in the order of their places. Places
-/// are only asked for if there is anything to be shown.
+/// Returns the findings to show, in the order of their places.
+///
+/// It leaves out waived findings and findings whose level is off. It calls `places` only if there is a finding to show.
 #[must_use]
 pub fn faults<P: Borrow<Definitions>>(
     findings: &[Finding],
@@ -56,7 +57,7 @@ fn fault(finding: &Finding, level: Level, places: &Definitions) -> Diagnostic {
     ))
 }
 
-/// Where a thing is written. All that a model has is in the files that it was read from.
+/// Returns the place of a thing. Every thing in a model was read from a file, so the fallback is never used.
 fn span(item: &DefId, places: &Definitions) -> Span {
     let place = places.get(item);
     place.map_or(Span::point(FileId(0), 0), |place| place.key)

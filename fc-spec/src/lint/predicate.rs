@@ -1,40 +1,42 @@
-//! What a rule of the project asks of a thing.
+//! The tests in a rule of the project.
 //!
-//! Asked is the dump of the thing, so that there is no second list of what can be asked.
+//! A test reads the dump of a thing, so every key of the dump can be tested.
 
 use regex_lite::Regex;
 use serde_json::Value;
 
-/// Something that holds of a thing or does not.
+/// A test of a thing.
 #[derive(Debug)]
 pub(super) enum Test {
-    /// Each of them holds; nothing to ask always holds.
+    /// Every test passes. An empty list passes.
     All(Vec<Test>),
-    /// One of them holds.
+    /// At least one test passes.
     Any(Vec<Test>),
-    /// It does not hold.
+    /// The test fails.
     Not(Box<Test>),
-    /// It holds of what stands at this path.
+    /// The check passes for the value at this path.
     At(Vec<String>, Check),
 }
 
-/// Something that holds of a value or does not. Of a value that is not there nothing holds but [`Absent`](Self::Absent).
+/// A check of a value.
+///
+/// A missing value passes only [`Absent`](Self::Absent) and [`MaxLength`](Self::MaxLength).
 #[derive(Debug)]
 pub(super) enum Check {
     Present,
     Absent,
     OneOf(Vec<Value>),
-    /// As a whole.
+    /// The pattern matches the whole string.
     Matches(Regex),
     Min(f64),
     Max(f64),
-    /// Characters of a text, items of a list.
+    /// The number of characters in a string, or of items in a list.
     MinLength(usize),
     MaxLength(usize),
 }
 
 impl Test {
-    /// Whether it holds.
+    /// Returns `true` if the thing passes.
     pub fn holds(&self, thing: &Value) -> bool {
         match self {
             Self::All(tests) => tests.iter().all(|test| test.holds(thing)),
@@ -49,7 +51,7 @@ impl Test {
     }
 }
 
-/// The dump writes what is not said as `null`, and lists of nothing.
+/// Returns `false` for `null` and for empty lists and objects, which the dump writes for a missing value.
 fn is_there(value: &Value) -> bool {
     match value {
         Value::Null => false,
@@ -77,7 +79,7 @@ impl Check {
     }
 }
 
-/// Numbers are the same however they are written.
+/// Compares two values. Numbers are equal if their values are equal, in any notation.
 fn is_same(one: &Value, other: &Value) -> bool {
     match (one.as_f64(), other.as_f64()) {
         (Some(one), Some(other)) => one.total_cmp(&other).is_eq(),

@@ -1,4 +1,4 @@
-//! What a rule of the lint says of itself.
+//! The data of a lint rule: its code, category, name and default level.
 
 use super::search::Search;
 use crate::diagnostic::LintCode;
@@ -6,25 +6,25 @@ use crate::model::Lang;
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 
-/// What a rule is for.
+/// The category of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Category {
-    /// What no protocol should have.
+    /// Rules that every protocol should keep.
     Minimal,
-    /// What makes a protocol easy to use; contains [`Minimal`](Self::Minimal).
+    /// Rules that make a protocol easy to use. The category contains [`Minimal`](Self::Minimal).
     Standard,
-    /// Texts.
+    /// Rules about texts.
     Docs,
-    /// What receivers in some language cannot keep, or what nothing bounds.
+    /// Rules about values that some languages cannot hold, and about values without limits.
     Wire,
-    /// What is withdrawn, and until when.
+    /// Rules about removal dates.
     Sunset,
-    /// Rules of the project, and how it uses the lint.
+    /// Rules of the project, and errors in its use of the lint.
     House,
 }
 
 impl Category {
-    /// All of them, in the order of their numbers.
+    /// All categories, in the order of their numbers.
     pub const ALL: &'static [Self] = &[
         Self::Minimal,
         Self::Standard,
@@ -34,7 +34,7 @@ impl Category {
         Self::House,
     ];
 
-    /// As `fc.yaml` names it.
+    /// Returns the name in `fc.yaml`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,7 +47,7 @@ impl Category {
         }
     }
 
-    /// The category that contains this one, if there is one.
+    /// Returns the category that contains this one, if there is one.
     #[must_use]
     pub const fn within(self) -> Option<Self> {
         match self {
@@ -57,22 +57,22 @@ impl Category {
     }
 }
 
-/// What becomes of a finding.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Level {
-    /// It is not shown.
+    /// The finding is not shown.
     Off,
-    /// It is shown.
+    /// The finding is shown.
     Warning,
-    /// It is shown, and the lint fails.
+    /// The finding is shown, and the lint fails.
     Error,
 }
 
 impl Level {
-    /// All of them.
+    /// All levels.
     pub const ALL: &'static [Self] = &[Self::Off, Self::Warning, Self::Error];
 
-    /// As `fc.yaml` names it.
+    /// Returns the name in `fc.yaml`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -86,25 +86,25 @@ impl Level {
 /// A rule of the lint.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
-    /// Its code, with its title and its explanation.
+    /// The code, with its title and its explanation.
     pub code: LintCode,
-    /// What it is for.
+    /// The category.
     pub category: Category,
-    /// Its name, such as `similar-keys`.
+    /// The name, such as `similar-keys`.
     pub name: &'static str,
-    /// What becomes of its findings unless `fc.yaml` says otherwise.
+    /// The level, unless `fc.yaml` sets another.
     pub level: Level,
-    /// Looks for it; `None` where that takes more than a model.
+    /// The search function. `None` if the rule needs more than a model.
     pub(super) find: Option<fn(&mut Search<'_>)>,
 }
 
 impl Rule {
-    /// Every rule, by its code.
+    /// Returns every rule.
     pub fn all() -> impl Iterator<Item = &'static Self> {
         super::RULES.iter().flat_map(|category| category.iter())
     }
 
-    /// The rule with this code, in any case, with or without its `FC` and zeros in front, or with this name.
+    /// Returns the rule with this code or name. The code can be in any case, with or without `FC` and leading zeros.
     #[must_use]
     pub fn parse(text: &str) -> Option<&'static Self> {
         let upper = text.trim().to_ascii_uppercase();
@@ -113,14 +113,14 @@ impl Rule {
         Self::all().find(|rule| rule.code.number == padded || rule.name == text.trim())
     }
 
-    /// What it means and how it is set, as Markdown.
+    /// Returns the explanation of the rule and its default level, as Markdown.
     #[must_use]
     pub fn explain(&self, lang: Lang) -> String {
         let [en, zh] = self.setting();
         format!("{}\n\n{}\n", self.code.text_in(lang), lang.pick(zh, en))
     }
 
-    /// Its category, name and level, in English and in Chinese.
+    /// Returns a sentence with the category, the name and the default level, in English and in Chinese.
     #[must_use]
     pub fn setting(&self) -> [String; 2] {
         let (category, name, level) = (self.category.name(), self.name, self.level.name());
@@ -131,7 +131,7 @@ impl Rule {
     }
 }
 
-/// Two rules are the same if they have the same code.
+/// Two rules are equal if they have the same code.
 impl PartialEq for Rule {
     fn eq(&self, other: &Self) -> bool {
         self.code.number == other.code.number

@@ -1,4 +1,4 @@
-//! What rules look through, and where they leave what they find.
+//! The [`Search`] of a rule: access to the model, and a list for its findings.
 
 use super::Finding;
 use super::rule::Rule;
@@ -8,30 +8,30 @@ use crate::model::{
     EnumValue, Field, Group, Kind, Model, Operation, StructType, Text, TypeDef, TypeShape, Variant,
 };
 
-/// A rule at work on a model.
+/// The search of one rule in a model.
 pub(super) struct Search<'m> {
-    /// What is looked through.
+    /// The model to search.
     pub model: &'m Model,
-    /// The day as of which it is judged, `YYYY-MM-DD`.
+    /// The day of the search, `YYYY-MM-DD`.
     pub today: &'m str,
-    /// The rule.
+    /// The rule that searches.
     pub rule: &'static Rule,
-    /// What it has found.
+    /// The findings so far.
     pub found: Vec<Finding>,
 }
 
 impl<'m> Search<'m> {
-    /// Reports what is wrong with a thing.
+    /// Adds a finding about a thing.
     pub fn report(&mut self, item: impl Into<DefId>, message: Text) {
         self.add(Finding::new(self.rule, item, message));
     }
 
-    /// The same, put together elsewhere.
+    /// Adds a finding that the caller has built.
     pub fn add(&mut self, finding: Finding) {
         self.found.push(finding);
     }
 
-    /// Every struct, those of bodies and inline objects included.
+    /// Returns every struct, including bodies and inline objects.
     pub fn structs(&self) -> impl Iterator<Item = (&'m TypeDef, &'m StructType)> + use<'m> {
         self.model.types.iter().filter_map(|ty| match &ty.shape {
             TypeShape::Struct(shape) => Some((ty, shape)),
@@ -39,19 +39,20 @@ impl<'m> Search<'m> {
         })
     }
 
-    /// Every field with the type that holds it.
+    /// Returns every field with the type that holds it.
     pub fn fields(&self) -> impl Iterator<Item = (&'m TypeDef, &'m Field)> + use<'m> {
         self.structs()
             .flat_map(|(ty, shape)| shape.fields.iter().map(move |field| (ty, field)))
     }
 
-    /// Every operation.
+    /// Returns every operation.
     pub fn operations(&self) -> impl Iterator<Item = &'m Operation> + use<'m> {
         self.model.operations.iter()
     }
 
-    /// Every text that people have written about something that programs use: of what, whether it is a short one (a title and no
-    /// paragraphs), and the text.
+    /// Returns every documentation text with its subject.
+    ///
+    /// The flag is `true` for a short text: a title without paragraphs.
     pub fn texts(&self) -> Vec<(Subject<'m>, bool, &'m Text)> {
         let mut texts = Vec::new();
         for group in &self.model.groups {
@@ -95,7 +96,9 @@ impl<'m> Search<'m> {
     }
 }
 
-/// What a rule looks at. Its name is put together only where something is found: most rules find nothing in most of a model.
+/// The subject of a finding.
+///
+/// Its name is built only for a finding, because most rules find nothing in most of a model.
 #[derive(Clone, Copy)]
 pub(super) enum Subject<'m> {
     /// A group.

@@ -28,21 +28,24 @@ const LINT: &str = "lint";
 const LEVELS: &str = "levels";
 const HOUSE: &str = "house";
 
-/// Levels, and the rules of the project.
+/// The levels and the rules of the project.
 #[derive(Debug, Default)]
 pub struct Settings {
-    /// By the code of a rule, the name of a category, or the id of a rule of the project.
+    /// The key is the code of a rule, the name of a category, or the id of a rule of the project.
     levels: HashMap<String, Level>,
     house: Vec<HouseRule>,
 }
 
 impl Settings {
-    /// The rules of the project.
+    /// Returns the rules of the project.
     pub(super) fn house(&self) -> &[HouseRule] {
         &self.house
     }
 
-    /// What becomes of what a rule finds: by its code, or else its category, or else that which contains it.
+    /// Returns the level of a finding.
+    ///
+    /// The id of a rule of the project comes first, then the code, the category and the category that contains it. Without a setting, the
+    /// level is the default of the rule.
     #[must_use]
     pub fn level(&self, rule: &Rule, house: Option<&str>) -> Level {
         let own = house.and_then(|id| self.levels.get(id));
@@ -61,8 +64,10 @@ impl Settings {
     }
 }
 
-/// What `fc.yaml`, at `file` below `root`, and the files of rules that it names say; nothing where it says nothing of the lint. What
-/// cannot be used is a fault, whose place is in the sources.
+/// Reads the key `lint` of `fc.yaml`, at `file` below `root`, and the rule files that it lists.
+///
+/// Returns the defaults if the file or the key is missing. Adds an error for each invalid setting; its place refers to the returned
+/// sources.
 pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sources) {
     let mut sources = Sources::new();
     if root.join(file).symlink_metadata().is_err() {
@@ -74,7 +79,7 @@ pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sour
         faults,
     };
     let mut named = read(root, file, &mut sources, &mut reader, true);
-    // A file names no others, so that this comes to an end.
+    // A rule file cannot list other files, so one pass is enough.
     for file in named.drain(..) {
         read(root, &file, &mut sources, &mut reader, false);
     }
@@ -83,7 +88,7 @@ pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sour
     (settings, sources)
 }
 
-/// Reads a file, and tells which others it names.
+/// Reads a file and returns the files that it lists.
 fn read(
     root: &Path,
     name: &str,
@@ -121,7 +126,7 @@ fn read(
 
 pub(super) struct Reader<'f> {
     settings: Settings,
-    /// Where each rule of the project is, and each level that names none of the rules known before.
+    /// The place of each rule of the project, by its id, and of each key of `levels`, by `levels` and the name.
     ids: HashMap<String, Span>,
     pub(super) faults: &'f mut Faults,
 }
@@ -133,7 +138,7 @@ impl Reader<'_> {
             .push(Diagnostic::error(code, span, message).note(advice));
     }
 
-    /// A word that is not one of those that may stand there.
+    /// Adds an error for a word that is not in `words`.
     pub(super) fn unknown<'w>(
         &mut self,
         node: Node<'_>,
@@ -160,7 +165,7 @@ impl Reader<'_> {
             });
     }
 
-    /// What stands under `lint`, and the files that it names.
+    /// Reads the value of `lint` and returns the files that it lists.
     fn lint(&mut self, node: Node<'_>) -> Vec<String> {
         let mut files = Vec::new();
         for entry in node.entries() {
@@ -212,7 +217,7 @@ impl Reader<'_> {
         found.copied()
     }
 
-    /// Every level is that of something. Asked when all rules of the project are known.
+    /// Checks that every key of `levels` names a rule or a category. The caller has read all rules of the project before.
     fn check_levels(&mut self, sources: &Sources) {
         let categories = Category::ALL.iter().map(|category| category.name());
         let house: Vec<String> = self.settings.house.iter().map(|it| it.id.clone()).collect();
@@ -248,7 +253,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Rules, and the files that hold others.
+    /// Reads the list of rules and returns the files that it names.
     fn house(&mut self, node: Node<'_>) -> Vec<String> {
         let mut files = Vec::new();
         if node.as_sequence().is_none() && !node.is_null() {

@@ -1,4 +1,4 @@
-//! STANDARD: what makes a protocol easy to use.
+//! STANDARD: rules that make a protocol easy to use.
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
@@ -229,7 +229,7 @@ fn id_without_entity(search: &mut Search<'_>) {
     }
 }
 
-/// By wire key, the first field of each way to say something of it, where there are several.
+/// Returns one map per wire key with several different facts, from each fact to the first field that has it.
 fn by_key<'m, T: Ord>(
     search: &Search<'m>,
     fact: impl Fn(&'m Field) -> Option<T>,

@@ -1,4 +1,4 @@
-//! SUNSET: what is withdrawn, and until when it is there.
+//! SUNSET: rules about removal dates of deprecated things.
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
@@ -55,7 +55,7 @@ pub(super) const RULES: &[Rule] = &[
     },
 ];
 
-/// Months before that of the sunset in which it is near.
+/// A removal date is near if it is at most this number of months ahead.
 const NEAR: i32 = 3;
 
 fn withdrawn<'m>(search: &Search<'m>) -> Vec<(Subject<'m>, &'m Deprecation)> {
@@ -75,7 +75,7 @@ fn withdrawn<'m>(search: &Search<'m>) -> Vec<(Subject<'m>, &'m Deprecation)> {
     all.filter_map(|(of, it)| Some((of, it?))).collect()
 }
 
-/// Months since the year 0.
+/// Returns the months since the year 0.
 fn months(date: &str) -> Option<i32> {
     let mut parts = date.split('-').map(str::parse::<i32>);
     let (year, month) = (parts.next()?.ok()?, parts.next()?.ok()?);

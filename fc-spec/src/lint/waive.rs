@@ -1,4 +1,4 @@
-//! Waivers applied: which findings the owner has accepted, and which waivers accept nothing.
+//! Applies waivers to findings, and reports waivers that are unused or expired.
 
 use super::finding::Finding;
 use super::project_rules::{WAIVER_OVER, WAIVER_UNUSED};
@@ -6,10 +6,10 @@ use super::search::of_waiver;
 use crate::model::Waiver;
 use crate::text;
 
-/// What the ids of waivers for the lint begin with; those of others are for others.
+/// The prefix of the ids of lint waivers. Other checks handle the other waivers.
 const OURS: &str = "FC08";
 
-/// Marks the findings that waivers accept on a day, `YYYY-MM-DD`, and adds what is wrong with the waivers.
+/// Marks the findings that a waiver accepts on a day, `YYYY-MM-DD`. Adds findings about unused and expired waivers.
 pub fn waive(findings: &mut Vec<Finding>, waivers: &[Waiver], today: &str) {
     let mut wrong = Vec::new();
     for waiver in waivers.iter().filter(|it| it.id.starts_with(OURS)) {

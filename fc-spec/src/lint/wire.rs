@@ -1,4 +1,4 @@
-//! WIRE: what receivers in some language cannot keep, and what nothing bounds.
+//! WIRE: rules about values that some languages cannot hold, and about values without limits.
 
 use super::finding::Finding;
 use super::rule::{Category, Level, Rule};
@@ -107,7 +107,7 @@ pub(super) const RULES: &[Rule] = &[
     },
 ];
 
-/// The largest integer up to which every integer has a double of its own.
+/// The largest safe integer, 2^53 − 1. Larger integers can share a double.
 const SAFE: f64 = 9_007_199_254_740_991.0;
 
 fn integer_beyond_double(search: &mut Search<'_>) {

@@ -1,4 +1,4 @@
-//! `availability:` and `available:`: for whom a thing is, on which machines and in which releases.
+//! `availability:` and `available:`: the audiences, machines and releases of a thing.
 
 use super::{Location, Text};
 use crate::names;
@@ -18,25 +18,25 @@ pub struct Availability {
 }
 
 impl Availability {
-    /// Whether nothing is declared.
+    /// Returns `true` if the spec declares no audiences, machines and releases.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.audiences.is_empty() && self.hardware.is_empty() && self.releases.is_empty()
     }
 
-    /// The audience of this name, if there is one.
+    /// Returns the audience with this name, if there is one.
     #[must_use]
     pub fn audience(&self, name: &str) -> Option<&Declared> {
         find(&self.audiences, name)
     }
 
-    /// The line of machines of this name, if there is one.
+    /// Returns the line of machines with this name, if there is one.
     #[must_use]
     pub fn machine(&self, name: &str) -> Option<&Declared> {
         find(&self.hardware, name)
     }
 
-    /// The series of releases of this name, if there is one.
+    /// Returns the series of releases with this name, if there is one.
     #[must_use]
     pub fn series(&self, name: &str) -> Option<&Declared> {
         find(&self.releases, name)
@@ -72,13 +72,13 @@ pub struct Available {
 }
 
 impl Available {
-    /// Whether this audience has it.
+    /// Returns `true` if this audience has it.
     #[must_use]
     pub fn is_for(&self, audience: &str) -> bool {
         self.audiences.is_empty() || self.audiences.iter().any(|name| name == audience)
     }
 
-    /// What it says of each series: the first and the last release, where either is said.
+    /// Returns the first and the last release of each series that has a limit.
     pub fn releases(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&str>)> {
         let until_alone = self.until.keys().filter(|it| !self.from.contains_key(*it));
         self.from.keys().chain(until_alone).map(|series| {

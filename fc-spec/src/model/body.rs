@@ -35,7 +35,7 @@ pub enum Type {
 }
 
 impl Type {
-    /// The named type inside, through any lists around it, if there is one.
+    /// Returns the named type inside any nested lists, if there is one.
     #[must_use]
     pub fn innermost(&self) -> Option<&TypeRef> {
         match self {
@@ -45,7 +45,7 @@ impl Type {
         }
     }
 
-    /// The type of a single value: that of an item, inside any lists around it, or this one.
+    /// Returns the type of an item inside any nested lists. For other types, returns the type itself.
     #[must_use]
     pub fn item(&self) -> &Self {
         match self {
@@ -54,7 +54,7 @@ impl Type {
         }
     }
 
-    /// As [`innermost`](Self::innermost), to link it.
+    /// Returns the same as [`innermost`](Self::innermost), for linking.
     pub(crate) fn innermost_mut(&mut self) -> Option<&mut TypeRef> {
         match self {
             Self::Named(named) => Some(named),
@@ -129,7 +129,7 @@ pub struct StructType {
 }
 
 impl StructType {
-    /// One without fields yet.
+    /// Returns a struct without fields.
     pub(crate) fn new(state: BodyState, coordinates: Option<String>) -> Self {
         Self {
             fields: Vec::new(),
@@ -140,7 +140,7 @@ impl StructType {
 }
 
 impl StructType {
-    /// The field of this wire key.
+    /// Returns the field with this wire key.
     #[must_use]
     pub fn field(&self, wire: &str) -> Option<&Field> {
         self.fields.iter().find(|field| field.wire == wire)
@@ -178,7 +178,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// What few fields have; nothing of it where this one does not.
+    /// Returns the details of the field, or empty details if it has none.
     #[must_use]
     pub fn details(&self) -> &FieldDetails {
         self.details.as_deref().unwrap_or(&NO_DETAILS)
@@ -229,7 +229,7 @@ pub struct FieldDetails {
 }
 
 impl FieldDetails {
-    /// What is demanded of values, in the order in which it is asked.
+    /// Returns the constraints on values, in the order of their checks.
     pub fn constraints(&self) -> impl Iterator<Item = Constraint<'_>> {
         let min = self.min.as_ref().map(Constraint::Min);
         let max = self.max.as_ref().map(Constraint::Max);
@@ -240,14 +240,14 @@ impl FieldDetails {
         [min, max, length, pattern, only].into_iter().flatten()
     }
 
-    /// Nothing of it.
+    /// Returns empty details.
     #[must_use]
     pub fn none() -> &'static Self {
         &NO_DETAILS
     }
 }
 
-/// What a field demands of its values beyond their type. An absent value breaks none of it.
+/// A constraint on the values of a field, in addition to its type. An absent value meets every constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint<'f> {
     /// The smallest value of a number.
@@ -258,11 +258,11 @@ pub enum Constraint<'f> {
     Length(u64, u64),
     /// A regular expression that a string must match as a whole.
     Pattern(&'f Pattern),
-    /// The values of an enum that are taken, in wire form. Any other is refused, also one that the enum does not know.
+    /// The accepted values of an enum, in wire form. Every other value is refused, including values that the enum does not declare.
     Only(&'f [Scalar]),
 }
 
-/// All keys, also where the field has nothing of them.
+/// Serializes all keys of the details, also for a field without details.
 #[expect(clippy::ref_option, reason = "serde hands it over so")]
 fn details<S: Serializer>(
     details: &Option<Box<FieldDetails>>,
@@ -317,7 +317,7 @@ pub struct EnumType {
     pub values: Vec<EnumValue>,
 }
 
-/// What an enum value is on the wire.
+/// The wire type of enum values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnumRepr {
     /// An integer.

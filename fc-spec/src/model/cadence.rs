@@ -1,4 +1,4 @@
-//! When a robot sends a report.
+//! The cadence of reports.
 
 use super::Number;
 use schemars::JsonSchema;
@@ -29,7 +29,7 @@ pub struct Step {
 }
 
 impl Cadence {
-    /// The path of the field on which it depends, if it depends on one.
+    /// Returns the path of the field that triggers the report, if there is one.
     #[must_use]
     pub fn field(&self) -> Option<&str> {
         match self {

@@ -1,4 +1,4 @@
-//! Under which values of the fields beside it a field is there.
+//! Conditions of fields on the values of other fields in the same object.
 
 use super::{Scalar, Value};
 use schemars::JsonSchema;
@@ -26,7 +26,7 @@ pub struct Asked {
 }
 
 impl Condition {
-    /// What it asks, the same whether that has to hold or must not.
+    /// Returns the fields and values in the condition, for both variants.
     #[must_use]
     pub fn asked(&self) -> &[Asked] {
         match self {
@@ -34,7 +34,7 @@ impl Condition {
         }
     }
 
-    /// Whether it holds in an object, which is in wire form.
+    /// Returns `true` if an object in wire form meets the condition.
     #[must_use]
     pub fn holds(&self, object: &Value) -> bool {
         let all = |asked: &[Asked]| asked.iter().all(|asked| asked.holds(object));

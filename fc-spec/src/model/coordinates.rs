@@ -1,4 +1,4 @@
-//! `coordinates:` and `stores:`.
+//! Coordinate systems and stores, from `coordinates:` and `stores:`.
 
 use super::{Field, Location, Model, Text, TypeShape};
 use crate::names;
@@ -40,19 +40,19 @@ pub struct Store {
 }
 
 impl Model {
-    /// The coordinate system of this name, if there is one.
+    /// Returns the coordinate system with this name, if there is one.
     #[must_use]
     pub fn coordinate_system(&self, name: &str) -> Option<&CoordinateSystem> {
         self.coordinates.iter().find(|system| system.name == name)
     }
 
-    /// The store of this name, if there is one.
+    /// Returns the store with this name, if there is one.
     #[must_use]
     pub fn store(&self, name: &str) -> Option<&Store> {
         self.stores.iter().find(|store| store.name == name)
     }
 
-    /// Name of the coordinate system in which the objects of a field are given, as the field or their struct says.
+    /// Returns the name of the coordinate system of the objects in a field. The field overrides the struct.
     #[must_use]
     pub fn coordinates_of<'m>(&'m self, field: &'m Field) -> Option<&'m str> {
         let own = field.details().coordinates.as_deref();

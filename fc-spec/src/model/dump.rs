@@ -1,28 +1,28 @@
-//! The model as one document for other programs, and back: `fcproto inspect` and `fcproto generate --from`.
+//! Converts a model to one JSON document and back, for `fcproto inspect` and `fcproto generate --from`.
 //!
-//! Every part is serialized as it is; only what lies below the messages is gathered under `protocol`.
+//! The dump has the same parts as the model. Only the layers below the messages are grouped under `protocol`.
 
 use super::{Condition, Dump, Model, Text, TypeShape, Unlinked};
 use crate::{names, text};
 use serde::Deserialize;
 
-/// Why a text is no dump that can be used.
+/// The reason why a text is not a usable dump.
 #[derive(Debug)]
 pub enum DumpError {
-    /// It is not JSON, or a key is missing or holds something else.
+    /// The text is not JSON, lacks a key, or has a value of another type.
     Shape(serde_json::Error),
-    /// It was written by a version whose keys have other meanings.
+    /// The dump has another format version, in which keys have other meanings.
     Format(u32),
-    /// A name that stands for nothing.
+    /// A name that refers to an undeclared thing.
     Name(Unlinked),
-    /// The spelling of a code is that of another code.
+    /// The spelling of a code does not match its number.
     Spelling(String),
-    /// The example or default of a field, `Type.key`, is no value of its type.
+    /// The example or default of a field, `Type.key`, does not fit its type.
     Value(String),
 }
 
 impl DumpError {
-    /// The sentence for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -69,23 +69,23 @@ impl std::error::Error for DumpError {
 }
 
 impl Dump {
-    /// Returns the JSON Schema of a dump, indented, with a newline at its end. It lacks keys that are computed from others.
+    /// Returns the JSON Schema of a dump, indented, with a newline at its end. It omits computed keys.
     #[must_use]
     pub fn schema() -> String {
-        // Only keys that are no strings can fail, and a schema has none.
+        // Serialization fails only for keys that are not strings, and a schema has none.
         let schema = serde_json::to_string_pretty(&schemars::schema_for!(Self));
         schema.unwrap_or_default() + "\n"
     }
 
-    /// Version of the format that is written and read.
+    /// The format version that this crate writes and reads.
     pub const FORMAT: u32 = 3;
 
-    /// The model of a dump.
+    /// Returns the model of a dump.
     ///
     /// # Errors
     ///
-    /// [`DumpError`] for what is not a dump, is one of another format, or names what is not in it. What else
-    /// `fcproto check` demands of a spec was checked when the dump was made.
+    /// [`DumpError`] if the text is not a dump, has another format version, or refers to an undeclared thing. Other checks of `fcproto
+    /// check` ran when the dump was made.
     pub fn read(json: &str) -> Result<Model, DumpError> {
         #[derive(Deserialize)]
         struct Head {
@@ -111,7 +111,7 @@ impl Dump {
 }
 
 impl Model {
-    /// Every code is spelled as its number.
+    /// Checks that the spelling of every code matches its number.
     fn check_codes(&self) -> Result<(), DumpError> {
         let operations = self.operations.iter().map(|it| &it.code);
         let operations = operations.map(|code| (code.value, &code.spelling));
@@ -130,7 +130,7 @@ impl Model {
         }
     }
 
-    /// Every condition asks fields that there are beside its own.
+    /// Checks that the fields in every condition exist in the same struct.
     fn check_conditions(&self) -> Result<(), Unlinked> {
         for ty in &self.types {
             let TypeShape::Struct(shape) = &ty.shape else {

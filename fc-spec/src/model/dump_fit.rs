@@ -1,11 +1,11 @@
-//! Holds the bodies and examples of a dump to its types.
+//! Checks the bodies and examples of a dump against its types.
 
 use super::{
     EnumRepr, Example, Field, Model, Number, Type, TypeDef, TypeShape, Unlinked, Value, WireForm,
 };
 
 impl Model {
-    /// Checks that every type made for a body belongs to a body of an operation.
+    /// Checks that every type built from a body belongs to a body of an operation.
     pub(super) fn check_bodies(&self) -> Result<(), Unlinked> {
         for ty in &self.types {
             let Some(body) = &ty.body_of else { continue };
@@ -21,7 +21,7 @@ impl Model {
         Ok(())
     }
 
-    /// Returns the first field whose example or default is no value of its type.
+    /// Returns the first field whose example or default does not fit its type.
     pub(super) fn misfit(&self) -> Option<(&TypeDef, &Field)> {
         self.types.iter().find_map(|ty| {
             let TypeShape::Struct(shape) = &ty.shape else {
@@ -41,7 +41,7 @@ impl Model {
         is_example && field.details().default.as_ref().is_none_or(is_default)
     }
 
-    /// Returns `true` if a field may have this value in wire form, constraints aside.
+    /// Returns `true` if a field can have this value in wire form. The check ignores constraints.
     fn fits(&self, field: &Field, value: &Value) -> bool {
         match (field.wire_form, &field.ty, value) {
             (WireForm::String, Type::Bool, Value::String(text)) => {

@@ -1,4 +1,4 @@
-//! `entities:`.
+//! Entities, from `entities:`.
 
 use super::{Location, Model, Text, Type, TypeShape};
 use crate::names;
@@ -20,7 +20,7 @@ pub struct Entity {
 }
 
 impl Model {
-    /// The type of an entity's ids: that of each field that refers to it. A checked model has one.
+    /// Returns the type of the ids of an entity, which is the type of every field that refers to it. A checked model has exactly one.
     #[must_use]
     pub fn id_type(&self, entity: &Entity) -> Option<&Type> {
         let structs = self.types.iter().filter_map(|ty| match &ty.shape {

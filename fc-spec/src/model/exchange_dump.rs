@@ -1,4 +1,4 @@
-//! What travels, as a dump has it: every key for every kind of operation.
+//! The messages of an operation in a dump, with the same keys for every kind of operation.
 
 use super::operation::{Ack, Body, Exchange, Messages};
 use super::stream::{Content, Stream};

@@ -1,4 +1,4 @@
-//! `glossary:`.
+//! The terms of a protocol, from `glossary:`.
 
 use super::{Aliases, Location, Text};
 use crate::names;

@@ -1,7 +1,7 @@
-//! The resolved model: what the spec means, with every name looked up and every default filled in.
+//! The resolved model of a spec, with every name resolved and every default filled in.
 //!
-//! **Architecture invariant.** Emitters read this model and nothing else. A model that passed every
-//! check can be emitted by every emitter, so there is no fault left to find behind this point.
+//! **Architecture invariant.** Emitters read this model and nothing else. Every emitter can emit a model that passed all checks, so
+//! emitters need no checks for spec errors.
 
 mod available;
 mod body;
@@ -75,12 +75,12 @@ pub use waiver::{Waiver, fingerprint, is_past};
 use std::collections::BTreeSet;
 
 impl Model {
-    /// Gives every reference its id.
+    /// Sets the id of every reference.
     ///
     /// # Errors
     ///
-    /// [`Unlinked`] if one names a type that is not in the model, or no struct where there has to be one. A
-    /// checked spec has no such name.
+    /// [`Unlinked`] if a reference names a missing type, or a type that is not a struct where a struct is required. A checked spec has no
+    /// such reference.
     pub(crate) fn link(mut self) -> Result<Self, Unlinked> {
         let missing = link(
             &mut self.types,
@@ -91,7 +91,7 @@ impl Model {
         missing.map_or(Ok(self), Err)
     }
 
-    /// The operation of this name, if there is one.
+    /// Returns the operation with this name, if there is one.
     #[must_use]
     pub fn operation(&self, name: &str) -> Option<&Operation> {
         self.operations
@@ -99,7 +99,7 @@ impl Model {
             .find(|operation| operation.name == name)
     }
 
-    /// The commands that set a report off, in the order of the spec.
+    /// Returns the commands that set off a report, in the order of the spec.
     pub fn commands_that_set_off<'m>(
         &'m self,
         report: &'m Operation,
@@ -111,7 +111,7 @@ impl Model {
         })
     }
 
-    /// The streams that a command starts or stops, in the order of the spec.
+    /// Returns the streams that a command starts or stops, in the order of the spec.
     pub fn streams_of<'m>(&'m self, command: &'m Operation) -> impl Iterator<Item = &'m Operation> {
         let operations = self.operations.iter();
         operations.filter(|operation| {
@@ -120,31 +120,31 @@ impl Model {
         })
     }
 
-    /// The group with this id, if there is one.
+    /// Returns the group with this id, if there is one.
     #[must_use]
     pub fn group(&self, id: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.id == id)
     }
 
-    /// The entity of this name, if there is one.
+    /// Returns the entity with this name, if there is one.
     #[must_use]
     pub fn entity(&self, name: &str) -> Option<&Entity> {
         self.entities.iter().find(|entity| entity.name == name)
     }
 
-    /// What the spec answers to a gap of the source; a checked model has an answer to each.
+    /// Returns the answers of the spec to a gap in the source. A checked model has an answer to each gap.
     pub fn answers_to(&self, conflict: &Conflict) -> impl Iterator<Item = &Answer> + Clone {
         let answers = self.answers.iter();
         answers.filter(|answer| answer.ids.contains(&conflict.id))
     }
 
-    /// Codes that cannot be given out: in use or retired.
+    /// Returns the codes in use and the retired codes. New operations cannot get them.
     #[must_use]
     pub fn taken_codes(&self) -> BTreeSet<u16> {
         taken_codes(self.operations.iter(), self.retired.iter())
     }
 
-    /// Returns the code that the next operation of a group gets from the ranges of this use; of any group for `None`.
+    /// Returns the next code of a group in the ranges with this use. `None` allows the ranges of any group.
     #[must_use]
     pub fn next_code(&self, usage: RangeUse, group: Option<&str>) -> Option<u16> {
         let (operations, retired) = (self.operations.iter(), self.retired.iter());
@@ -160,10 +160,10 @@ fn taken_codes<'m>(
     used.chain(retired.map(|retired| retired.code)).collect()
 }
 
-/// The same of a spec that may have errors.
+/// Returns the next code in a spec that may have errors.
 ///
-/// The ranges of a group are those that name it. If none does, they are those without `groups`, and first of them the
-/// ones in which the group has codes already.
+/// The ranges of a group are the ranges that name it. If no range names it, they are the ranges without `groups`. Of these, ranges that
+/// already contain codes of the group come first.
 pub(crate) fn next_code<'m>(
     operations: impl Iterator<Item = &'m Operation> + Clone,
     retired: impl Iterator<Item = &'m RetiredCode>,

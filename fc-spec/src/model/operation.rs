@@ -69,9 +69,9 @@ pub struct CallDefaults {
 pub struct Body {
     /// Stated, inferred or open.
     pub state: BodyState,
-    /// Its struct, which holds the message's own keys; the envelope stands beside it.
+    /// The struct with the keys of the message. The envelope is not part of it.
     pub ty: StructRef,
-    /// Why it is inferred or open, or what else there is to say.
+    /// The reason why the body is inferred or open, or another note.
     pub note: Option<Text>,
 }
 
@@ -111,7 +111,7 @@ pub enum Exchange {
 }
 
 impl Exchange {
-    /// What a command sets off, to link it.
+    /// Returns the reports that a command sets off, for linking.
     pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<SetOff>> {
         match self {
             Self::Command { sets_off, .. } => Some(sets_off),
@@ -119,7 +119,7 @@ impl Exchange {
         }
     }
 
-    /// What has to hold before a command is accepted, to link it.
+    /// Returns the preconditions of a command, for linking.
     pub(super) fn accepted_mut(&mut self) -> Option<&mut Accepted> {
         match self {
             Self::Command { accepted, .. } => accepted.as_mut(),
@@ -127,7 +127,7 @@ impl Exchange {
         }
     }
 
-    /// Its bodies, to link them.
+    /// Returns the bodies, for linking.
     pub(super) fn bodies_mut(&mut self) -> impl Iterator<Item = &mut Body> {
         let (first, second) = match self {
             Self::Command { messages, .. } | Self::Report { messages, .. } => {
@@ -141,7 +141,7 @@ impl Exchange {
         first.into_iter().chain(second)
     }
 
-    /// One of its bodies.
+    /// Returns the body in this direction.
     fn body_mut(&mut self, direction: Direction) -> Option<&mut Body> {
         let mut bodies = self.bodies_mut();
         match direction {
@@ -154,14 +154,14 @@ impl Exchange {
 /// Both sides of a command or report.
 #[derive(Clone, Debug)]
 pub struct Messages {
-    /// What the command asks, or what the report says.
+    /// The request of a command, or the data of a report.
     pub request: Body,
-    /// The answer or acknowledgement.
+    /// The response or acknowledgement.
     pub response: Body,
 }
 
 impl Messages {
-    /// What travels this way.
+    /// Returns the body in this direction.
     #[must_use]
     pub fn body(&self, direction: Direction) -> &Body {
         match direction {
@@ -170,7 +170,7 @@ impl Messages {
         }
     }
 
-    /// Both, the request first.
+    /// Returns both bodies, the request first.
     #[must_use]
     pub fn each(&self) -> [&Body; 2] {
         [&self.request, &self.response]
@@ -241,19 +241,19 @@ pub struct Operation {
 }
 
 impl Operation {
-    /// Whether the source document has it; what is new has nothing to be sure of.
+    /// Returns `true` if the source document contains the operation.
     #[must_use]
     pub fn is_from_source(&self) -> bool {
         !self.sections.is_empty()
     }
 
-    /// What it declares of a result code, if it does.
+    /// Returns the declared error with this result code, if there is one.
     #[must_use]
     pub fn error(&self, code: i64) -> Option<&DeclaredError> {
         self.errors.iter().find(|error| error.code == code)
     }
 
-    /// Command, report or stream.
+    /// Returns the kind of operation.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self.exchange {
@@ -263,7 +263,7 @@ impl Operation {
         }
     }
 
-    /// Its request and response; `None` for a stream, which is not answered.
+    /// Returns the request and the response. `None` for a stream, which has no response.
     #[must_use]
     pub fn messages(&self) -> Option<&Messages> {
         match &self.exchange {
@@ -274,7 +274,7 @@ impl Operation {
         }
     }
 
-    /// What a command does to the robot.
+    /// Returns the effect of a command on the robot.
     #[must_use]
     pub fn effect(&self) -> Option<Effect> {
         match self.exchange {
@@ -283,7 +283,7 @@ impl Operation {
         }
     }
 
-    /// The reports that a command sets off.
+    /// Returns the reports that a command sets off.
     #[must_use]
     pub fn sets_off(&self) -> &[SetOff] {
         match &self.exchange {
@@ -292,7 +292,7 @@ impl Operation {
         }
     }
 
-    /// What has to hold before a command is accepted.
+    /// Returns the preconditions of a command.
     #[must_use]
     pub fn accepted(&self) -> Option<&Accepted> {
         match &self.exchange {
@@ -301,7 +301,7 @@ impl Operation {
         }
     }
 
-    /// When a report is sent.
+    /// Returns the cadence of a report.
     #[must_use]
     pub fn cadence(&self) -> Option<&Cadence> {
         match &self.exchange {
@@ -310,7 +310,7 @@ impl Operation {
         }
     }
 
-    /// How sure it is what a command does to the robot.
+    /// Returns the state of the effect of a command.
     #[must_use]
     pub fn effect_state(&self) -> Option<BodyState> {
         match self.exchange {
@@ -319,14 +319,14 @@ impl Operation {
         }
     }
 
-    /// How sure the bodies of this direction are; the raw bytes of a stream are as stated.
+    /// Returns the state of the body in this direction. It is `Stated` for the raw bytes of a stream.
     #[must_use]
     pub fn body_state(&self, direction: Direction) -> BodyState {
         self.body(direction)
             .map_or(BodyState::Stated, |body| body.state)
     }
 
-    /// Which ways its messages travel: a stream is not answered.
+    /// Returns the directions of the messages. A stream has no response.
     #[must_use]
     pub fn directions(&self) -> &'static [Direction] {
         match self.exchange {
@@ -335,7 +335,7 @@ impl Operation {
         }
     }
 
-    /// How sure a fact is; `None` for what an operation of this kind does not have.
+    /// Returns the state of a fact. `None` if an operation of this kind does not have the fact.
     #[must_use]
     pub fn fact_state(&self, fact: Fact) -> Option<BodyState> {
         Some(match fact {
@@ -348,7 +348,7 @@ impl Operation {
         })
     }
 
-    /// Where it is kept how sure a fact is.
+    /// Returns the state of a fact, for changes.
     pub(crate) fn fact_state_mut(&mut self, fact: Fact) -> Option<&mut BodyState> {
         Some(match (fact, &mut self.exchange) {
             (Fact::Title, _) => &mut self.title_state,
@@ -361,7 +361,7 @@ impl Operation {
         })
     }
 
-    /// The least certain of all that is said of it.
+    /// Returns the least certain state of the kind, the code, the effect and the bodies.
     #[must_use]
     pub fn state(&self) -> BodyState {
         self.kind_state

@@ -24,18 +24,18 @@ pub struct Pattern {
     portable: String,
 }
 
-/// Why a text is not a pattern.
+/// The reason why a string is not a valid pattern.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PatternError {
-    /// It is not a regular expression. Holds the parser's explanation.
+    /// The source is not a regular expression. Holds the parser's explanation.
     Syntax(String),
-    /// It uses a construct that not all languages have. Holds its name.
+    /// The source uses a construct that not all languages have. Holds its name.
     NotPortable(Text),
-    /// Its repetitions expand to too many parts.
+    /// The repetitions expand to too many parts.
     TooLarge,
 }
 
-/// Most parts of a pattern after its repetitions are expanded.
+/// The maximum number of parts of a pattern with expanded repetitions.
 const MOST_PARTS: usize = 10_000;
 
 impl Pattern {
@@ -56,13 +56,13 @@ impl Pattern {
         Ok(Self { source, portable })
     }
 
-    /// The pattern as the spec writes it.
+    /// Returns the pattern as the spec writes it.
     #[must_use]
     pub fn source(&self) -> &str {
         &self.source
     }
 
-    /// The same pattern in the constructs that mean the same in every language.
+    /// Returns the pattern in constructs that all languages interpret alike.
     #[must_use]
     pub fn portable(&self) -> &str {
         &self.portable
@@ -97,7 +97,7 @@ impl TryFrom<String> for Pattern {
 }
 
 impl PatternError {
-    /// The explanation for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -123,7 +123,7 @@ impl fmt::Display for PatternError {
 
 impl std::error::Error for PatternError {}
 
-/// Which edges of the whole text a part touches.
+/// The edges of the whole text that a part touches.
 #[derive(Clone, Copy)]
 struct Edges {
     start: bool,
@@ -159,7 +159,7 @@ fn write(ast: &Ast, edges: Edges, out: &mut String) -> Result<usize, PatternErro
             Ok(1)
         }
         Ast::Assertion(assertion) => match assertion.kind {
-            // The whole text is matched anyway.
+            // A pattern always matches the whole text, so the assertion is redundant.
             AssertionKind::StartLine | AssertionKind::StartText if edges.start => Ok(0),
             AssertionKind::EndLine | AssertionKind::EndText if edges.end => Ok(0),
             _ => refused(text!(
@@ -191,7 +191,7 @@ fn write(ast: &Ast, edges: Edges, out: &mut String) -> Result<usize, PatternErro
                     | Ast::ClassBracketed(_)
                     | Ast::Group(_)
             ) {
-                // One item needs no group of its own.
+                // A single item needs no extra group.
                 out.replace_range(inside - 3..inside, "");
             } else {
                 out.push(')');
@@ -237,8 +237,9 @@ fn write(ast: &Ast, edges: Edges, out: &mut String) -> Result<usize, PatternErro
     }
 }
 
-/// Writes how often a part is repeated, always greedy: for a whole text, lazy repetition means the same. Returns by how
-/// much the part grows.
+/// Writes the repetition of a part. Returns the factor by which the part grows.
+///
+/// The repetition is always greedy: lazy repetition has the same result for a whole text.
 fn write_repetition(kind: &RepetitionKind, out: &mut String) -> usize {
     let (text, times) = match kind {
         RepetitionKind::ZeroOrOne => ("?".to_owned(), 1),
@@ -278,7 +279,7 @@ fn write_character(character: char, out: &mut String) {
     }
 }
 
-/// A set of characters, as ranges in order that do not touch.
+/// A set of characters, as sorted ranges that do not touch.
 struct Class(Vec<(u32, u32)>);
 
 const LAST: u32 = char::MAX as u32;
@@ -349,7 +350,7 @@ fn write_in_class(character: u32, out: &mut String) {
     };
     match character {
         '[' | ']' | '\\' | '^' | '-' => out.extend(['\\', character]),
-        // Doubled, they are operators of sets in some languages.
+        // Doubled, these characters are set operators in some languages.
         '&' | '|' | '~' => write_hex(character, out),
         _ => write_character(character, out),
     }

@@ -1,4 +1,4 @@
-//! What has to hold before a command is accepted.
+//! The preconditions of a command.
 
 use super::{Scalar, Text, TypeRef};
 use schemars::JsonSchema;
@@ -37,7 +37,7 @@ pub struct StateSet {
 }
 
 impl Accepted {
-    /// The values that enums must have, if it is these that matter.
+    /// Returns the required enum values. Empty if the command has no condition on states.
     #[must_use]
     pub fn state_sets(&self) -> &[StateSet] {
         match &self.states {

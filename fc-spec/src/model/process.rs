@@ -1,5 +1,4 @@
-//! What a command sets off: the reports, by which keys they belong to it, and which of their keys say how far the
-//! process has come.
+//! The reports that a command sets off: the keys that tie them to the command, and the keys with the state of the process.
 
 use super::body::{EnumType, Field, StructType, Type, TypeDef, TypeShape};
 use super::{Exchange, Model, Operation, StructRef, TypeRef, Unlinked};
@@ -7,7 +6,7 @@ use crate::vocabulary::Direction;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Wire keys that lead through objects to a field, such as `["data", "status"]`.
+/// The wire keys from a body through objects to a field, such as `["data", "status"]`.
 pub type KeyPath = Vec<String>;
 
 /// A report that a command sets off.
@@ -31,23 +30,23 @@ pub struct Tie {
 }
 
 impl EnumType {
-    /// Whether its values are the states of a process: what follows is said, or where it ends.
+    /// Returns `true` if the values are states of a process: they have an order, or a value is final.
     #[must_use]
     pub fn is_process(&self) -> bool {
         self.order.is_some() || self.values.iter().any(|value| value.is_final)
     }
 
-    /// Whether one of its values says that something failed.
+    /// Returns `true` if a value is an error.
     #[must_use]
     pub fn has_failures(&self) -> bool {
         self.values.iter().any(|value| value.is_error)
     }
 }
 
-/// How a named type is found.
+/// The lookup of a named type.
 pub(crate) type Find<'f, 't> = &'f dyn Fn(&TypeRef) -> Option<&'t TypeDef>;
 
-/// The fields on the way that the keys lead from a struct; `None` where there is no such way through objects.
+/// Returns the fields on a path from a struct. `None` if the path does not exist or leads through something other than objects.
 pub(crate) fn way<'t>(
     find: Find<'_, 't>,
     from: &'t StructType,
@@ -73,13 +72,13 @@ fn structure(ty: &TypeDef) -> Option<&StructType> {
     }
 }
 
-/// Fields that are looked at in one body; a larger one has a fault anyway.
+/// The maximum number of fields to inspect in one body. The check reports larger bodies anyway.
 const MOST_FIELDS: usize = 10_000;
 
-/// Every field that holds one value of an enum, outside lists, and the way to it.
+/// Returns every field with a single enum value outside lists, and its path.
 pub(crate) fn enums<'t>(find: Find<'_, 't>, from: &'t StructType) -> Vec<(KeyPath, &'t EnumType)> {
     let mut found = Vec::new();
-    // Types on the way to here: one that contains itself has no end.
+    // Each entry holds the types on its path, so that a recursive type ends the search.
     let mut open: Vec<(KeyPath, Vec<&str>, &StructType)> = vec![(Vec::new(), Vec::new(), from)];
     let mut left = MOST_FIELDS;
     while let Some((path, within, shape)) = open.pop() {
@@ -111,14 +110,14 @@ pub(crate) fn enums<'t>(find: Find<'_, 't>, from: &'t StructType) -> Vec<(KeyPat
 }
 
 impl Model {
-    /// The fields on the way that the keys lead from a body; empty where there is no such way.
+    /// Returns the fields on a path from a body. Empty if the path does not exist.
     #[must_use]
     pub fn way(&self, body: &StructRef, keys: &[String]) -> Vec<&Field> {
         let find = |named: &TypeRef| Some(self.types.get(named));
         way(&find, self.types.structure(body), keys).unwrap_or_default()
     }
 
-    /// The enum that keys of a body lead to, by its name.
+    /// Returns the enum at a path of a body, with its reference.
     #[must_use]
     pub fn enum_at(&self, body: &StructRef, keys: &[String]) -> Option<(&TypeRef, &EnumType)> {
         let Type::Named(named) = &self.way(body, keys).last()?.ty else {
@@ -130,7 +129,7 @@ impl Model {
         }
     }
 
-    /// Every key that an operation names is one of its messages.
+    /// Checks that every key in the process data of an operation exists in its messages.
     pub(super) fn check_ways(&self) -> Result<(), Unlinked> {
         for operation in &self.operations {
             let missing = |operation: &Operation, keys: &KeyPath| Unlinked {

@@ -1,4 +1,4 @@
-//! The wire below the messages: transport, frame, envelope, results, ranges of codes.
+//! The layers below the messages: transport, frame, envelope, results and code ranges.
 
 use super::{Aliases, Location, Scalar, StructRef, Text, Type, Value};
 use crate::names;
@@ -63,7 +63,7 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// The port with this role.
+    /// Returns the port with this role.
     #[must_use]
     pub fn get(&self, role: PortRole) -> &Port {
         match role {
@@ -72,7 +72,7 @@ impl Ports {
         }
     }
 
-    /// Every port, in the order of the roles.
+    /// Returns all ports, in the order of the roles.
     #[must_use]
     pub fn each(&self) -> [&Port; 2] {
         [&self.command, &self.data]
@@ -135,25 +135,25 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Length of the header in bytes.
+    /// Returns the length of the header in bytes.
     #[must_use]
     pub fn header_len(&self) -> usize {
         self.header.iter().map(|field| field.ty.size()).sum()
     }
 
-    /// The header field with this role.
+    /// Returns the header field with this role.
     #[must_use]
     pub fn field(&self, role: HeaderRole) -> Option<&HeaderField> {
         self.header.iter().find(|field| field.role == Some(role))
     }
 
-    /// Whether the decoder is lenient in this way in one of the header's fields.
+    /// Returns `true` if a header field has this quirk.
     #[must_use]
     pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
         self.header.iter().any(|field| field.has_quirk(quirk))
     }
 
-    /// The encoding with this role. A checked model has none at all if its header does not say how data is packed.
+    /// Returns the encoding with this role. A checked model without an encoding field in the header has no encodings.
     #[must_use]
     pub fn encoding(&self, role: EncodingRole) -> Option<&Encoding> {
         self.encodings.iter().find(|encoding| encoding.role == role)
@@ -190,20 +190,20 @@ pub struct HeaderField {
 }
 
 impl HeaderField {
-    /// Where its bytes lie in a frame.
+    /// Returns the byte range of the field in a frame.
     #[must_use]
     pub fn place(&self) -> Range<usize> {
         self.offset..self.offset.saturating_add(self.ty.size())
     }
 
-    /// How a digest is computed, MD5 unless said; `None` of a field with another role.
+    /// Returns the digest algorithm, by default MD5. `None` for a field with another role.
     #[must_use]
     pub fn digest(&self) -> Option<DigestAlgorithm> {
         (self.role == Some(HeaderRole::Digest))
             .then(|| self.algorithm.unwrap_or(DigestAlgorithm::Md5))
     }
 
-    /// Whether its value is sent as the spec says it; what has another role says something of the frame.
+    /// Returns `true` if the field is sent with the value in the spec. The values of other fields depend on the frame.
     #[must_use]
     pub fn is_sent_as_value(&self) -> bool {
         match self.role {
@@ -221,14 +221,14 @@ impl HeaderField {
         }
     }
 
-    /// Whether the decoder is lenient in this way here.
+    /// Returns `true` if the field has this quirk.
     #[must_use]
     pub fn has_quirk(&self, quirk: HeaderQuirk) -> bool {
         self.quirks.contains(&quirk)
     }
 }
 
-/// Width of a header field.
+/// The width of a header field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeaderType {
     /// One byte.
@@ -239,12 +239,12 @@ pub enum HeaderType {
     U32,
     /// Eight bytes.
     U64,
-    /// A run of bytes (`bytes(16)`), to which the byte order does not apply.
+    /// Bytes such as `bytes(16)`. The byte order does not apply to them.
     Bytes(usize),
 }
 
 impl HeaderType {
-    /// Width in bytes.
+    /// Returns the width in bytes.
     #[must_use]
     pub fn size(self) -> usize {
         match self {
@@ -273,7 +273,7 @@ pub struct FrameKinds {
 }
 
 impl FrameKinds {
-    /// The kind of an operation's frames.
+    /// Returns the frame kind of an operation.
     #[must_use]
     pub fn of(&self, kind: Kind) -> &FrameKind {
         match kind {
@@ -283,7 +283,7 @@ impl FrameKinds {
         }
     }
 
-    /// The kind of this value.
+    /// Returns the frame kind with this value.
     #[must_use]
     pub fn with_value(&self, value: u8) -> Option<&FrameKind> {
         let used = [&self.stream, &self.command, &self.report];
@@ -291,7 +291,7 @@ impl FrameKinds {
         kinds.find(|kind| kind.value == value)
     }
 
-    /// Every kind, sorted by value.
+    /// Returns all frame kinds, sorted by value.
     #[must_use]
     pub fn each(&self) -> Vec<&FrameKind> {
         let used = [&self.stream, &self.command, &self.report];
@@ -381,7 +381,7 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// The key of responses that says how it went; `None` if a response says by itself that all went well.
+    /// Returns the response key with the result code. `None` if the envelope has none: then every response means success.
     #[must_use]
     pub fn result_code(&self) -> Option<&EnvelopeField> {
         let mut keys = self.response.iter();
@@ -483,8 +483,9 @@ impl CodeRange {
         (self.first..=self.last).contains(&code)
     }
 
-    /// The code that the next operation gets, where new ones are given out: the one after the largest
-    /// of those `taken`, or the first gap once the end is reached.
+    /// Returns the code for the next operation in a range for new commands or reports.
+    ///
+    /// It is the code after the largest one in `taken`. At the end of the range, it is the first free code.
     #[must_use]
     pub fn next(&self, taken: &BTreeSet<u16>) -> Option<u16> {
         if !matches!(self.usage, RangeUse::Commands | RangeUse::Reports) {

@@ -1,4 +1,4 @@
-//! What only the owner of the protocol can say.
+//! Questions and decisions for the owner of the protocol.
 
 use super::{AnswerKind, Location, Subject, Text};
 use crate::names;
@@ -65,7 +65,7 @@ pub struct Question {
 }
 
 impl Question {
-    /// Whether the owner still has to answer.
+    /// Returns `true` if the owner has not answered yet.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.confirmed.is_none()

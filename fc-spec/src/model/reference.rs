@@ -5,22 +5,22 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
 
-/// Which of a model's types it is: its index in [`Types`](super::Types).
+/// The id of a type: its index in [`Types`](super::Types).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TypeId(pub(super) u32);
 
 impl TypeId {
-    /// Of a reference that is not linked yet.
+    /// The id of a reference that is not linked yet.
     const NONE: Self = Self(u32::MAX);
 
-    /// Where the type is in [`Types`](super::Types).
+    /// Returns the index of the type in [`Types`](super::Types).
     #[must_use]
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A reference to a struct, enum or one-of. In a dump it is its name.
+/// A reference to a struct, enum or one-of. In a dump it is the name of the type.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TypeRef {
     pub(super) id: TypeId,
@@ -35,7 +35,7 @@ pub struct TypeRef {
 pub struct StructRef(pub(super) TypeRef);
 
 impl TypeRef {
-    /// A reference by name, which [`Model::link`](super::Model::link) has to complete.
+    /// Returns a reference by name. [`Model::link`](super::Model::link) sets its id.
     pub(crate) fn named(name: impl Into<String>) -> Self {
         Self {
             id: TypeId::NONE,
@@ -43,13 +43,13 @@ impl TypeRef {
         }
     }
 
-    /// Name of the type.
+    /// Returns the name of the type.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Which type it is.
+    /// Returns the id of the type.
     #[must_use]
     pub fn id(&self) -> TypeId {
         self.id
@@ -57,7 +57,7 @@ impl TypeRef {
 }
 
 impl StructRef {
-    /// A reference by name, which [`Model::link`](super::Model::link) has to complete.
+    /// Returns a reference by name. [`Model::link`](super::Model::link) sets its id.
     pub(crate) fn named(name: impl Into<String>) -> Self {
         Self(TypeRef::named(name))
     }

@@ -1,4 +1,4 @@
-//! The sections of a spec, listed once: for a model, for what could be read of one, and for a dump.
+//! The sections of a spec: one list that defines the model, the partial model and the dump.
 
 use super::{
     Answer, Availability, CallDefaults, Change, CodeRange, Conflict, CoordinateSystem, Entity,
@@ -10,14 +10,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Declares [`Model`], [`Partial`] and [`Dump`] by their sections: those that every spec has once, which a dump gathers
-/// under `protocol`, and lists. In parentheses are attributes of serde for the dump. The doc comments are in its schema.
+/// Declares [`Model`], [`Partial`] and [`Dump`] with the sections of a spec.
+///
+/// `once` lists the sections that every spec has exactly once; a dump groups them under `protocol`. `lists` contains the other sections.
+/// The attributes in parentheses are serde attributes for the dump. The doc comments appear in the schema of the dump.
 macro_rules! sections {
     (
         once { $($(#[doc = $once_doc:literal])* $once:ident $(($($once_serde:tt)+))?: $Once:ty,)+ }
         lists { $($(#[doc = $doc:literal])+ $list:ident $(($($serde:tt)+))?: $List:ty,)+ }
     ) => {
-        /// A whole protocol, resolved.
+        /// A complete, resolved protocol.
         #[derive(Clone, Debug)]
         #[allow(missing_docs, reason = "the types tell")]
         pub struct Model {
@@ -25,11 +27,13 @@ macro_rules! sections {
             $($(#[doc = $doc])+ pub $list: $List,)+
         }
 
-        /// What could be read of a spec: a [`Model`] as far as it goes.
+        /// The readable parts of a spec that may have errors, as a partial [`Model`].
         ///
-        /// A section that is missing or malformed is not here, nor is a field whose type is not known. All that is here
-        /// has its texts as they are written, and its references are linked. It has passed no check, so that nothing can
-        /// be made of it: types may hold themselves, and two operations may have one code.
+        /// It omits missing and malformed sections, and fields with an unknown type. It keeps texts as written, and its references are
+        /// linked.
+        ///
+        /// It has passed no checks, so no product can be made from it. Types may contain themselves, and two operations may have the same
+        /// code.
         #[derive(Clone, Debug)]
         #[allow(missing_docs, reason = "they are those of `Model`")]
         pub struct Partial {
@@ -38,7 +42,7 @@ macro_rules! sections {
         }
 
         impl Partial {
-            /// Returns the model, or all of this again if a section is missing, which has been reported.
+            /// Returns the model. If a section is missing, returns the partial model again; the loader has reported the section.
             pub(crate) fn whole(self) -> Result<Model, Box<Self>> {
                 match self {
                     Self { $($once: Some($once),)+ $($list,)+ } => Ok(Model { $($once,)+ $($list,)+ }),
@@ -76,7 +80,7 @@ macro_rules! sections {
         }
 
         impl Dump {
-            /// Returns the same sections as a model, whose references are by name only.
+            /// Returns the sections as a model. Its references have names but no ids.
             pub(super) fn model(self) -> Model {
                 let Self { format: _, protocol: Below { $($once,)+ }, $($list,)+ } = self;
                 Model { $($once,)+ $($list,)+ }
@@ -138,7 +142,7 @@ sections! {
 }
 
 impl Partial {
-    /// Returns the code that the next operation of a group gets from the ranges of this use; of any group for `None`.
+    /// Returns the next code of a group in the ranges with this use. `None` allows the ranges of any group.
     #[must_use]
     pub fn next_code(&self, usage: RangeUse, group: Option<&str>) -> Option<u16> {
         let (operations, retired) = (self.operations.iter(), self.retired.iter());

@@ -1,30 +1,30 @@
-//! What a stream is beside what all operations have in common.
+//! The parts of an operation that only streams have, and the bodies of all operations.
 
 use super::operation::{Body, Exchange, Operation};
 use crate::vocabulary::Direction;
 
-/// Frames that one side sends and nobody answers.
+/// Frames without a response.
 #[derive(Clone, Debug)]
 pub struct Stream {
-    /// What a frame carries.
+    /// The content of a frame.
     pub content: Content,
-    /// Name of the command after which it is sent, if one is stated.
+    /// The name of the command that starts the stream, if stated.
     pub started_by: Option<String>,
-    /// Name of the command after which it is no longer sent, if one is stated.
+    /// The name of the command that stops the stream, if stated.
     pub stopped_by: Option<String>,
 }
 
-/// What a frame of a stream carries.
+/// The content of a stream frame.
 #[derive(Clone, Debug)]
 pub enum Content {
-    /// Bytes that the protocol says no more of than their media type, and that only where it is stated.
+    /// Raw bytes, with their media type if stated.
     Bytes(Option<String>),
-    /// A JSON object with these keys, and no envelope beside them.
+    /// A JSON object with these keys, without an envelope.
     Json(Body),
 }
 
 impl Stream {
-    /// The commands that start and stop it.
+    /// Returns the commands that start and stop the stream.
     pub fn commands(&self) -> impl Iterator<Item = &str> {
         [&self.started_by, &self.stopped_by]
             .into_iter()
@@ -33,7 +33,7 @@ impl Stream {
 }
 
 impl Content {
-    /// Media type of its bytes; `None` where none is stated.
+    /// Returns the media type. `None` for bytes without a stated media type.
     #[must_use]
     pub fn media_type(&self) -> Option<&str> {
         match self {
@@ -42,7 +42,7 @@ impl Content {
         }
     }
 
-    /// What is JSON; `None` for other bytes.
+    /// Returns the JSON body. `None` for bytes.
     #[must_use]
     pub fn json(&self) -> Option<&Body> {
         match self {
@@ -53,7 +53,7 @@ impl Content {
 }
 
 impl Operation {
-    /// What a stream is beside what all operations have; `None` for commands and reports.
+    /// Returns the data of a stream. `None` for commands and reports.
     #[must_use]
     pub fn stream(&self) -> Option<&Stream> {
         match &self.exchange {
@@ -62,7 +62,7 @@ impl Operation {
         }
     }
 
-    /// What travels this way as JSON; `None` for the bytes of a stream, and for its answer.
+    /// Returns the JSON body in this direction. `None` for the bytes of a stream and for its missing response.
     #[must_use]
     pub fn body(&self, direction: Direction) -> Option<&Body> {
         match (&self.exchange, direction) {
@@ -74,7 +74,7 @@ impl Operation {
         }
     }
 
-    /// All that travels as JSON, the request first.
+    /// Returns all JSON bodies, the request first.
     pub fn bodies(&self) -> impl Iterator<Item = &Body> {
         let directions = self.directions().iter();
         directions.filter_map(|direction| self.body(*direction))

@@ -1,4 +1,4 @@
-//! Sentences in two languages, and the facts that hang on any part of the spec.
+//! Texts in two languages, and the notes that any part of the spec can have.
 
 use super::{Confirmation, Governed, HeaderType, Type, Value};
 use crate::names;
@@ -17,10 +17,10 @@ pub enum Lang {
 }
 
 impl Lang {
-    /// Both.
+    /// Both languages.
     pub const ALL: [Self; 2] = [Self::Zh, Self::En];
 
-    /// One of two things, by language.
+    /// Returns the first value for Chinese and the second for English.
     pub fn pick<T>(self, zh: T, en: T) -> T {
         match self {
             Self::Zh => zh,
@@ -28,28 +28,28 @@ impl Lang {
         }
     }
 
-    /// The sentence in this language.
+    /// Returns the text in this language.
     #[must_use]
     pub fn text(self, text: &Text) -> &str {
         self.pick(&text.zh, &text.en)
     }
 
-    /// The other words for a thing in this language.
+    /// Returns the aliases in this language.
     #[must_use]
     pub fn aliases(self, aliases: &Aliases) -> Vec<String> {
         self.pick(&aliases.zh, &aliases.en).clone()
     }
 }
 
-/// The languages in which each text of a spec is required. A missing text is read as the text in the other language.
+/// The languages that each text of a spec requires. A missing text is a copy of the text in the other language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Languages {
-    /// Both.
+    /// Both languages.
     #[default]
     All,
-    /// This one.
+    /// Only this language.
     Only(Lang),
-    /// Either: for a spec whose settings are unknown, such as an old version in git.
+    /// Either language is enough. For a spec with unknown settings, such as an old version in git.
     Any,
 }
 
@@ -64,7 +64,7 @@ impl Languages {
         }
     }
 
-    /// A text of the generator for a spec in these languages.
+    /// Limits a text of the generator to the languages of a spec.
     #[must_use]
     pub fn limit(self, text: Text) -> Text {
         match self {
@@ -97,8 +97,9 @@ pub struct Text {
     pub en: String,
 }
 
-/// A [`Text`] of two formats, the Chinese one first: `text!("没有 `{name}`", "there is no `{name}`")`. A part
-/// that is a text itself goes into each in its language: `text!("应为{kind}", "expected {kind}", kind = describe(kind))`.
+/// Builds a [`Text`] from two formats, the Chinese one first: `text!("没有 `{name}`", "there is no `{name}`")`.
+///
+/// An argument that is a [`Text`] is inserted in the matching language: `text!("应为{kind}", "expected {kind}", kind = describe(kind))`.
 #[macro_export]
 macro_rules! text {
     ($zh:literal, $en:literal $(,)?) => {
@@ -126,7 +127,7 @@ macro_rules! text {
 }
 
 impl Text {
-    /// Several as one, with what stands between two of them in each language.
+    /// Joins several texts with a separator for each language.
     #[must_use]
     pub fn joined(parts: impl IntoIterator<Item = Self>, zh: &str, en: &str) -> Self {
         let (in_zh, in_en): (Vec<_>, Vec<_>) =
@@ -137,14 +138,14 @@ impl Text {
         }
     }
 
-    /// Words that are the same in both languages, as a sentence lists them.
+    /// Returns a list of words that are the same in both languages.
     #[must_use]
     pub fn listed(words: impl IntoIterator<Item = impl std::fmt::Display>) -> Self {
         let words = words.into_iter();
         Self::joined(words.map(|word| text!("{word}", "{word}")), "、", ", ")
     }
 
-    /// The text with a missing language taken from the other one.
+    /// Returns the text with a missing language copied from the other one.
     #[must_use]
     pub fn completed(mut self) -> Self {
         if self.zh.is_empty() {
@@ -155,7 +156,7 @@ impl Text {
         self
     }
 
-    /// The text as it follows Chinese: a space separates a Chinese character from a letter or a backtick.
+    /// Returns the text for use after Chinese characters. A Chinese text that begins with an ASCII character gets a space in front.
     #[must_use]
     pub fn spaced(mut self) -> Self {
         if self.zh.starts_with(|first: char| first.is_ascii()) {
@@ -171,9 +172,9 @@ impl Text {
     }
 }
 
-/// What [`text!`](crate::text) puts into a text.
+/// A value that [`text!`](crate::text) can insert into a text.
 pub trait Part {
-    /// What stands for it in a text of this language.
+    /// Returns the form of the value in a text of this language.
     fn part(&self, lang: Lang) -> impl std::fmt::Display + '_;
 }
 
@@ -189,7 +190,7 @@ impl<T: Part + ?Sized> Part for &T {
     }
 }
 
-/// The same in both languages: names and numbers.
+/// Implements [`Part`] for types with the same form in both languages, such as names and numbers.
 macro_rules! same_in_both {
     ($($Type:ty),+) => {
         $(impl Part for $Type {
@@ -259,7 +260,7 @@ pub struct Deprecation {
     pub replaced_by: Option<String>,
 }
 
-/// What an answer is about.
+/// The subject of an answer.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// The protocol as a whole.
@@ -272,7 +273,7 @@ pub enum Subject {
     Envelope(Option<String>),
     /// The result codes, or one of them.
     Results(Option<i64>),
-    /// A range of codes or the code map.
+    /// A code range or the code map.
     Codes,
     /// An operation, by name.
     Operation(String),

@@ -1,11 +1,11 @@
-//! What is one word or a short text in the spec, and is the same text in the dump.
+//! String forms of model types that are one word in the spec and in the dump.
 
 use super::{EnumRepr, HeaderType, Subject, Type, TypeRef};
 use crate::vocabulary::{FloatKind, IntKind, Word as _};
 use std::fmt;
 use std::str::FromStr;
 
-/// A text is not what it is read as.
+/// A string that is not a valid form of the expected type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
     text: String,
@@ -20,7 +20,7 @@ impl fmt::Display for Unreadable {
 
 impl std::error::Error for Unreadable {}
 
-/// Reads and writes a type as its text where it is serialized.
+/// Serializes a type as its string form.
 macro_rules! as_text {
     ($Type:ty, $wanted:literal) => {
         impl serde::Serialize for $Type {
@@ -68,7 +68,7 @@ as_text!(Type, "type");
 as_text!(EnumRepr, "type of enum values");
 as_text!(Subject, "subject of an answer");
 
-/// As the spec writes it: `u16`, `bytes(16)`.
+/// Writes the form of the spec: `u16`, `bytes(16)`.
 impl fmt::Display for HeaderType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -96,7 +96,7 @@ impl HeaderType {
     }
 }
 
-/// The types that have no part, and their names.
+/// The built-in types without parameters, and their names.
 const PLAIN: [(&str, Type); 6] = [
     ("bool", Type::Bool),
     ("string", Type::String),
@@ -106,7 +106,7 @@ const PLAIN: [(&str, Type); 6] = [
     ("json", Type::Json),
 ];
 
-/// As the spec writes it: `u8`, `[Station]`.
+/// Writes the form of the spec: `u8`, `[Station]`.
 impl fmt::Display for Type {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -136,7 +136,7 @@ impl Type {
         number.or_else(|| is_type_word(text).then(|| Self::Named(TypeRef::named(text))))
     }
 
-    /// Names of the types that need no declaration.
+    /// Returns the names of the built-in types.
     pub(crate) fn built_in<'a>() -> impl Iterator<Item = &'a str> {
         let ints = IntKind::ALL.iter().map(|kind| kind.name());
         let floats = FloatKind::ALL.iter().map(|kind| kind.name());
@@ -149,15 +149,17 @@ impl Type {
     }
 }
 
-/// Whether this may be meant as the name of a type. A misspelt built-in (`int32`) is one too, so that it is
-/// reported as unknown with its neighbours and not as bad grammar.
+/// Returns `true` if the word can be the name of a type.
+///
+/// This includes misspelt built-in types such as `int32`. The loader then reports an unknown type with similar names instead of a syntax
+/// error.
 fn is_type_word(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
 impl EnumRepr {
-    /// As the spec writes it: `u8`, `string`.
+    /// Returns the form of the spec: `u8`, `string`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -180,7 +182,7 @@ impl fmt::Display for EnumRepr {
     }
 }
 
-/// `operation.get_station`, `field.Station.id`, `frame`.
+/// Writes a path such as `operation.get_station`, `field.Station.id` or `frame`.
 impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

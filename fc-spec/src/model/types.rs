@@ -1,8 +1,7 @@
-//! The named types of a model, and how the references to them get their ids.
+//! The named types of a model, and the linker that sets the ids of references.
 //!
-//! **Architecture invariant.** A model has no name that is looked up: what refers to a type holds its id, and
-//! [`Types`] answers without a case in which nothing is found. Only [`Model::link`](super::Model::link) gives ids
-//! out, and it refuses a model in which a name stands for nothing.
+//! **Architecture invariant.** Every reference to a type in a model holds the id of the type, so [`Types`] always finds it. Only
+//! [`Model::link`](super::Model::link) assigns ids. It refuses a model with a reference to an undeclared thing.
 
 use super::body::{StructType, Type, TypeDef, TypeShape};
 use super::operation::{Exchange, Operation};
@@ -22,18 +21,18 @@ use std::ops::Deref;
 pub struct Types(Vec<TypeDef>);
 
 impl Types {
-    /// The types of a model that is about to be linked.
+    /// Returns the types of a model that is not linked yet.
     pub(crate) fn new(types: Vec<TypeDef>) -> Self {
         Self(types)
     }
 
-    /// The type of this name, if there is one: for a name that a person has typed.
+    /// Returns the type with this name, if there is one. Use it for names from user input.
     #[must_use]
     pub fn named(&self, name: &str) -> Option<&TypeDef> {
         self.0.iter().find(|ty| ty.name == name)
     }
 
-    /// What a reference stands for.
+    /// Returns the type of a reference.
     #[must_use]
     #[expect(
         clippy::indexing_slicing,
@@ -43,7 +42,7 @@ impl Types {
         &self.0[reference.id().index()]
     }
 
-    /// The struct that a reference stands for.
+    /// Returns the struct of a reference.
     #[must_use]
     pub fn structure(&self, reference: &StructRef) -> &StructType {
         match &self.get(reference).shape {
@@ -71,16 +70,18 @@ impl<'a> IntoIterator for &'a Types {
     }
 }
 
-/// A name that stands for nothing, and who uses it.
+/// A reference to an undeclared thing, and its user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unlinked {
-    /// What is missing: ``the type `Station` ``.
+    /// The missing thing: ``the type `Station` ``.
     pub missing: String,
-    /// Who names it.
+    /// The thing that has the reference.
     pub user: String,
 }
 
-/// Gives every reference its id, and leaves out what refers to something that is not there: the first such name.
+/// Sets the id of every reference.
+///
+/// It removes every part with a reference to an undeclared thing, and returns the first such reference.
 pub(crate) fn link(
     types: &mut Types,
     operations: &mut Vec<Operation>,
@@ -185,7 +186,7 @@ pub(crate) fn link(
     missing
 }
 
-/// The ids of the types, and which of them are structs.
+/// The ids of the types, each with `true` for a struct.
 struct Linker(HashMap<String, (TypeId, bool)>);
 
 impl Linker {
@@ -197,7 +198,7 @@ impl Linker {
         Self(entries.collect())
     }
 
-    /// Whether it is a struct; or what is missing.
+    /// Sets the id of a reference. Returns `true` for a struct. The error describes the missing type.
     fn link(&self, reference: &mut TypeRef) -> Result<bool, String> {
         let known = self.0.get(&reference.name);
         let &(id, is_struct) = known.ok_or_else(|| format!("the type `{reference}`"))?;

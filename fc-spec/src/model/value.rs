@@ -4,7 +4,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde::ser::{Serialize, Serializer};
 use std::fmt::{self, Write as _};
 
-/// A number as the spec writes it, exact.
+/// A number as the spec writes it, without rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// An integer.
@@ -20,7 +20,7 @@ pub enum Scalar {
     Bool(bool),
     /// A number.
     Number(Number),
-    /// A text.
+    /// A string.
     String(String),
 }
 
@@ -37,12 +37,12 @@ pub enum Value {
     String(String),
     /// An array.
     Array(Vec<Value>),
-    /// An object, its keys in the order in which they are sent.
+    /// An object, with its keys in wire order.
     Object(Vec<(String, Value)>),
 }
 
 impl Number {
-    /// The nearest float: past 2^53 an integer loses digits, as it does for every reader of a float.
+    /// Returns the nearest float. An integer above 2^53 can lose digits.
     #[must_use]
     #[allow(
         clippy::cast_precision_loss,
@@ -57,7 +57,7 @@ impl Number {
 }
 
 impl Value {
-    /// The value of a key, if this is an object that has it.
+    /// Returns the value of a key, if this is an object with that key.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Value> {
         match self {
@@ -69,7 +69,7 @@ impl Value {
         }
     }
 
-    /// The same, to be changed.
+    /// Returns the value of a key for changes, if this is an object with that key.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Value> {
         match self {
             Self::Object(entries) => entries
@@ -80,7 +80,7 @@ impl Value {
         }
     }
 
-    /// Puts a value under a key, if this is an object: in the place of what is there, or else last.
+    /// Sets the value of a key, if this is an object. A new key comes last.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(there) = self.get_mut(key) {
             *there = value;
@@ -89,7 +89,7 @@ impl Value {
         }
     }
 
-    /// The items, if this is an array.
+    /// Returns the items, if this is an array.
     pub fn items_mut(&mut self) -> impl Iterator<Item = &mut Value> {
         match self {
             Self::Array(items) => items.iter_mut(),
@@ -97,7 +97,7 @@ impl Value {
         }
     }
 
-    /// Levels of nesting: none in a number, one in a list of numbers.
+    /// Returns the levels of nesting: 0 for a number, 1 for a list of numbers.
     pub(crate) fn levels(&self) -> u32 {
         let inner = match self {
             Self::Array(items) => items.iter().map(Self::levels).max(),
@@ -107,7 +107,7 @@ impl Value {
         inner.unwrap_or_default().saturating_add(1)
     }
 
-    /// Indented by two spaces a level, without a final newline.
+    /// Returns indented JSON, two spaces per level, without a final newline.
     #[must_use]
     pub fn pretty(&self) -> String {
         let mut out = String::new();
@@ -115,8 +115,7 @@ impl Value {
         out
     }
 
-    /// Behind what is in `out`: each item on a line of its own that is indented by its depth, or all on one line
-    /// without a depth.
+    /// Appends the value to `out`. With a depth, each item is on its own indented line. Without a depth, all is on one line.
     fn write(&self, out: &mut String, depth: Option<usize>) {
         match self {
             Self::Null => out.push_str("null"),
@@ -158,24 +157,23 @@ impl From<&Scalar> for Value {
     }
 }
 
-/// An array.
 impl FromIterator<Value> for Value {
     fn from_iter<T: IntoIterator<Item = Value>>(items: T) -> Self {
         Self::Array(items.into_iter().collect())
     }
 }
 
-/// Compact JSON.
+/// Writes compact JSON.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Room for most bodies.
+        // The capacity is enough for most bodies.
         let mut out = String::with_capacity(256);
         self.write(&mut out, None);
         f.write_str(&out)
     }
 }
 
-/// An array or an object: what `write` makes of each item, between brackets.
+/// Writes an array or an object. `write` appends each item.
 fn write_list<T>(
     out: &mut String,
     depth: Option<usize>,
@@ -207,13 +205,12 @@ fn begin_line(out: &mut String, depth: Option<usize>) {
     }
 }
 
-/// Escapes what JSON requires and nothing more: Chinese text stays readable.
+/// Writes a JSON string. It escapes only what JSON requires, so Chinese text stays readable.
 fn write_string(out: &mut String, text: &str) {
     out.push('"');
     let needs_escape = |byte: u8| matches!(byte, b'"' | b'\\' | 0..b' ');
     let mut rest = text;
-    // Long texts are digits, which have nothing to escape. That is found out of many bytes at a time by a loop that
-    // does not end early.
+    // Long texts are mostly digits without escapes. A loop without early exit checks many bytes at a time.
     if !rest
         .bytes()
         .fold(false, |found, byte| found | needs_escape(byte))
@@ -222,7 +219,7 @@ fn write_string(out: &mut String, text: &str) {
         rest = "";
     }
     while let Some(at) = rest.bytes().position(needs_escape) {
-        // What is escaped is ASCII, so this is a character of its own.
+        // An escaped character is ASCII, so it is one byte long.
         let (plain, from) = rest.split_at(at);
         let (escaped, behind) = from.split_at(1);
         out.push_str(plain);
@@ -248,7 +245,7 @@ fn write_string(out: &mut String, text: &str) {
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match *self {
-            // Not every format has integers of 128 bits.
+            // Not every format has 128-bit integers.
             Self::Int(value) => match (i64::try_from(value), u64::try_from(value)) {
                 (Ok(value), _) => serializer.serialize_i64(value),
                 (_, Ok(value)) => serializer.serialize_u64(value),
@@ -360,7 +357,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// What a value may be in the dump.
+/// Implements `JsonSchema` with a fixed schema.
 macro_rules! schema {
     ($Type:ident, $schema:tt) => {
         impl schemars::JsonSchema for $Type {

@@ -1,4 +1,4 @@
-//! `waivers:`.
+//! Waivers of findings, from `waivers:`.
 
 use super::{Location, Text};
 use crate::names;
@@ -26,21 +26,21 @@ pub struct Waiver {
 }
 
 impl Waiver {
-    /// Whether it holds no more on a day, `YYYY-MM-DD`. One until a month holds to the end of that month.
+    /// Returns `true` if the waiver has expired on a day, `YYYY-MM-DD`. A month ends with its last day.
     #[must_use]
     pub fn is_over(&self, today: &str) -> bool {
         is_past(&self.until, today)
     }
 }
 
-/// Whether a last day or month, `YYYY-MM-DD` or `YYYY-MM`, is over on a day. A month lasts to its end.
+/// Returns `true` if a day or month, `YYYY-MM-DD` or `YYYY-MM`, is before today. A month ends with its last day.
 #[must_use]
 pub fn is_past(last: &str, today: &str) -> bool {
-    // Dates of the same form are in the order of their text.
+    // Dates of the same form sort like their text.
     today.get(..last.len()).unwrap_or(today) > last
 }
 
-/// By what a waiver tells a finding from others: twelve hex digits of the MD5 of what the finding says.
+/// Returns the fingerprint of a finding for the id of its waiver: twelve hex digits of the MD5 of its parts.
 #[must_use]
 pub fn fingerprint<'p>(parts: impl IntoIterator<Item = &'p str>) -> String {
     let mut digest = Md5::new();

@@ -1,4 +1,4 @@
-//! `availability:` and `available:`: for whom a thing is, on which machines and in which releases.
+//! `availability:` and `available:`: the audiences, machines and releases of a thing.
 
 use super::common::TEXT;
 use super::form::{Entries, List, Name, Str};

@@ -1,4 +1,4 @@
-//! Keys that mean the same wherever they stand.
+//! Keys with the same meaning in every mapping.
 
 use super::available::Available;
 use super::coordinates::Store;
@@ -153,7 +153,7 @@ impl Form for BothLanguages {
     }
 }
 
-/// `zh` and `en` of a mapping. A missing one is the same as the other, and both are empty if both are missing.
+/// Returns `zh` and `en` of a mapping. A missing text is a copy of the other. Both are empty if both are missing.
 pub(crate) fn both_languages(node: Node<'_>) -> model::Text {
     let text = model::Text {
         zh: TEXT.zh.read(node).unwrap_or_default(),

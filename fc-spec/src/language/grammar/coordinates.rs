@@ -1,4 +1,4 @@
-//! `coordinates:` and `stores:`: where positions are measured, and where things are kept.
+//! `coordinates:` and `stores:`: coordinate systems, and the stores of values.
 
 use super::common::{COMMON, TEXT};
 use super::form::Bool;

@@ -1,4 +1,4 @@
-//! `entities:`: what ids stand for.
+//! `entities:`: the kinds of things with ids.
 
 use super::common::TEXT;
 

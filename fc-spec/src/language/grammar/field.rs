@@ -12,7 +12,7 @@ use super::refers::Ref;
 use crate::syntax::Node;
 use crate::vocabulary::{Quirk, StateOrder};
 
-/// The longhand forms of a field, by the key that marks each.
+/// The long forms of a field, each with the key that marks it.
 pub(crate) const FIELD_FORMS: [(&str, &Table); 4] = [
     (FIELD.r#type.name, Field::TABLE),
     (OBJECT.fields.name, Object::TABLE),
@@ -29,7 +29,7 @@ pub(crate) static FIELD_KIND: Kind = Kind::Either(&[
     },
 ]);
 
-/// What a condition asks: one value of each field, or any of several.
+/// The form of a condition: for each field, one value or a list of possible values.
 type Condition = Entries<WireKey, (Scalar, List<Scalar, 1>), 1>;
 
 /// An exact length, or minimum and maximum.

@@ -98,7 +98,7 @@ grammar! {
     }
 }
 
-/// Top keys that stand exactly once in a spec.
+/// Top keys that a spec has exactly once.
 pub(crate) const ONCE: [&str; 12] = [
     FILE.protocol.name,
     FILE.transport.name,
@@ -114,7 +114,7 @@ pub(crate) const ONCE: [&str; 12] = [
     FILE.changes.name,
 ];
 
-/// Top keys that stand at most once in a spec.
+/// Top keys that a spec has at most once.
 pub(crate) const AT_MOST_ONCE: [&str; 6] = [
     FILE.entities.name,
     FILE.coordinates.name,
@@ -124,7 +124,7 @@ pub(crate) const AT_MOST_ONCE: [&str; 6] = [
     FILE.waivers.name,
 ];
 
-/// Top keys that stand only in `commands/*.yaml`, below a `group`.
+/// Top keys that only files in `commands/` have, together with a `group`.
 pub(crate) const GROUPED: [&str; 4] = [
     FILE.group.name,
     FILE.commands.name,

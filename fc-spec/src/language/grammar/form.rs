@@ -1,4 +1,4 @@
-//! What may stand under a key: each is a type that says what the grammar asks for and what is read of it.
+//! The forms of a value: each is a type with the kind that the grammar requires and the Rust type that the reader returns.
 
 use super::kind::Kind;
 use crate::language::scalar;
@@ -7,14 +7,14 @@ use crate::syntax::{Entries as NodeEntries, Node};
 use crate::vocabulary::{IntKind, Meaning, Word};
 use std::marker::PhantomData;
 
-/// What may stand under a key.
+/// The form of a value.
 pub(crate) trait Form {
-    /// What the grammar asks for.
+    /// The kind that the grammar requires.
     const KIND: Kind;
-    /// What is read.
+    /// The Rust type of the value.
     type Value<'a>;
 
-    /// What a node says; `None` for what is malformed, which has been reported.
+    /// Returns the value of a node. `None` for a malformed value, which has been reported.
     fn read(node: Node<'_>) -> Option<Self::Value<'_>>;
 }
 
@@ -36,25 +36,25 @@ macro_rules! forms {
 }
 
 forms! {
-    /// Any text.
+    /// Any string.
     Str: Kind::Text => String, scalar::text;
     /// `true` or `false`.
     Bool: Kind::Bool => bool, scalar::bool;
     /// An integer or a decimal fraction.
     Number: Kind::Number => model::Number, scalar::number;
-    /// A bool, number or text.
+    /// A bool, a number or a string.
     Scalar: Kind::Scalar => model::Scalar, scalar::scalar;
     /// Any JSON value.
     Json: Kind::Json => model::Value, |node| Some(scalar::value(node));
-    /// A code of an operation, and how it is spelt.
+    /// A code of an operation, with its spelling.
     Code: Kind::Code => (u16, String), |node| scalar::code(node).zip(scalar::text(node));
     /// A month or a day.
     Date: Kind::Date => String, scalar::text;
     /// A name in code.
     Name: Kind::Name => String, scalar::text;
-    /// Name of a declared type.
+    /// The name of a declared type.
     TypeName: Kind::TypeName => String, scalar::text;
-    /// A type, and whether it carries the mark of an optional field.
+    /// A type, and `true` if it has the mark of an optional field.
     Type: Kind::Type => (model::Type, bool), scalar::field_type;
     /// Id of a conflict.
     ConflictId: Kind::ConflictId => String, scalar::text;
@@ -62,23 +62,23 @@ forms! {
     MediaType: Kind::MediaType => String, scalar::text;
     /// A unit of measurement.
     Unit: Kind::Unit => String, scalar::text;
-    /// A key of a JSON object or a name of the source.
+    /// A key of a JSON object or a name from the source document.
     WireKey: Kind::WireKey => String, scalar::text;
-    /// A code that there is not yet.
+    /// The word for a missing code.
     Unassigned: Kind::Word(&[(
         "unassigned",
         "No code yet: types and documentation are generated, but it cannot be sent.",
         "还没有功能码：照常生成类型和文档，但不能发送。",
     )]) => (), |_| Some(());
-    /// Any state there is.
+    /// Any state.
     AnyState: Kind::Word(&[("any", "In any state.", "任何状态下。")]) => (), |_| Some(());
-    /// An age that no message has.
+    /// An age without a limit.
     Never: Kind::Word(&[("never", "No message is too old.", "消息永不过期。")]) => (), |_| Some(());
-    /// Another form than that of the type.
+    /// A wire form that differs from the type.
     OtherForm: Kind::Word(&[WireForm::String.entry(), WireForm::Number.entry()]) => WireForm, word;
-    /// How sure a fact is.
+    /// The state of a fact.
     FactState: Kind::Word(&[BodyState::Stated.entry(), BodyState::Inferred.entry()]) => BodyState, word;
-    /// What may be lost in the source.
+    /// A fact that the source document may lack.
     SourceFact: Kind::Word(&[
         Fact::Title.entry(),
         (
@@ -90,7 +90,7 @@ forms! {
         Fact::Request.entry(),
         Fact::Response.entry(),
     ]) => Fact, word;
-    /// How sure a body is.
+    /// The state of a body.
     State: Kind::Word(&[
         (
             BodyState::Inferred.name(),
@@ -108,13 +108,13 @@ forms! {
             "有意不限定键：收到的键都原样保留。",
         ),
     ]) => BodyState, word;
-    /// An effect for which there is evidence.
+    /// An effect with evidence in the source document.
     KnownEffect: Kind::Word(&[
         Effect::Read.entry(),
         Effect::Config.entry(),
         Effect::Motion.entry(),
     ]) => Effect, word;
-    /// Type of a header field.
+    /// The type of a header field.
     HeaderWidth: Kind::Either(&[
         Kind::Word(&[
             (IntKind::U8.name(), "One byte.", "1 字节。"),
@@ -124,7 +124,7 @@ forms! {
         ]),
         Kind::Text,
     ]) => HeaderType, |node: Node<'_>| node.as_str()?.parse().ok();
-    /// What is sent of an enum's values.
+    /// The type of the values of an enum, as sent.
     EnumType: Kind::Word(&[
         integer(IntKind::U8),
         integer(IntKind::U16),
@@ -160,9 +160,9 @@ impl<W: Word> Form for W {
 #[derive(Debug)]
 pub(crate) struct Int<T, const MIN: i128 = 0, const MAX: i128 = { i128::MAX }>(PhantomData<T>);
 
-/// An integer of Rust.
+/// A Rust integer type.
 pub(crate) trait Whole: TryFrom<i128> {
-    /// The greatest.
+    /// The greatest value.
     const MAX: i128;
 }
 
@@ -188,7 +188,7 @@ impl<T: Whole, const MIN: i128, const MAX: i128> Form for Int<T, MIN, MAX> {
     }
 }
 
-/// A result code, which may be any integer that JSON readers agree on.
+/// A result code: a signed 64-bit integer.
 pub(crate) type ResultNumber = Int<i64, { i64::MIN as i128 }>;
 
 /// A list of at least `MIN` and at most `MAX` items.
@@ -238,7 +238,7 @@ impl Form for Body {
     }
 }
 
-/// One or the other; which, the reader has to look.
+/// One of two forms. The reader inspects the node to find out which.
 impl<A: Form, B: Form> Form for (A, B) {
     const KIND: Kind = Kind::Either(&[A::KIND, B::KIND]);
     type Value<'a> = Node<'a>;
@@ -248,7 +248,7 @@ impl<A: Form, B: Form> Form for (A, B) {
     }
 }
 
-/// One of three.
+/// One of three forms.
 impl<A: Form, B: Form, C: Form> Form for (A, B, C) {
     const KIND: Kind = Kind::Either(&[A::KIND, B::KIND, C::KIND]);
     type Value<'a> = Node<'a>;

@@ -1,4 +1,4 @@
-//! `glossary:`: the words of the protocol.
+//! `glossary:`: the terms of the protocol.
 
 use super::common::BothLanguages;
 use super::form::{List, Str};

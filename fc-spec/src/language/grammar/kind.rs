@@ -1,13 +1,13 @@
-//! What a declaration says, as data: what may stand where, and one sentence about it.
+//! The data of a declaration: the kind of value at each key, and its documentation.
 
 use crate::diagnostic::FaultCode;
 use crate::syntax::Node;
 use crate::vocabulary::Meaning;
 
-/// What a value may be.
+/// The kind of a value.
 #[derive(Debug)]
 pub(crate) enum Kind {
-    /// Any text.
+    /// Any string.
     Text,
     /// `true` or `false`.
     Bool,
@@ -20,7 +20,7 @@ pub(crate) enum Kind {
     },
     /// An integer or a decimal fraction.
     Number,
-    /// A bool, number or text.
+    /// A bool, a number or a string.
     Scalar,
     /// Any JSON value, written as YAML.
     Json,
@@ -40,20 +40,20 @@ pub(crate) enum Kind {
     MediaType,
     /// A unit of measurement.
     Unit,
-    /// A key of a JSON object or a name of the source, as it is.
+    /// A key of a JSON object or a name from the source document, unchanged.
     WireKey,
     /// The name of a thing that the spec declares elsewhere.
     Ref {
         /// The form of the name.
         name: &'static Kind,
-        /// The parts of the language of which the thing may be.
+        /// The parts of the language that can declare the thing.
         kinds: &'static [&'static str],
     },
     /// One of these words.
     Word(&'static [Meaning]),
     /// A list.
     List {
-        /// What each item is.
+        /// The kind of each item.
         of: &'static Kind,
         /// Fewest items.
         min: usize,
@@ -62,11 +62,11 @@ pub(crate) enum Kind {
     },
     /// A mapping with known keys.
     Map(&'static Table),
-    /// A mapping whose keys are chosen freely.
+    /// A mapping with freely chosen keys.
     Entries {
-        /// What each key is.
+        /// The kind of each key.
         key: &'static Kind,
-        /// What stands under each.
+        /// The kind of each value.
         value: &'static Kind,
         /// Fewest entries.
         min: usize,
@@ -75,17 +75,17 @@ pub(crate) enum Kind {
     Body,
     /// The first of these that fits.
     Either(&'static [Kind]),
-    /// A mapping whose table depends on which key it has.
+    /// A mapping with one of several tables. Its keys select the table.
     ByKey {
-        /// The keys that decide, and their tables.
+        /// The keys that select a table, and their tables.
         tables: &'static [(&'static str, &'static Table)],
-        /// What it is where it has none of them.
+        /// The kind of a mapping without any of these keys.
         otherwise: &'static Kind,
     },
 }
 
 impl Kind {
-    /// Returns the parts of the language of which a thing may be that is named here; `None` if nothing is.
+    /// Returns the parts of the language that can declare the thing named here. `None` if the value is not a name of a thing.
     pub fn refers(&self) -> Option<&'static [&'static str]> {
         match self {
             Self::Ref { kinds, .. } => Some(kinds),
@@ -105,7 +105,7 @@ impl Kind {
         }
     }
 
-    /// Returns the form of a value: of a reference, that of the name.
+    /// Returns the form of a value. For a reference, this is the form of the name.
     pub fn form(&self) -> &Self {
         match self {
             Self::Ref { name, .. } => name,
@@ -136,7 +136,7 @@ pub(crate) struct Doc {
 }
 
 impl Doc {
-    /// Of two lines of a doc comment.
+    /// Returns the documentation from two lines of a doc comment.
     pub const fn new(en: &'static str, zh: &'static str) -> Self {
         Self {
             en: en.trim_ascii(),
@@ -148,53 +148,53 @@ impl Doc {
 /// A mapping with known keys.
 #[derive(Debug)]
 pub(crate) struct Table {
-    /// Its name in prose and in the schema: "command", "header field".
+    /// The name in prose and in the schema, such as "command" or "header field".
     pub name: &'static str,
-    /// Its name in Chinese.
+    /// The name in Chinese.
     pub name_zh: &'static str,
-    /// What it describes.
+    /// The description of the mapping.
     pub doc: Doc,
-    /// A small one, as YAML.
+    /// A small example, as YAML.
     pub example: &'static str,
-    /// Its keys, in the order in which they are best written.
+    /// The keys, in the recommended order.
     pub keys: &'static [AnyKey],
 }
 
 impl Table {
-    /// The key of this name.
+    /// Returns the key with this name.
     pub fn key(&self, name: &str) -> Option<&'static AnyKey> {
         self.keys.iter().find(|key| key.name == name)
     }
 }
 
-/// A known key, whatever stands under it.
+/// A known key with a value of any form.
 #[derive(Debug)]
 pub(crate) struct AnyKey {
-    /// The key.
+    /// The name.
     pub name: &'static str,
-    /// Whether it must be there.
+    /// `true` if the mapping must have the key.
     pub required: bool,
-    /// What stands under it.
+    /// The kind of the value.
     pub kind: Kind,
-    /// One sentence.
+    /// The documentation.
     pub doc: Doc,
-    /// What else is said of it.
+    /// The optional parts of the declaration.
     pub said: Said,
 }
 
-/// What a declaration may say of a key beside its kind.
+/// The optional parts of a declaration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Said {
-    /// What the loader takes it for where it is not there.
+    /// The value that the loader uses for a missing key.
     pub default: Option<&'static str>,
-    /// A value, as YAML.
+    /// An example, as YAML.
     pub example: Option<&'static str>,
-    /// Faults of its value that do not follow from its kind.
+    /// Errors of its value that its kind does not imply.
     pub faults: &'static [FaultCode],
 }
 
 impl Said {
-    /// What needs no words.
+    /// A declaration without optional parts.
     pub const NOTHING: Self = Self {
         default: None,
         example: None,

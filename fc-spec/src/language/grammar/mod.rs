@@ -1,16 +1,20 @@
-//! The spec language, declared: each key once, with its type and one sentence about it in both languages.
+//! The grammar of the spec language: one declaration per key, with its type and its documentation in both languages.
 //!
-//! Shape faults ([`shape`](crate::load)), reading ([`Key::read`]), the JSON Schema and the reference of the language
-//! ([`crate::language`]) all come out of these declarations, so that an editor, a page and the generator cannot
-//! disagree. What a declaration cannot say (names that must exist, codes that must differ) is checked on the
-//! lowered draft.
+//! The shape checks ([`shape`](crate::load)), the reader ([`Key::read`]), the JSON Schema and the reference ([`crate::language`]) all use
+//! these declarations. An editor, a page and the generator therefore cannot disagree.
+//!
+//! Checks on the lowered draft cover the rest, such as names that must exist and codes that must differ.
 
-/// Declares mappings with known keys. The first line of each comment is English, the second Chinese; `use` puts
-/// keys here that are declared elsewhere. Each makes a constant by whose fields the keys are read, and the
-/// [`Table`] of them all, in the order in which they are best written.
+/// Declares mappings with known keys. The first line of each comment is English, the second Chinese. `use` adds keys that are declared
+/// elsewhere.
 ///
-/// Behind the form of a key may stand what the loader takes it for where it is not there (`default`), an example in YAML,
-/// which a kind of which any value is as good has of itself, and the faults that more than its kind can raise.
+/// Each mapping defines a constant with one field per key, which the loader uses to read the key. It also defines the [`Table`] of its
+/// keys, in the recommended order.
+///
+/// A key can have three more parts after its form:
+/// - `default`: the value that the loader uses for a missing key.
+/// - `example`: a value as YAML. A kind whose values are all equally good examples needs none.
+/// - `faults`: the errors that its kind does not imply.
 macro_rules! grammar {
     (@must required) => { true };
     (@must optional) => { false };
@@ -52,9 +56,9 @@ macro_rules! grammar {
         };
 
         impl $Keys {
-            /// Its name in prose and in the schema.
+            /// The name in prose and in the schema.
             pub const NAME: &'static str = $name;
-            /// All of its keys.
+            /// The table of its keys.
             pub const TABLE: &'static $crate::language::grammar::kind::Table = &$crate::language::grammar::kind::Table {
                 name: Self::NAME,
                 name_zh: $name_zh,

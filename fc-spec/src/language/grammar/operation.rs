@@ -14,10 +14,10 @@ use crate::vocabulary::{Effect, Side};
 
 /// The key of a body.
 pub(crate) type BodyKey = Key<Body>;
-/// The key of how sure a body is.
+/// The key of the state of a body.
 pub(crate) type StateKey = Key<(State, BodyState)>;
 
-/// How sure a body or a fact is of which nothing is said.
+/// The state of a body or a fact without a written state.
 pub(crate) const STATED: model::BodyState = model::BodyState::Stated;
 
 grammar! {

@@ -12,11 +12,11 @@ use super::wire::ResultCode;
 use crate::syntax::Node;
 use std::marker::PhantomData;
 
-/// A thing that values name.
+/// A kind of thing with a name that values can refer to.
 pub(crate) trait Named {
     /// The form of its name.
     type Name: Form;
-    /// The parts of the language of which it may be.
+    /// The parts of the language that can declare it.
     const KINDS: &'static [&'static str];
 }
 
@@ -67,5 +67,5 @@ named! {
     Conflict: ConflictId = Conflict;
 }
 
-/// The parts of which a declared type may be.
+/// The parts of the language that can declare a type.
 pub(crate) const TYPES: &[&str] = &[Struct::NAME, Enum::NAME, super::field::OneOf::NAME];

@@ -2,7 +2,7 @@
 
 use crate::vocabulary::Meaning;
 
-/// Symbols as they are printed, each with what it means.
+/// The symbols, as pages print them, each with its meaning.
 pub(crate) static UNITS: &[Meaning] = &[
     ("us", "Microseconds.", "微秒。"),
     ("ms", "Milliseconds.", "毫秒。"),
@@ -67,15 +67,15 @@ pub(crate) static UNITS: &[Meaning] = &[
     ("lx", "Lux.", "勒克斯。"),
 ];
 
-/// Those of lengths, pixels among them: a position in a picture is counted in them.
+/// The units of length. They include pixels, because positions in a picture are counted in pixels.
 const LENGTHS: [&str; 6] = ["um", "mm", "cm", "m", "km", "px"];
 
-/// Whether positions are measured in it.
+/// Returns `true` if the unit can measure positions.
 pub(crate) fn is_length(unit: &str) -> bool {
     LENGTHS.contains(&unit)
 }
 
-/// What else people call them.
+/// Other names of units.
 static OTHER_NAMES: &[(&str, &str)] = &[
     ("µs", "us"),
     ("μs", "us"),
@@ -148,7 +148,7 @@ static OTHER_NAMES: &[(&str, &str)] = &[
     ("lux", "lx"),
 ];
 
-/// The unit that someone most likely means by another name: `seconds`, `°C`, `MS`.
+/// Returns the unit for another name, such as `seconds`, `°C` or `MS`.
 pub(crate) fn meant(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     let singular = lower.strip_suffix('s').unwrap_or(&lower);

@@ -1,4 +1,4 @@
-//! `waivers:`: breaks that the owner has accepted.
+//! `waivers:`: findings that the owner has accepted.
 
 use super::common::TEXT;
 use super::form::{Date, Str};

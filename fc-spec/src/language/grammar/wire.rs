@@ -1,4 +1,4 @@
-//! What lies below the messages.
+//! The grammar of the layers below the messages.
 
 use super::common::{BothLanguages, COMMON, TEXT};
 use super::form::{
@@ -13,7 +13,7 @@ use crate::vocabulary::{
     KindRole, PortRole, RangeUse, ResultRole,
 };
 
-/// How a digest is computed of which that is not said.
+/// The default digest algorithm.
 pub(crate) const DIGEST: DigestAlgorithm = DigestAlgorithm::Md5;
 
 /// A duration in milliseconds.

@@ -1,4 +1,4 @@
-//! HOUSE: rules that a project has written itself, and what is wrong with how it uses the lint.
+//! HOUSE: the rules of a project, and the rules about its use of the lint.
 
 mod parse;
 
@@ -12,7 +12,7 @@ use crate::lint::search::{of_field, of_group, of_operation, of_type, of_value, o
 use crate::model::{Model, Text, TypeShape};
 use serde_json::Value;
 
-/// What a rule of the project has found.
+/// The rule for all findings of rules of the project.
 pub(super) const HOUSE_RULE: &Rule = &Rule {
     code: LintCode {
         number: "FC0890",
@@ -29,7 +29,7 @@ pub(super) const HOUSE_RULE: &Rule = &Rule {
     find: None,
 };
 
-/// A waiver whose time is over.
+/// An expired waiver.
 pub(super) const WAIVER_OVER: &Rule = &Rule {
     code: LintCode {
         number: "FC0891",
@@ -48,7 +48,7 @@ pub(super) const WAIVER_OVER: &Rule = &Rule {
     find: None,
 };
 
-/// A waiver of nothing.
+/// A waiver without a finding.
 pub(super) const WAIVER_UNUSED: &Rule = &Rule {
     code: LintCode {
         number: "FC0892",
@@ -65,7 +65,7 @@ pub(super) const WAIVER_UNUSED: &Rule = &Rule {
     find: None,
 };
 
-/// A key or value under `lint` that cannot be used.
+/// An invalid key or value under `lint`.
 pub(super) const SETTINGS: &Rule = &Rule {
     code: LintCode {
         number: "FC0893",
@@ -87,21 +87,21 @@ pub(super) const RULES: &[Rule] = &[*HOUSE_RULE, *WAIVER_OVER, *WAIVER_UNUSED, *
 /// A rule of the project.
 #[derive(Debug)]
 pub(super) struct HouseRule {
-    /// Its id.
+    /// The id.
     pub id: String,
-    /// What is wrong where it objects.
+    /// The message of a finding.
     pub text: Text,
-    /// What becomes of its findings, unless `levels` says otherwise.
+    /// The level, unless `levels` sets another.
     pub level: Level,
-    /// What it looks at: the kinds of [`Item`].
+    /// The kinds of things that the rule tests.
     pub on: Vec<&'static str>,
-    /// Which of them.
+    /// The condition: the rule applies only to things that pass this test.
     pub only: Test,
-    /// What has to hold.
+    /// The requirement: the other things are findings.
     pub require: Test,
 }
 
-/// Words that stand for several kinds.
+/// Words for several kinds of things.
 pub(super) const GROUPS: [(&str, &[&str]); 2] = [
     (
         "operation",
@@ -121,7 +121,7 @@ pub(super) const GROUPS: [(&str, &[&str]); 2] = [
     ),
 ];
 
-/// What rules of the project find.
+/// Returns the findings of the rules of the project.
 pub(super) fn find(model: &Model, rules: &[HouseRule]) -> Vec<Finding> {
     let mut findings = Vec::new();
     if rules.is_empty() {

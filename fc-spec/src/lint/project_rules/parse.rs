@@ -1,4 +1,4 @@
-//! A rule of the project as it is written: what it is about, and what it asks of which path.
+//! Reads a rule of the project: its subject and its tests.
 
 use super::{GROUPS, HOUSE_RULE, HouseRule, SETTINGS};
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
@@ -13,7 +13,7 @@ use crate::text;
 use regex_lite::Regex;
 use serde_json::Value;
 
-/// Most levels of `all`, `any` and `not` in one another.
+/// The maximum nesting of `all`, `any` and `not`.
 const DEPTH: u8 = 16;
 
 impl Reader<'_> {
@@ -82,7 +82,7 @@ impl Reader<'_> {
         })
     }
 
-    /// What a rule is about.
+    /// Reads the kinds of things in `for`.
     fn kinds(&mut self, node: Node<'_>) -> Option<Vec<&'static str>> {
         let Some(on) = node.get("for") else {
             let advice = text!(
@@ -104,7 +104,7 @@ impl Reader<'_> {
         Some(vec![found?])
     }
 
-    /// What holds where each entry does: by path, or `all`, `any`, `not`.
+    /// Reads a mapping of tests by path, or by `all`, `any` and `not`. All of its entries must pass.
     fn test(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Test> {
         let Some(depth) = depth.checked_sub(1) else {
             let message = text!("判断嵌套太深", "the test is nested too deeply");
@@ -159,7 +159,7 @@ impl Reader<'_> {
         tests.collect()
     }
 
-    /// What is asked of a path.
+    /// Reads the tests of one path.
     fn at(&mut self, key: Node<'_>, value: Node<'_>, shape: &Shape) -> Option<Test> {
         let path: Vec<String> = key.as_str()?.split('.').map(str::to_owned).collect();
         let mut at = shape.root();
@@ -264,7 +264,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A value as the dump has it: a word where there are words to choose from.
+    /// Reads a value as the dump has it. If the schema lists words, the value must be one of them.
     fn value(&mut self, node: Node<'_>, at: &At<'_>) -> Option<Value> {
         let Some(scalar) = node.as_scalar() else {
             let advice = text!(

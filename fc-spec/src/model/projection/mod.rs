@@ -1,7 +1,6 @@
-//! The part of a model that one audience has, as a whole model.
+//! Reduces a model to the part for one audience, as a complete model.
 //!
-//! **Architecture invariant.** What is made for an audience is made of a model without the rest. No emitter asks for
-//! whom a thing is in order to leave it out.
+//! **Architecture invariant.** The products for an audience come from its reduced model. No emitter checks audiences to leave things out.
 
 mod operation;
 
@@ -14,22 +13,22 @@ use super::{
 use crate::text;
 use std::collections::HashSet;
 
-/// Why there is no such part.
+/// The reason why a projection failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProjectionError {
     /// The spec declares no audience of this name.
     Unknown {
         /// The name.
         name: String,
-        /// Those that it declares.
+        /// The declared audiences.
         known: Vec<String>,
     },
-    /// Something that is left names something that is not. A checked spec has none.
+    /// A remaining part refers to a removed part. A checked spec has no such reference.
     Unlinked(Unlinked),
 }
 
 impl ProjectionError {
-    /// The sentence for the user.
+    /// Returns the message for the user.
     #[must_use]
     pub fn text(&self) -> Text {
         match self {
@@ -59,12 +58,14 @@ impl std::fmt::Display for ProjectionError {
 impl std::error::Error for ProjectionError {}
 
 impl Model {
-    /// What this audience has: without the operations, fields, values and variants that are for others, and without
-    /// what only these use. Codes that others use stay taken: they are among the retired ones.
+    /// Returns the model for this audience.
+    ///
+    /// The model lacks the operations, fields, values and variants for other audiences, and everything that only these use. The codes of
+    /// removed operations become retired codes, so they stay taken.
     ///
     /// # Errors
     ///
-    /// [`ProjectionError`].
+    /// [`ProjectionError`] if the spec does not declare the audience.
     pub fn for_audience(&self, audience: &str) -> Result<Self, ProjectionError> {
         let Some(declared) = self.availability.audience(audience) else {
             let known = self.availability.audiences.iter();
@@ -116,7 +117,7 @@ impl Model {
         model.link().map_err(ProjectionError::Unlinked)
     }
 
-    /// Takes out groups, entities, coordinate systems, stores, answers, questions and conflicts that are about nothing that is here.
+    /// Removes unused groups, entities, coordinate systems and stores. Removes answers, questions and conflicts about removed things.
     fn leave_out_what_nothing_uses(&mut self) {
         let named = self.named().into_iter();
         let named: HashSet<_> = named.map(|it| (it.thing, it.name.to_owned())).collect();
@@ -152,20 +153,20 @@ impl Model {
     }
 }
 
-/// The conflicts that these answer.
+/// Returns the ids of the conflicts that these answers settle.
 fn ids(answers: &[Answer]) -> impl Iterator<Item = String> + '_ {
     answers.iter().flat_map(|answer| answer.ids.iter().cloned())
 }
 
-/// What an audience sees of a model.
+/// The view of an audience on a model.
 struct View<'m> {
     audience: &'m str,
-    /// Of the whole model.
+    /// The whole model.
     model: &'m Model,
 }
 
 impl View<'_> {
-    /// The types that are left, each without what is for others.
+    /// Returns the remaining types without their parts for other audiences.
     fn types(&self, model: &Model) -> Types {
         let types: Vec<TypeDef> = self
             .model
@@ -222,7 +223,7 @@ impl View<'_> {
         is_there && available.is_none_or(|it| it.is_for(self.audience))
     }
 
-    /// The condition of a field, asking for no value that is for others.
+    /// Returns the condition of a field without the values for other audiences.
     fn condition(&self, shape: &StructType, field: &Field) -> Left {
         let Some(condition) = &field.details().condition else {
             return Left::Always;
@@ -248,7 +249,7 @@ impl View<'_> {
         }
     }
 
-    /// The field with what it says of values that the audience knows.
+    /// Returns the field with only the values of this audience in its details and its example.
     fn field(&self, shape: &StructType, field: &Field) -> Field {
         let knows = |scalar: &Scalar| self.value(&Value::from(scalar), &field.ty).is_some();
         let example = match &field.example {
@@ -306,7 +307,7 @@ impl View<'_> {
         })
     }
 
-    /// A value without the keys that are for others; `None` where it cannot do without what is for others.
+    /// Returns a value without the keys for other audiences. `None` if a required part of it is for other audiences.
     fn value(&self, value: &Value, ty: &Type) -> Option<Value> {
         match (ty, value) {
             (Type::Array(item), Value::Array(items)) => {
@@ -358,16 +359,16 @@ impl View<'_> {
     }
 }
 
-/// What an audience is left with of a condition.
+/// A condition for one audience.
 enum Left {
     Some(Condition),
-    /// There is no case in which it does not hold.
+    /// The condition always holds.
     Always,
-    /// All that it asks for is for others.
+    /// The condition never holds, because all values of one of its fields are for other audiences.
     Never,
 }
 
-/// What a type refers to.
+/// Returns the types that a type refers to.
 fn references(shape: &TypeShape) -> impl Iterator<Item = &TypeRef> {
     let (fields, variants): (&[Field], &[Variant]) = match shape {
         TypeShape::Struct(shape) => (&shape.fields, &[]),

@@ -1,4 +1,4 @@
-//! What is left of what an operation says of others, of keys and of states.
+//! Reduces an operation to the part for one audience.
 
 use super::View;
 use crate::model::process::{Find, way};
@@ -9,7 +9,7 @@ use crate::model::{
 use std::collections::HashSet;
 
 impl View<'_> {
-    /// Takes out of an operation what names another that is not among `names`, and keys that are for others.
+    /// Removes references to operations outside `names` and references to keys for other audiences.
     pub(super) fn operation(&self, operation: &mut Operation, names: &HashSet<String>) {
         if let Some(deprecated) = &mut operation.deprecated {
             let by = deprecated.replaced_by.take();
@@ -26,7 +26,7 @@ impl View<'_> {
                 for set_off in sets_off {
                     let report = self.model.operation(&set_off.report);
                     let report = report.and_then(Operation::messages);
-                    // A report is set off all the same where the key that ties it is for others.
+                    // The command still sets off the report if the key that ties them is for other audiences.
                     set_off.tied.retain(|tie| {
                         let ours = self.leads(&messages.body(tie.side).ty, keys(&tie.command));
                         let theirs = |body| self.leads(body, keys(&tie.report));
@@ -67,7 +67,7 @@ impl View<'_> {
         }
     }
 
-    /// Whether the audience has every field on this way.
+    /// Returns `true` if the audience has every field on the path.
     fn leads<'k>(&self, body: &StructRef, keys: impl Iterator<Item = &'k str>) -> bool {
         let mut shape = Some(self.model.types.structure(body));
         for key in keys {
@@ -83,7 +83,7 @@ impl View<'_> {
         true
     }
 
-    /// What a field holds, or each item of its list, if that is an object.
+    /// Returns the struct of a field, or of the items of its list.
     fn inside(&self, ty: &Type) -> Option<&StructType> {
         match &self.model.types.get(ty.innermost()?).shape {
             TypeShape::Struct(shape) => Some(shape),
@@ -92,7 +92,7 @@ impl View<'_> {
     }
 }
 
-/// Takes out what is said of states where the enum is not left, or no state of it.
+/// Removes conditions on states, and paths to states, that the reduced model no longer has.
 pub(super) fn keep_states(operation: &mut Operation, types: &Types) {
     match &mut operation.exchange {
         Exchange::Command { accepted, .. } => {
@@ -123,7 +123,7 @@ fn keep_accepted(mut accepted: Accepted, types: &Types) -> Option<Accepted> {
     (!says_nothing).then_some(accepted)
 }
 
-/// The enum that keys of a body lead to. What is left is found by name: it is not linked yet.
+/// Returns the enum at the path of a body. It finds types by name, because the reduced model is not linked yet.
 fn enum_at<'t>(types: &'t Types, body: &StructRef, path: &[String]) -> Option<&'t EnumType> {
     let find: Find<'_, 't> = &|named| types.named(named.name());
     let TypeShape::Struct(shape) = &find(body)?.shape else {
