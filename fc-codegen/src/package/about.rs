@@ -28,7 +28,7 @@ pub const RESPONSE_ENVELOPE: [&str; 2] = [
 /// The tables of constants.
 pub const TABLES: [&str; 2] = ["规范中的常量表。", "Tables of constants in the spec."];
 
-/// Adds what the types of a module are: those of a group, or those that several share.
+/// Adds the description of a module's types: those of a group, or the types that several groups share.
 pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
     if let Some(group) = group {
         docs.text(&group.title);

@@ -1,19 +1,19 @@
-//! Under which values of other fields of its struct a field is there.
+//! Conditions that make a field depend on the values of other fields of its struct.
 
 use super::facts::code;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::items::Spelled;
 use fc_spec::model::{Condition, Field, Scalar, Value};
 
-/// The fields that a condition asks.
+/// The fields that a condition tests.
 pub struct Asked<'f, 'm> {
     /// `when` or `unless`.
     pub word: &'static str,
-    /// The fields, each with the values of which it must have one.
+    /// The fields, each with its accepted values.
     pub fields: Vec<(&'f Spelled<'m, Field>, &'f [Scalar])>,
 }
 
-/// What the condition of a field asks of the fields of its struct.
+/// Returns the fields that the condition of `field` tests; `None` without a condition.
 pub fn asked<'f, 'm>(field: &'f Field, fields: &'f [Spelled<'m, Field>]) -> Option<Asked<'f, 'm>> {
     let condition = field.details().condition.as_ref()?;
     let asked = condition.asked().iter().filter_map(|asked| {
@@ -30,7 +30,7 @@ pub fn asked<'f, 'm>(field: &'f Field, fields: &'f [Spelled<'m, Field>]) -> Opti
 }
 
 impl Asked<'_, '_> {
-    /// The name of each field, and its values.
+    /// Returns the name of each field with its values, joined by `or`.
     pub fn each(
         &self,
         or: &str,
@@ -44,7 +44,7 @@ impl Asked<'_, '_> {
     }
 }
 
-/// The sentence about the condition of a field, with constants as the language spells them.
+/// Returns the sentence about the condition of a field. `spelled` writes a constant in the language.
 pub fn sentence(
     expressions: &Expressions<'_, '_>,
     field: &Field,

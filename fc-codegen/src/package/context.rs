@@ -11,16 +11,16 @@ use fc_spec::model::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The package, and where its documentation is.
+/// The package, its style and the location of its documentation.
 pub struct Context<'m> {
     pub package: Package<'m>,
     pub style: &'static Style,
-    /// The folder of the pages in each language, if the project has them.
+    /// The folder of the pages in each language; empty if the project has no pages.
     docs: Vec<(Lang, String)>,
 }
 
 impl<'m> Context<'m> {
-    /// A package whose comments link to the pages of these targets.
+    /// Creates a context whose comments link to the pages of these targets.
     pub fn new(
         model: &'m Model,
         language: &Language,
@@ -34,24 +34,24 @@ impl<'m> Context<'m> {
         }
     }
 
-    /// The protocol.
+    /// Returns the protocol.
     pub fn model(&self) -> &'m Model {
         self.package.model
     }
 
-    /// The values that the spec gives as examples, or that are made up for it.
+    /// Returns the source of example values: from the spec, or invented for it.
     pub fn samples(&self) -> Samples<'m> {
         Samples::new(self.model())
     }
 
-    /// The spec's example of a message type, as JSON.
+    /// Returns the spec's example of a message type, as JSON.
     pub fn example(&self, item: &Item<'_>) -> String {
         self.samples()
             .named(item.ty.of, Profile::Example)
             .to_string()
     }
 
-    /// The end of a comment: links to the spec and to the page in each language.
+    /// Returns the last paragraph of a comment: links to the spec and to the page in each language.
     pub fn links(&self, location: &Location, page: &str) -> String {
         let spec = format!("Spec: `{}` in `{}`", location.name, location.file);
         match self.page(page) {
@@ -60,7 +60,7 @@ impl<'m> Context<'m> {
         }
     }
 
-    /// Links to a page in each language, if the project has the pages.
+    /// Returns links to a page in each language; `None` if the project has no pages.
     pub fn page(&self, page: &str) -> Option<String> {
         let link = |(language, folder): &(Lang, String)| match language {
             Lang::Zh => format!("- 文档：`{folder}/{page}`"),
@@ -70,27 +70,27 @@ impl<'m> Context<'m> {
         (!links.is_empty()).then(|| links.join("\n"))
     }
 
-    /// Commands that have a code.
+    /// Returns the commands that have a code.
     pub fn commands(&self) -> Vec<Call<'_>> {
         self.package.calls(Kind::Command)
     }
 
-    /// Reports that have a code.
+    /// Returns the reports that have a code.
     pub fn reports(&self) -> Vec<Call<'_>> {
         self.package.calls(Kind::Report)
     }
 
-    /// Name of a message type.
+    /// Returns the name of a message type.
     pub fn name_of(&self, named: &TypeRef) -> &str {
         &self.package.item(named).ty.name
     }
 
-    /// The message type that a stream carries; `None` for raw bytes.
+    /// Returns the message type that a stream carries; `None` for raw bytes.
     pub fn content(&self, stream: &Operation) -> Option<&str> {
         Some(self.name_of(&stream.body(Direction::Request)?.ty))
     }
 
-    /// The fields on the way that keys lead from a body.
+    /// Returns the fields along the path `keys`, which starts at `body`.
     pub fn steps(&self, body: &StructRef, keys: &[String]) -> Vec<Step<'_>> {
         let mut holder = self.package.item(body);
         let way = self.model().way(body, keys).into_iter();
@@ -110,7 +110,7 @@ impl<'m> Context<'m> {
         steps.collect()
     }
 
-    /// The enums that decide if a command is accepted.
+    /// Returns the enums that decide if a command is accepted.
     pub fn accepted_states<'a>(&'a self, command: &'a Operation) -> Vec<AcceptedStates<'a, 'm>> {
         let accepted = command.accepted().into_iter();
         let sets = accepted.flat_map(Accepted::state_sets);
@@ -131,7 +131,7 @@ impl<'m> Context<'m> {
         states.collect()
     }
 
-    /// Types that the module `home` does not hold, by the module that does.
+    /// Returns the types that are not in the module `home`, grouped by their module.
     pub fn imports<'a>(
         &'a self,
         home: &str,
@@ -149,17 +149,17 @@ impl<'m> Context<'m> {
     }
 }
 
-/// A field on the way from a body to one of its values.
+/// A field on the path from a body to one of its values.
 pub struct Step<'p> {
-    /// The type of the struct that holds it.
+    /// The type of the struct that has the field.
     pub holder: &'p str,
-    /// Its name there.
+    /// The name of the field.
     pub name: &'p str,
-    /// `true` if it may be absent.
+    /// `true` if the field may be absent.
     pub optional: bool,
 }
 
-/// An enum with the values in which a command is accepted.
+/// An enum, with the values that allow a command.
 pub struct AcceptedStates<'p, 'm> {
     /// The enum as a type of the spec.
     pub ty: &'p TypeRef,
@@ -171,7 +171,7 @@ pub struct AcceptedStates<'p, 'm> {
     pub values: Vec<&'p Spelled<'m, EnumValue>>,
 }
 
-/// Path of an operation's page below the documentation's root.
+/// Returns the path of an operation's page, relative to the documentation's root.
 pub fn page_of(operation: &Operation) -> String {
     let folder = match operation.kind() {
         Kind::Command => "commands",

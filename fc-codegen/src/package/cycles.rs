@@ -1,11 +1,11 @@
-//! Modules that need each other, for languages whose files cannot import in a circle.
+//! Import cycles between modules, for languages whose files cannot import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The ids that an id needs.
+/// The ids that each id needs directly.
 pub type Needs<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
 
-/// Adds what each id needs by way of others.
+/// Returns the transitive closure of `needs`.
 #[must_use]
 pub fn reached<'a>(needs: &Needs<'a>) -> Needs<'a> {
     let all = needs.iter().map(|(id, direct)| {
@@ -21,7 +21,9 @@ pub fn reached<'a>(needs: &Needs<'a>) -> Needs<'a> {
     all.collect()
 }
 
-/// The first id of those that need this one and that it needs. An id outside of a circle is alone.
+/// Returns the smallest id of the cycle that contains `id`.
+///
+/// Returns `id` if it is in no cycle.
 #[must_use]
 pub fn first_of_circle<'a>(reached: &Needs<'a>, id: &'a str) -> &'a str {
     let leads_to = |one: &str, other: &str| reached.get(one).is_some_and(|it| it.contains(other));

@@ -1,6 +1,6 @@
-//! Integers as languages write them that may part their digits.
+//! Integer literals for languages that allow digit separators.
 
-/// With its digits in groups of three, if there are five or more: `16_777_216`.
+/// Groups the digits by three if there are five or more: `16_777_216`.
 pub fn grouped(value: i128) -> String {
     let digits = value.unsigned_abs().to_string();
     let mut out = if value < 0 {

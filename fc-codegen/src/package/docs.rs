@@ -1,4 +1,4 @@
-//! Prose of the spec as documentation comments that compilers and documentation tools accept as they are.
+//! Turns prose of the spec into documentation comments that compilers and documentation tools accept.
 
 use super::style::Comment;
 use fc_spec::model::{Text, has_unprintable, is_hidden};
@@ -11,21 +11,21 @@ pub struct Docs<'t>(Vec<Block<'t>>);
 /// A part of a comment between empty lines.
 #[derive(Clone, Debug)]
 enum Block<'t> {
-    /// Markdown of the spec, to be made safe.
+    /// Markdown of the spec, which is escaped.
     Prose(Cow<'t, str>),
-    /// Text of the generator's own, which may link to items.
+    /// Text of the generator, which may link to items.
     Raw(String),
 }
 
 impl<'t> Docs<'t> {
-    /// A comment that starts with a text in both languages.
+    /// Creates a comment that starts with a text in both languages.
     pub fn titled(text: &'t Text) -> Self {
         let mut docs = Self::default();
         docs.text(text);
         docs
     }
 
-    /// A comment of the generator's own.
+    /// Creates a comment from the generator's paragraphs.
     pub fn said(texts: &[&'static str]) -> Self {
         let mut docs = Self::default();
         for text in texts {
@@ -34,7 +34,7 @@ impl<'t> Docs<'t> {
         docs
     }
 
-    /// The same in Chinese and in English, with names in it.
+    /// Creates a comment from a Chinese and an English paragraph.
     pub fn named(zh: String, en: String) -> Self {
         let mut docs = Self::default();
         docs.paragraph(zh);
@@ -42,14 +42,14 @@ impl<'t> Docs<'t> {
         docs
     }
 
-    /// A short comment that is written unchanged, links included.
+    /// Creates a short comment that is written unchanged, links included.
     pub fn linked(text: String) -> Self {
         let mut docs = Self::default();
         docs.raw(text);
         docs
     }
 
-    /// Adds a Chinese paragraph and an English one; a text that is the same in both only once.
+    /// Adds a Chinese and an English paragraph. Adds one paragraph if both are equal.
     pub fn text(&mut self, text: &'t Text) {
         self.paragraph(text.zh.as_str());
         if text.en != text.zh {
@@ -57,7 +57,7 @@ impl<'t> Docs<'t> {
         }
     }
 
-    /// Adds a text in both languages, if there is one.
+    /// Adds a text in both languages, if `text` is present.
     pub fn texts(&mut self, text: Option<&'t Text>) {
         if let Some(text) = text {
             self.text(text);
@@ -80,7 +80,7 @@ impl<'t> Docs<'t> {
         }
     }
 
-    /// Whether the first two paragraphs are a line of Chinese and the same in English.
+    /// Returns `true` if the first two paragraphs are a one-line Chinese title and its English translation.
     fn starts_with_a_title(&self, width: usize) -> bool {
         let [Block::Prose(zh), Block::Prose(en), ..] = self.0.as_slice() else {
             return false;
@@ -95,10 +95,12 @@ impl<'t> Docs<'t> {
             && is_short(en, 2)
     }
 
-    /// Hands on the lines of the comment without their marks, at most `width` columns long where a
-    /// space allows it. Chinese is not broken: a line break in it would be shown as a space.
+    /// Passes each line of the comment to `line`, without comment marks.
     ///
-    /// A first line in each language makes one paragraph: documentation tools show the first where they list items.
+    /// Lines have at most `width` columns where a space allows a break. Chinese is not broken, because a line break in
+    /// it would show as a space.
+    ///
+    /// A title in both languages forms one paragraph, because documentation tools list only the first paragraph.
     pub fn lines(&self, comment: &Comment, width: usize, mut line: impl FnMut(&str)) {
         for (index, block) in self.0.iter().enumerate() {
             if index > 1 || index == 1 && !self.starts_with_a_title(width) {
@@ -115,7 +117,7 @@ impl<'t> Docs<'t> {
     }
 }
 
-/// One block of Markdown: fenced code as it stands, everything else escaped, paragraphs wrapped.
+/// Writes one block of Markdown. Fenced code stays unchanged, other text is escaped, and paragraphs are wrapped.
 fn prose(block: &str, comment: &Comment, width: usize, out: &mut impl FnMut(&str)) {
     let mut fence: Option<&str> = None;
     for line in block.lines() {
@@ -143,7 +145,7 @@ fn prose(block: &str, comment: &Comment, width: usize, out: &mut impl FnMut(&str
     }
 }
 
-/// One line of prose. Deeper indentation than three would make a code block of it.
+/// Writes one line of prose. Caps the indentation at three, because four columns start a code block.
 fn prose_line(line: &str, comment: &Comment, width: usize, out: &mut impl FnMut(&str)) {
     let text = line.trim_start();
     let indent = "   ".get(..line.len() - text.len()).unwrap_or("   ");
@@ -161,7 +163,7 @@ fn prose_line(line: &str, comment: &Comment, width: usize, out: &mut impl FnMut(
     }
 }
 
-/// Length of the `- ` or `1. ` that a line starts with; 0 if it is no item of a list.
+/// Returns the length of the leading `- ` or `1. `; 0 if the line is no list item.
 fn list_marker(text: &str) -> usize {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
     let rest = text.get(digits..).unwrap_or_default();
@@ -173,7 +175,7 @@ fn list_marker(text: &str) -> usize {
     if marked { digits + 2 } else { 0 }
 }
 
-/// Whether a line that starts with this opens a list, a heading, a quote or a table.
+/// Returns `true` if such a line opens a list, a heading, a quote or a table.
 fn starts_block(text: &str) -> bool {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
     text.starts_with(['-', '+', '*', '#', '>', '|', '='])
@@ -183,8 +185,9 @@ fn starts_block(text: &str) -> bool {
                 .is_some_and(|rest| rest.starts_with(['.', ')']))
 }
 
-/// Breaks at spaces, but not before a word that would open a list or a quote there. The first line
-/// starts with `first`, the others with `further`.
+/// Breaks the text at spaces, except before a word that would open a list or a quote.
+///
+/// The first line starts with `first`, the others with `further`.
 fn wrap(text: &str, width: usize, first: &str, further: &str, out: &mut impl FnMut(&str)) {
     let has_gap = |text: &str| text.as_bytes().windows(2).any(|pair| pair == b"  ");
     if first.is_empty() && columns_of(text) <= width && !has_gap(text) && text.trim() == text {
@@ -211,7 +214,7 @@ fn wrap(text: &str, width: usize, first: &str, further: &str, out: &mut impl FnM
     out(&line);
 }
 
-/// Width on a terminal, where Chinese takes two columns.
+/// Returns the width on a terminal. A Chinese character takes two columns.
 pub fn columns_of(text: &str) -> usize {
     if text.is_ascii() {
         return text.len();
@@ -220,7 +223,7 @@ pub fn columns_of(text: &str) -> usize {
     text.chars().map(|c| if wide(&c) { 2 } else { 1 }).sum()
 }
 
-/// Without what a comment must not hold: carriage returns, controls, marks that turn the text around.
+/// Removes characters that a comment must not contain: carriage returns, controls and text direction marks.
 fn clean(line: &str) -> Cow<'_, str> {
     if !has_unprintable(line) {
         return Cow::Borrowed(line);
@@ -230,7 +233,7 @@ fn clean(line: &str) -> Cow<'_, str> {
     Cow::Owned(line.chars().filter(|&c| !unclean(c)).collect())
 }
 
-/// Escapes, outside code spans, what Markdown reads as a link or as HTML, and marks addresses as such.
+/// Escapes links and HTML outside code spans, and puts addresses into angle brackets.
 pub fn escape_links(text: &str) -> Cow<'_, str> {
     let marks = |byte| matches!(byte, b'<' | b'[' | b']');
     let has_address = text.contains(':') && text.contains("://");
@@ -263,7 +266,7 @@ pub fn escape_links(text: &str) -> Cow<'_, str> {
                 1
             }
             '\\' => {
-                // An escape of the spec's own stays what it is.
+                // Keeps an escape of the spec.
                 let length = rest.chars().take(2).map(char::len_utf8).sum();
                 let (pair, _) = rest.split_at(length);
                 out.push_str(pair);
@@ -279,7 +282,7 @@ pub fn escape_links(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Copies a code span, or lone backticks that open none; answers how many bytes it took.
+/// Copies a code span, or lone backticks that open none. Returns the number of bytes taken.
 fn code_span(text: &str, out: &mut String) -> usize {
     let ticks = text.bytes().take_while(|&byte| byte == b'`').count();
     let (mark, inner) = text.split_at(ticks);
@@ -296,7 +299,7 @@ fn is_address(text: &str) -> bool {
     text.starts_with("http://") || text.starts_with("https://")
 }
 
-/// How much of `text` belongs to the address that it starts with.
+/// Returns the length of the address at the start of `text`.
 fn address_length(text: &str) -> usize {
     let end = text
         .find(|c: char| !c.is_ascii() || c.is_whitespace() || "<>()[]\"`".contains(c))
@@ -311,7 +314,7 @@ fn address_length(text: &str) -> usize {
 mod tests {
     use super::*;
 
-    /// A comment in plain Markdown, whose code without a language is text.
+    /// Plain Markdown, in which a fence without a language is `text`.
     const COMMENT: Comment = Comment {
         open: "",
         mark: "",

@@ -1,4 +1,4 @@
-//! Constants of the spec as typed expressions: the rows of its tables, the bodies of its examples.
+//! Constants of the spec as typed expressions: table rows and example bodies.
 
 use super::items::{Item, Package, Shape, Spelled};
 use crate::sample::Samples;
@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use fc_spec::model::{EnumValue, Field, Number, Scalar, StructRef, Type, TypeRef, Value, Variant};
 
-/// A constant, with the types of all that is in it as the package calls them.
+/// A constant, in which every part has its type in the package.
 #[derive(Clone, Debug)]
 pub enum Expr<'p> {
     /// A bool.
@@ -15,49 +15,49 @@ pub enum Expr<'p> {
     Int(i128),
     /// A float of any width.
     Float(f64),
-    /// A text.
+    /// A string.
     Text(String),
-    /// The bytes behind a base64 text.
+    /// The bytes that a base64 string encodes.
     Bytes(Vec<u8>),
-    /// Any JSON value, as its text.
+    /// Any JSON value, as JSON text.
     Json(String),
-    /// An id of an entity that has a type for them: its name, and what it holds.
+    /// An id of an entity that has an id type: the name of the type, and the value.
     Id(&'p str, Box<Expr<'p>>),
     /// A list.
     List(Vec<Expr<'p>>),
     /// A struct.
     Record(Record<'p>),
-    /// A value of a one-of: its type, the variant, and the struct that this one holds.
+    /// A value of a one-of: its type, the variant, and the variant's struct.
     Choice(&'p Item<'p>, &'p Spelled<'p, Variant>, Record<'p>),
-    /// A value of an enum that has a name: its type, and the value.
+    /// A named value of an enum: its type, and the value.
     Value(&'p Item<'p>, &'p Spelled<'p, EnumValue>),
-    /// A value of an open enum that has none.
+    /// A value of an open enum that has no name.
     Unlisted(&'p Item<'p>, Box<Expr<'p>>),
 }
 
 /// A struct with a constant in each of its fields.
 #[derive(Clone, Debug)]
 pub struct Record<'p> {
-    /// Its type.
+    /// The type of the struct.
     pub item: &'p Item<'p>,
-    /// Its fields, in the order of the type; `None` where one is absent.
+    /// The fields, in the order of the type; `None` for an absent field.
     pub members: Vec<(&'p Spelled<'p, Field>, Option<Expr<'p>>)>,
 }
 
-/// Makes expressions of checked values.
+/// Builds expressions from checked values.
 #[derive(Debug)]
 pub struct Expressions<'p, 'm> {
     package: &'p Package<'m>,
 }
 
 impl<'p, 'm> Expressions<'p, 'm> {
-    /// For the values of a package's model.
+    /// Creates a builder for the values of a package's model.
     #[must_use]
     pub fn new(package: &'p Package<'m>) -> Self {
         Self { package }
     }
 
-    /// A value of a struct, in wire form.
+    /// Returns a struct value, given in wire form.
     #[must_use]
     pub fn record(&self, ty: &StructRef, value: &Value) -> Record<'p> {
         self.members(self.package.item(ty), value)
@@ -81,7 +81,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
         }
     }
 
-    /// A value of a field, in wire form.
+    /// Returns the value of a field, given in wire form.
     #[must_use]
     pub fn held(&self, field: &Field, value: &Value) -> Expr<'p> {
         let expr = self.value(&field.ty, value);
@@ -112,7 +112,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
         }
     }
 
-    /// A value of a type, in wire form.
+    /// Returns a value of a type, given in wire form.
     #[must_use]
     pub fn value(&self, ty: &Type, value: &Value) -> Expr<'p> {
         match (ty, value) {
@@ -131,7 +131,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
                 Expr::Bytes(STANDARD.decode(text).unwrap_or_default())
             }
             (Type::String, value) => plain(value),
-            // Numbers and bools that travel inside JSON strings, and bools that travel as numbers.
+            // Numbers and bools may travel inside JSON strings. Bools may also travel as numbers.
             (Type::Bool, Value::String(text)) => Expr::Bool(text == "true"),
             (Type::Bool, Value::Number(number)) => Expr::Bool(*number == Number::Int(1)),
             (Type::Float(_), Value::String(text)) => text.parse().map_or(plain(value), Expr::Float),
@@ -142,7 +142,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
 }
 
 impl<'p> Expr<'p> {
-    /// A scalar as an id of this type, a list as a list of them.
+    /// Wraps a scalar, or each item of a list, as an id of type `ty`.
     fn into_ids(self, ty: &'p str) -> Self {
         match self {
             Self::List(items) => Self::List(items.into_iter().map(|it| it.into_ids(ty)).collect()),
@@ -151,7 +151,7 @@ impl<'p> Expr<'p> {
     }
 }
 
-/// A scalar as what it is.
+/// Returns a value as the expression that matches its JSON type.
 fn plain<'p>(value: &Value) -> Expr<'p> {
     match value {
         Value::Bool(value) => Expr::Bool(*value),
@@ -162,7 +162,7 @@ fn plain<'p>(value: &Value) -> Expr<'p> {
     }
 }
 
-/// Whether a value is this one of an enum; a number may travel inside a text.
+/// Returns `true` if `value` is this enum value. A number may travel inside a string.
 fn is_it(known: &EnumValue, value: &Value) -> bool {
     match (&known.wire, value) {
         (Scalar::String(wire), Value::String(value)) => wire == value,

@@ -1,4 +1,4 @@
-//! What a comment says of a field, an operation or a type beside its prose.
+//! Sentences and paragraphs that comments on fields, operations and types add to the spec's prose.
 
 use super::context::{Context, page_of};
 use super::docs::Docs;
@@ -11,7 +11,7 @@ use fc_spec::model::{
     TypeShape, Value, Variant, WireForm,
 };
 
-/// The comment on a struct's field; `condition` says when it is there.
+/// Returns the comment on a struct's field. `condition` is the sentence about its presence.
 pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>) -> Docs<'m> {
     let details = field.details();
     let mut docs = Docs::titled(&field.text);
@@ -27,7 +27,7 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
     docs
 }
 
-/// The comment on a value of an enum.
+/// Returns the comment on a value of an enum.
 pub fn value_docs(value: &EnumValue) -> Docs<'_> {
     let mut docs = Docs::titled(&value.text);
     if let Some(since) = &value.since {
@@ -37,7 +37,7 @@ pub fn value_docs(value: &EnumValue) -> Docs<'_> {
     docs
 }
 
-/// What the comment on a variant of a choice says beside its text.
+/// Adds the deprecation and the limits of a variant to its comment.
 pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
     if let Some(deprecation) = &variant.deprecated {
         withdrawn(docs, deprecation);
@@ -45,7 +45,7 @@ pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
     docs.paragraph(variant.available.as_ref().map_or_else(String::new, limits));
 }
 
-/// The comment on a method of an operation, with `more` before the links at its end.
+/// Returns the comment on an operation's method. `more` adds text before the links at the end.
 pub fn method_docs<'m>(
     context: &Context<'_>,
     operation: &'m Operation,
@@ -58,7 +58,7 @@ pub fn method_docs<'m>(
     docs
 }
 
-/// The comment on a method of a command; `declared` is the sentence about the type of its errors.
+/// Returns the comment on a command's method. `declared` writes the sentence about its error type.
 pub fn command_docs<'m>(
     context: &Context<'_>,
     command: &'m Operation,
@@ -68,7 +68,7 @@ pub fn command_docs<'m>(
     method_docs(context, command, |docs| docs.raw(error.unwrap_or_default()))
 }
 
-/// The same for a method whose call can be followed.
+/// Returns the comment on a command's method whose call can be followed.
 pub fn call_docs<'m>(
     context: &Context<'_>,
     command: &'m Operation,
@@ -81,17 +81,17 @@ pub fn call_docs<'m>(
     })
 }
 
-/// In which coordinate system something is given.
+/// Returns the sentence about the coordinate system.
 pub fn coordinates(system: &str) -> String {
     format!("In the coordinate system `{system}`.")
 }
 
-/// Where something is kept.
+/// Returns the sentence about the store that keeps a thing.
 pub fn kept(store: &str) -> String {
     format!("Kept in `{store}`.")
 }
 
-/// Entity, place, constraints, unit, example and wire form of a field, a sentence each.
+/// Returns one sentence for each fact of a field: entity, place, constraints, unit, example and wire form.
 fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     let details = field.details();
     let mut facts = Vec::new();
@@ -133,7 +133,7 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     }
     if let Example::Given(value) = &field.example {
         let value = value.to_string();
-        // A long one is on the documentation's page.
+        // The documentation's page shows long examples.
         if value.chars().count() <= 60 {
             facts.push(format!("Example: {}.", code(&value)));
         }
@@ -172,7 +172,7 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     facts
 }
 
-/// For whom a thing is, on which machines and in which releases, by the names of the spec.
+/// Returns the sentences about audiences, hardware and releases, with the names of the spec.
 pub fn limits(available: &Available) -> String {
     let spans = |names: &[String]| {
         let names: Vec<String> = names.iter().map(|name| code(name)).collect();
@@ -194,7 +194,7 @@ pub fn limits(available: &Available) -> String {
     limits.join(" ")
 }
 
-/// What every comment on an operation starts with: title, description, what is withdrawn.
+/// Returns the start of every comment on an operation: title, description and deprecation.
 pub fn operation_docs(operation: &Operation) -> Docs<'_> {
     let mut docs = Docs::titled(&operation.title);
     docs.texts(operation.about.as_ref());
@@ -204,7 +204,7 @@ pub fn operation_docs(operation: &Operation) -> Docs<'_> {
     docs
 }
 
-/// The end of what a comment says of an operation: its facts in one paragraph, then what its errors mean.
+/// Adds the facts of an operation as one paragraph, then the causes of its errors.
 pub fn operation_end<'m>(style: &Style, docs: &mut Docs<'m>, operation: &'m Operation) {
     docs.paragraph(operation_facts(style, operation));
     docs.texts(
@@ -220,7 +220,7 @@ pub fn operation_end<'m>(style: &Style, docs: &mut Docs<'m>, operation: &'m Oper
     }
 }
 
-/// Code, effect, store and age of an operation, and how the results besides success are numbered.
+/// Returns the facts of an operation: code, effect, store, conditions, stream content, errors and releases.
 pub fn operation_facts(style: &Style, operation: &Operation) -> String {
     let mut facts = Vec::new();
     facts.push(match (operation.code.value, operation.code.state) {
@@ -265,7 +265,7 @@ pub fn operation_facts(style: &Style, operation: &Operation) -> String {
     facts.join(" ")
 }
 
-/// What has to hold before a command is accepted, a sentence each.
+/// Returns one sentence for each condition under which a command is accepted.
 fn accepted_facts(accepted: &Accepted) -> Vec<String> {
     let mut facts = Vec::new();
     match &accepted.states {
@@ -296,7 +296,7 @@ fn accepted_facts(accepted: &Accepted) -> Vec<String> {
     facts
 }
 
-/// When a report is sent.
+/// Returns the sentence about the occasions on which a report is sent.
 fn cadence_fact(style: &Style, cadence: &Cadence) -> String {
     match cadence {
         Cadence::OnChange(field) => format!("Sent at each change of `{field}`."),
@@ -310,7 +310,7 @@ fn cadence_fact(style: &Style, cadence: &Cadence) -> String {
     }
 }
 
-/// Says how sure a body is, where the source does not state it.
+/// Adds a note on how certain a body is, unless the source states it.
 pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     let (zh, en) = match body.state {
         BodyState::Free | BodyState::Stated | BodyState::Confirmed => ("", ""),
@@ -338,7 +338,7 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     }
 }
 
-/// The title of an operation with the side that a body is.
+/// Returns the title of an operation, with the side of the body.
 pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
     let (zh, en) = match (operation.kind(), direction) {
         (Kind::Command, Direction::Request) => ("：请求", ": request"),
@@ -357,13 +357,13 @@ pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
     docs
 }
 
-/// Why something is withdrawn and what to use instead, for a comment.
+/// Adds the reason for a deprecation, and the replacement.
 pub fn withdrawn(docs: &mut Docs<'_>, deprecation: &Deprecation) {
     docs.paragraph(format!("已弃用：{}", deprecation.note.zh));
     docs.paragraph(format!("Deprecated: {}", withdrawn_note(deprecation)));
 }
 
-/// The same as one English line, for an attribute.
+/// Returns the deprecation as one English line, for an attribute.
 pub fn withdrawn_note(deprecation: &Deprecation) -> String {
     let note = deprecation.note.en.trim();
     let since = deprecation
@@ -393,7 +393,7 @@ fn range(style: &Style, min: Option<&Number>, max: Option<&Number>) -> Option<St
     }
 }
 
-/// A number as it stands in source text.
+/// Returns a number as source text.
 fn number(style: &Style, number: &Number) -> String {
     match number {
         Number::Int(value) => (style.integer)(*value),
@@ -409,7 +409,7 @@ fn scalar(style: &Style, scalar: &Scalar) -> String {
     }
 }
 
-/// A code span, with as many backticks as its text calls for.
+/// Returns a code span with as many backticks as the text needs.
 pub fn code(text: &str) -> String {
     if !text.contains('`') {
         return ["`", text, "`"].concat();
@@ -426,7 +426,7 @@ pub fn code(text: &str) -> String {
     format!("{mark}{pad}{text}{pad}{mark}")
 }
 
-/// The comment on a message that is a whole body.
+/// Returns the comment on a message that is a whole body.
 pub fn body_docs<'m>(
     context: &Context<'_>,
     operation: &'m Operation,
@@ -449,7 +449,7 @@ pub fn body_docs<'m>(
     docs
 }
 
-/// What is said of a type that may be the body of an operation: then of the operation, and which side it is.
+/// Returns the comment on a message type. The comment on a whole body describes the operation and the side.
 pub fn item_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     match item.body_of() {
         Some((operation, direction)) => body_docs(context, operation, direction),
@@ -457,7 +457,7 @@ pub fn item_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     }
 }
 
-/// The comment on a type that is not a whole body.
+/// Returns the comment on a type that is not a whole body.
 pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     let ty = item.ty.of;
     let mut docs = Docs::titled(&ty.title);

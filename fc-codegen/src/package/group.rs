@@ -1,13 +1,13 @@
-//! A group of the spec, with everything that a package has of it.
+//! A group of the spec, with its operations and types in a package.
 
 use super::items::{Call, Item, Package, Spelled};
 use fc_spec::model::{self, Kind, Operation, Side};
 
 /// A group, or the types that several groups share.
 pub struct Group<'p, 'm> {
-    /// The id, of which names are made.
+    /// The id, from which names are built.
     pub id: &'p str,
-    /// The id as a module of the language.
+    /// The module name of the group in the language.
     pub name: &'p str,
     /// The group in the spec; `None` for the types that several groups share.
     pub of: Option<&'m model::Group>,
@@ -24,7 +24,7 @@ pub struct Group<'p, 'm> {
 }
 
 impl<'p, 'm> Group<'p, 'm> {
-    /// The groups that have operations or types, in the order of the spec. The types that several share come last.
+    /// Returns the groups that have operations or types, in the order of the spec. Shared types come last.
     #[must_use]
     pub fn all(package: &'p Package<'m>) -> Vec<Self> {
         let groups = package.group_names.iter();
@@ -66,19 +66,19 @@ impl<'p, 'm> Group<'p, 'm> {
         }
     }
 
-    /// The streams that the robot sends, to which an app subscribes.
+    /// Returns the streams that the robot sends and an app subscribes to.
     pub fn subscribed(&self) -> impl Iterator<Item = &'p Spelled<'m, Operation>> {
         let streams = self.streams.iter().copied();
         streams.filter(|it| it.sender == Side::Robot)
     }
 
-    /// The streams that an app sends.
+    /// Returns the streams that an app sends.
     pub fn sent(&self) -> impl Iterator<Item = &'p Spelled<'m, Operation>> {
         let streams = self.streams.iter().copied();
         streams.filter(|it| it.sender == Side::App)
     }
 
-    /// The file of the spec that it comes from.
+    /// Returns the spec file that defines the group.
     #[must_use]
     pub fn file(&self) -> &'p str
     where

@@ -1,7 +1,7 @@
-//! A package in one language: what it offers of a protocol, each name spelled before the first line is written.
+//! A protocol as a package of one language, with every name spelled in advance.
 //!
-//! What a field, an operation or a table says of itself is in the model, which is of no language. Here it gets its
-//! name and its place in a package; an emitter lays that out and spells nothing itself.
+//! The model holds the facts about fields, operations and tables, independent of any language. This module adds their
+//! names and their modules. An emitter lays them out and spells no name.
 
 use super::language::{Language, Role};
 use super::name::{Clash, Named, Scope, free};
@@ -20,12 +20,11 @@ use std::ops::Deref;
 pub struct Package<'m> {
     /// The protocol.
     pub model: &'m Model,
-    /// The type that stands for it.
+    /// The type of the protocol.
     pub name: Cow<'m, str>,
-    /// The message types: a module for each group that has any, and one for those that several groups share; by
-    /// their ids.
+    /// The modules of message types, sorted by id: one for each group with types, and one for shared types.
     pub modules: Vec<Module<'m>>,
-    /// Which module holds a type, and where in it, by the type's id.
+    /// The module and the index of each type, by the type's id.
     places: Vec<Place>,
     /// The frame's header.
     pub header: Vec<Spelled<'m, HeaderField>>,
@@ -41,23 +40,23 @@ pub struct Package<'m> {
     pub streams: Vec<Spelled<'m, Operation>>,
     /// The enums of the errors that commands declare, by the commands' names in the spec.
     errors: HashMap<&'m str, Cow<'m, str>>,
-    /// The commands and reports as methods, by their names in the spec.
+    /// The method names of commands and reports, by their names in the spec.
     methods: HashMap<&'m str, Cow<'m, str>>,
-    /// The types of the ids of entities, where the language has such.
+    /// The id types of entities; empty if the language has no id types.
     pub ids: Vec<Spelled<'m, Entity>>,
     /// The groups as modules.
     pub(super) group_names: Vec<Spelled<'m, Group>>,
     types: HashSet<Cow<'m, str>>,
-    /// Names that the language cannot have. A package with any of them is not to be written.
+    /// Names that the language cannot use. A package with clashes must not be written.
     pub clashes: Vec<Clash<'m>>,
 }
 
-/// Something of the spec, with its name in the language.
+/// An element of the spec, with its name in the language.
 #[derive(Clone, Debug)]
 pub struct Spelled<'m, T> {
-    /// As it stands in the source.
+    /// The name in the source.
     pub name: Cow<'m, str>,
-    /// What it is.
+    /// The element.
     pub of: &'m T,
 }
 
@@ -72,13 +71,13 @@ impl<T> Deref for Spelled<'_, T> {
 /// A module of message types.
 #[derive(Clone, Debug)]
 pub struct Module<'m> {
-    /// What its file is called.
+    /// The name of the file.
     pub id: String,
-    /// Its name in a path.
+    /// The name in a path.
     pub name: Cow<'m, str>,
-    /// The group whose types it holds; `None` for those that several groups share.
+    /// The group of the types; `None` for types that several groups share.
     pub group: Option<&'m Group>,
-    /// Its types, in the order of the spec.
+    /// The types, in the order of the spec.
     pub items: Vec<Item<'m>>,
 }
 
@@ -87,13 +86,13 @@ pub struct Module<'m> {
 pub struct Item<'m> {
     /// The type, with its name.
     pub ty: Spelled<'m, TypeDef>,
-    /// What it is made of.
+    /// The structure of the type.
     pub shape: Shape<'m>,
-    /// The operation in one of whose bodies it stands, if it stands in only one.
+    /// The operation whose bodies use the type, if there is only one.
     pub operation: Option<&'m Operation>,
 }
 
-/// What a type is made of.
+/// The structure of a type.
 #[derive(Clone, Debug)]
 pub enum Shape<'m> {
     /// A struct and its fields.
@@ -105,14 +104,16 @@ pub enum Shape<'m> {
 }
 
 impl<'m> Item<'m> {
-    /// Whether it is a struct with several required fields: a list of values could be given in a wrong order.
+    /// Returns `true` for a struct with several required fields.
+    ///
+    /// Positional arguments could be passed in the wrong order, so these fields get a named type.
     #[must_use]
     pub fn has_field_type(&self) -> bool {
         let required = self.fields().iter().filter(|field| !field.optional);
         required.count() > 1
     }
 
-    /// Its fields, if it is a struct.
+    /// Returns the fields of a struct; empty for other types.
     #[must_use]
     pub fn fields(&self) -> &[Spelled<'m, Field>] {
         match &self.shape {
@@ -121,7 +122,7 @@ impl<'m> Item<'m> {
         }
     }
 
-    /// The operation and the side whose whole body it is.
+    /// Returns the operation and the side if the type is a whole body.
     #[must_use]
     pub fn body_of(&self) -> Option<(&'m Operation, Direction)> {
         let place = self.ty.of.body_of.as_ref();
@@ -133,13 +134,13 @@ impl<'m> Item<'m> {
 /// A command or a report that has a code.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'p> {
-    /// Its name among the methods of the stubs.
+    /// The name of the method in the stubs.
     pub method: &'p str,
-    /// What it is.
+    /// The operation.
     pub operation: &'p Operation,
-    /// What is asked or reported.
+    /// The type of the request, or of the report.
     pub request: &'p Item<'p>,
-    /// The answer or acknowledgement.
+    /// The type of the response, or of the acknowledgement.
     pub response: &'p Item<'p>,
 }
 
@@ -152,7 +153,7 @@ impl Call<'_> {
     }
 }
 
-/// What the module is called whose types several groups share: the first of these that is no group.
+/// Candidate ids of the module of shared types. The first that is not the id of a group is used.
 const SHARED: [&str; 3] = ["types", "shared", "shared_types"];
 
 impl<'m> Package<'m> {
@@ -258,26 +259,27 @@ impl<'m> Package<'m> {
         }
     }
 
-    /// Whether one of its message types, or the protocol, is called that.
+    /// Returns `true` if a message type or the protocol has this name.
     #[must_use]
     pub fn has_type(&self, name: &str) -> bool {
         self.types.contains(name)
     }
 
-    /// Whether a command or report is called that in the spec.
+    /// Returns `true` if a command or report of the spec has this name.
     #[must_use]
     pub fn has_call(&self, name: &str) -> bool {
         self.methods.contains_key(name)
     }
 
-    /// The enum of the errors that a command declares, if it declares any.
+    /// Returns the enum of the errors that a command declares; `None` if it declares none.
     #[must_use]
     pub fn error_type(&self, command: &Operation) -> Option<&str> {
         self.errors.get(command.name.as_str()).map(|name| &**name)
     }
 
-    /// The type of the ids that a field holds, if they have one. A text with a default stays one: no constant can hold
-    /// an id made of it.
+    /// Returns the id type that a field holds, if its entity has one.
+    ///
+    /// A string with a default keeps its type, because no constant can hold an id made from it.
     #[must_use]
     pub fn id_of(&self, field: &Field) -> Option<&Spelled<'m, Entity>> {
         let details = field.details();
@@ -288,7 +290,7 @@ impl<'m> Package<'m> {
         self.ids.iter().find(|id| id.of.name == entity)
     }
 
-    /// The errors of an operation as the result codes that they are.
+    /// Returns the declared errors of an operation, each with its result code.
     pub fn errors<'p>(
         &'p self,
         operation: &'p Operation,
@@ -300,7 +302,7 @@ impl<'m> Package<'m> {
         })
     }
 
-    /// What a reference stands for.
+    /// Returns the type that a reference names.
     #[must_use]
     #[expect(
         clippy::indexing_slicing,
@@ -311,21 +313,21 @@ impl<'m> Package<'m> {
         &self.modules[module].items[item]
     }
 
-    /// The module that holds what a reference stands for.
+    /// Returns the module of the type that a reference names.
     #[must_use]
     #[expect(clippy::indexing_slicing, reason = "as above")]
     pub fn module_of(&self, reference: &TypeRef) -> &Module<'m> {
         &self.modules[self.places[reference.id().index()].0]
     }
 
-    /// All message types, in the order of the spec.
+    /// Returns all message types, in the order of the spec.
     pub fn items(&self) -> impl Iterator<Item = &Item<'m>> {
         let module = |place: &Place| self.modules.get(place.0);
         let items = self.places.iter();
         items.filter_map(move |place| module(place)?.items.get(place.1))
     }
 
-    /// A command or report as a method of the stubs; `None` of a stream, and of what has no code.
+    /// Returns the method of a command or report; `None` for a stream, and for an operation without a code.
     #[must_use]
     pub fn call<'p>(&'p self, operation: &'p Operation) -> Option<Call<'p>> {
         operation.code.value?;
@@ -338,7 +340,7 @@ impl<'m> Package<'m> {
         })
     }
 
-    /// The command or the report whose request a type is; `None` without a code.
+    /// Returns the command or report whose request is this type; `None` without a code.
     #[must_use]
     pub fn opened_by<'p>(&'p self, item: &'p Item<'_>) -> Option<Call<'p>> {
         let (operation, side) = item.body_of()?;
@@ -346,7 +348,7 @@ impl<'m> Package<'m> {
         self.call(operation).filter(|_| is_request)
     }
 
-    /// The command whose request a type is, with the enum of the errors that it declares.
+    /// Returns the command whose request is this type, with the enum of its declared errors.
     #[must_use]
     pub fn declared_by<'i>(&self, item: &Item<'i>) -> Option<(&'i Operation, &str)> {
         let (command, side) = item.body_of()?;
@@ -354,15 +356,17 @@ impl<'m> Package<'m> {
         (side == Direction::Request).then_some((command, errors))
     }
 
-    /// A stream with its name; `None` without a code.
+    /// Returns a stream with its name; `None` without a code.
     #[must_use]
     pub fn stream(&self, operation: &Operation) -> Option<&Spelled<'m, Operation>> {
         let mut streams = self.streams.iter();
         streams.find(|known| known.of.name == operation.name)
     }
 
-    /// The commands or the reports that have a code, by group: were they in the order of their codes, any two new
-    /// ones would stand side by side, and two branches could not be merged.
+    /// Returns the commands or the reports that have a code, by group.
+    ///
+    /// The order is not that of the codes: two new operations would become neighbours, and their branches would
+    /// conflict.
     #[must_use]
     pub fn calls(&self, kind: Kind) -> Vec<Call<'_>> {
         let operations = self.model.operations.iter();
@@ -371,13 +375,13 @@ impl<'m> Package<'m> {
     }
 }
 
-/// The commands that declare errors.
+/// Returns the commands that declare errors.
 fn declaring(model: &Model) -> impl Iterator<Item = &Operation> {
     let operations = model.operations.iter();
     operations.filter(|it| it.kind() == Kind::Command && !it.errors.is_empty())
 }
 
-/// Every name of a protocol that cannot be a name in one of these languages.
+/// Returns every name of a protocol that one of these languages cannot use.
 #[must_use]
 pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> {
     let languages = languages.iter();
@@ -385,7 +389,7 @@ pub fn clashes<'m>(model: &'m Model, languages: &[&Language]) -> Vec<Clash<'m>> 
     packages.flat_map(|package| package.clashes).collect()
 }
 
-/// What a type is in the spec language.
+/// Returns the keyword of a type in the spec language.
 fn kind(ty: &TypeDef) -> &'static str {
     match ty.shape {
         TypeShape::Struct(_) => "struct",
@@ -394,10 +398,10 @@ fn kind(ty: &TypeDef) -> &'static str {
     }
 }
 
-/// Where a type is: its module, and where in it.
+/// The index of a module, and the index of a type in it.
 type Place = (usize, usize);
 
-/// Puts each type into the module of its group; a group that has none has no module.
+/// Puts each type into the module of its group. A group without types has no module.
 fn modules<'m>(
     language: &Language,
     groups: &[Spelled<'m, Group>],
@@ -435,14 +439,13 @@ fn modules<'m>(
     (modules, places)
 }
 
-/// Names as they are given.
+/// Spells names and collects clashes.
 struct Names<'l, 'm> {
     language: &'l Language,
     clashes: Vec<Clash<'m>>,
 }
 
 impl<'l, 'm> Names<'l, 'm> {
-    /// None yet.
     fn new(language: &'l Language) -> Self {
         Self {
             language,
@@ -450,7 +453,7 @@ impl<'l, 'm> Names<'l, 'm> {
         }
     }
 
-    /// Names that stand next to each other.
+    /// Spells names that share a scope.
     fn all<T>(
         &mut self,
         role: Role,
@@ -466,7 +469,7 @@ impl<'l, 'm> Names<'l, 'm> {
         things.collect()
     }
 
-    /// What a type is made of.
+    /// Spells the parts of a type.
     fn shape(&mut self, ty: &'m TypeDef) -> Shape<'m> {
         let owner = ty.name.as_str();
         match &ty.shape {

@@ -1,4 +1,4 @@
-//! What a field demands of its values and how it travels, as names and values that a language spells.
+//! Constraints and wire forms of a field, as names and values that each language spells.
 
 use super::conditions::{Asked, asked};
 use crate::package::items::Spelled;
@@ -6,9 +6,9 @@ use fc_spec::model::{Constraint, Field, Number, Quirk, Scalar, WireForm};
 
 /// The marks of a field.
 pub struct FieldMarks<'f, 'm> {
-    /// Other keys that are read.
+    /// The alternative keys that a reader accepts.
     pub also: &'f [String],
-    /// The form in which it travels, unless that is the form of its type.
+    /// The wire form, unless it is the default of the type.
     pub form: Option<&'static str>,
     /// The constraints, in the order of the checks.
     pub constraints: Vec<(&'static str, Bound<'f>)>,
@@ -36,7 +36,7 @@ pub enum Bound<'f> {
 }
 
 impl<'f, 'm> FieldMarks<'f, 'm> {
-    /// The marks of a field of a struct with these fields.
+    /// Returns the marks of a field in a struct with these fields.
     pub fn build(field: &'f Field, fields: &'f [Spelled<'m, Field>]) -> Self {
         let details = field.details();
         let form = field.wire_form;
@@ -54,7 +54,7 @@ impl<'f, 'm> FieldMarks<'f, 'm> {
 }
 
 impl FieldMarks<'_, '_> {
-    /// The names of the quirks, in the order of the vocabulary.
+    /// Returns the names of the quirks, in the order of the vocabulary.
     pub fn quirks_in_order(&self) -> impl Iterator<Item = &'static str> {
         let quirks = Quirk::ALL.iter().map(|quirk| quirk.name());
         quirks.filter(|name| self.quirks.contains(name))

@@ -1,8 +1,7 @@
-//! The content of a package, without the words of a language.
+//! The content of a generated package, independent of the language.
 //!
-//! Between the model and the emitters of packages: facts that each language would otherwise work out for itself, the
-//! comments on them, and a file under construction. An emitter spells them in its language. A language writes its files
-//! in its [`Style`](style::Style).
+//! These modules turn the model into facts, comments and files under construction. An emitter spells the facts in its
+//! language and lays out its files with the language's [`Style`](style::Style).
 
 pub(crate) mod about;
 pub(crate) mod conditions;

@@ -1,4 +1,4 @@
-//! Names that are next to each other: each claims its spelling in a language, and what cannot have it is a fault.
+//! Checks that names in one scope have distinct spellings in a language, and reports clashes.
 
 use super::language::{Language, Role};
 use fc_spec::diagnostic::{Diagnostic, FaultCode};
@@ -10,42 +10,42 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-/// What has a name in the spec, as an [`Item`] says it.
+/// An element of the spec that has a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Named<'m> {
-    /// What it is in the spec language: `field`, `command`.
+    /// The keyword in the spec language: `field`, `command`.
     pub kind: &'static str,
-    /// What it belongs to, where its name alone does not tell it from others.
+    /// The owner, if the name is unique only within it.
     pub owner: Option<&'m str>,
-    /// Its name there.
+    /// The name in the spec.
     pub name: &'m str,
 }
 
-/// A name that a language cannot have.
+/// A name that a language cannot use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Clash<'m> {
-    /// The language, as people write it.
+    /// The display name of the language.
     pub language: &'static str,
-    /// Whose name it is.
+    /// The element with the name.
     pub who: Named<'m>,
-    /// Its spelling in that language.
+    /// The spelling in that language.
     pub spelling: String,
-    /// Why it cannot be.
+    /// The reason for the clash.
     pub reason: Reason<'m>,
 }
 
-/// Why a name cannot be.
+/// The reason why a language cannot use a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason<'m> {
-    /// The language, or the package itself, needs the name.
+    /// The language, or the package, needs the name.
     Taken,
-    /// Another name has this spelling already.
+    /// Another name already has this spelling.
     Same(Named<'m>),
-    /// Another name has this spelling but for upper and lower case, which not every file system tells apart.
+    /// Another name differs only in case. Some file systems do not tell the two files apart.
     SameFile(Named<'m>),
 }
 
-/// With its kind: `field Station.name`.
+/// Formats the element with its kind: `field Station.name`.
 impl fmt::Display for Named<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, owner, name } = self;
@@ -56,7 +56,7 @@ impl fmt::Display for Named<'_> {
     }
 }
 
-/// For a model that has no places.
+/// Formats the clash for a model without source positions.
 impl fmt::Display for Clash<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -74,7 +74,7 @@ impl fmt::Display for Clash<'_> {
 }
 
 impl<'m> Named<'m> {
-    /// What its name alone tells from others of its kind.
+    /// Names an element whose name is unique among its kind.
     pub(super) fn alone(kind: &'static str, name: &'m str) -> Self {
         Self {
             kind,
@@ -83,7 +83,7 @@ impl<'m> Named<'m> {
         }
     }
 
-    /// A part of something else.
+    /// Names a part of an owner.
     pub(super) fn part(kind: &'static str, owner: &'m str, name: &'m str) -> Self {
         Self {
             kind,
@@ -92,7 +92,7 @@ impl<'m> Named<'m> {
         }
     }
 
-    /// Where its name stands in the spec.
+    /// Returns the position of the name in the spec.
     fn span(&self, places: &Definitions) -> Option<Span> {
         let item = DefId {
             kind: self.kind,
@@ -104,7 +104,9 @@ impl<'m> Named<'m> {
 }
 
 impl Clash<'_> {
-    /// As a fault of the spec; `None` of a model that has been read from a dump, which has no places.
+    /// Returns the clash as an error in the spec.
+    ///
+    /// Returns `None` for a model read from a dump, which has no positions.
     #[must_use]
     pub fn fault(&self, places: &Definitions) -> Option<Diagnostic> {
         let span = self.who.span(places)?;
@@ -145,7 +147,7 @@ impl Clash<'_> {
     }
 }
 
-/// Names that are next to each other, and so have to differ.
+/// Names that share a scope and must differ.
 pub(super) struct Scope<'l, 'm> {
     language: &'l Language,
     role: Role,
@@ -154,7 +156,7 @@ pub(super) struct Scope<'l, 'm> {
 }
 
 impl<'l, 'm> Scope<'l, 'm> {
-    /// An empty one.
+    /// Creates an empty scope.
     pub(super) fn new(language: &'l Language, role: Role) -> Self {
         Self {
             language,
@@ -164,7 +166,7 @@ impl<'l, 'm> Scope<'l, 'm> {
         }
     }
 
-    /// Gives a name, written in words that `_` or capitals part, its spelling.
+    /// Returns the spelling of a name of the spec and claims it. Underscores or capitals separate its words.
     pub(super) fn claim(
         &mut self,
         words: &'m str,
@@ -175,7 +177,7 @@ impl<'l, 'm> Scope<'l, 'm> {
         self.take(spelling, who, clashes)
     }
 
-    /// The same for words that are not in the spec themselves.
+    /// Claims the spelling of a name that is not itself in the spec.
     pub(super) fn claim_made(
         &mut self,
         words: &str,
@@ -215,13 +217,13 @@ impl<'l, 'm> Scope<'l, 'm> {
         spelling
     }
 
-    /// All that have been given.
+    /// Returns all claimed names.
     pub(super) fn into_names(self) -> HashSet<Cow<'m, str>> {
         self.claimed.into_keys().collect()
     }
 }
 
-/// The first of `wishes` that `taken` does not hold; failing all, the last with underscores.
+/// Returns the first of `wishes` that is not `taken`. If all are taken, appends underscores to the last.
 pub fn free(wishes: &[&str], taken: impl Fn(&str) -> bool) -> String {
     for wish in wishes {
         if !taken(wish) {

@@ -1,4 +1,4 @@
-//! The reports that a command sets off, the state of its process, and the comment about them.
+//! Reports that a command sets off, the state of its process, and the comments about them.
 
 use super::context::Context;
 use super::docs::Docs;
@@ -7,7 +7,7 @@ use fc_spec::model::{
     EnumType, EnumValue, Exchange, KeyPath, Messages, Operation, SetOff, TypeRef,
 };
 
-/// The reports that a command sets off and that can be sent, with their bodies and with what ties them.
+/// Returns the reports that a command sets off and that have a code, with their ties and messages.
 pub fn set_off<'m>(
     context: &'m Context<'_>,
     command: &'m Operation,
@@ -30,7 +30,7 @@ pub fn has_states(shape: &EnumType) -> bool {
     shape.order.is_some() || values.any(|value| value.is_final || value.is_error)
 }
 
-/// The values that follow a value, in the order of the spec.
+/// Returns the values that may follow `value`, in the order of the spec.
 pub fn next_values<'v, 'm>(
     value: &EnumValue,
     values: &'v [Spelled<'m, EnumValue>],
@@ -39,7 +39,7 @@ pub fn next_values<'v, 'm>(
     next.filter_map(|next| values.iter().find(|known| known.of.name == *next))
 }
 
-/// The key that has the state of a report, and its type.
+/// Returns the key of a report's state, and its type.
 pub fn state<'m>(
     context: &'m Context<'_>,
     report: &'m Operation,

@@ -1,13 +1,13 @@
-//! Ranges of codes that a robot handles as a whole.
+//! Ranges of codes that a robot handles with one method.
 
 use super::context::Context;
 use crate::package::name::free;
 use fc_spec::model::{CodeRange, RangeUse};
 
-/// The method for codes that nothing else handles, in words that a language joins in its own way.
+/// The method for codes without another handler, in words that each language joins.
 pub const UNKNOWN: &str = "unknown";
 
-/// Ranges of codes that are handed on as they come, each with the name of its method in such words.
+/// Returns the pass-through ranges, each with the name of its method in words.
 pub fn pass_through<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = context.model().ranges.iter();
     let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);

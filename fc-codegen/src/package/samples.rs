@@ -1,5 +1,6 @@
-//! How an operation is called and answered: the samples on the pages of the documentation. A file of each package has the
-//! same samples and runs them.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! A file of each package contains the same samples and runs them.
 
 use super::context::Context;
 use super::source::Source;
@@ -11,28 +12,28 @@ use crate::sample::Profile;
 use crate::target::Targets;
 use fc_spec::model::{Direction, Kind, Operation, Side};
 
-/// Columns of a line on a page, which is narrower than a file.
+/// The width of a line on a page, in columns. A page is narrower than a file.
 pub const PAGE_WIDTH: usize = 80;
 
 /// A language in which the pages show every operation.
 pub struct Shown {
     /// The language of a fence.
     pub fence: &'static str,
-    /// The file that has all samples, below the product's place.
+    /// The file with all samples, relative to the product's root.
     pub file: &'static str,
-    /// How names are spelled in it.
+    /// The rules for names.
     pub language: fn(&Targets) -> &'static Language,
-    /// How it is written on a page.
+    /// The style on a page.
     pub style: &'static Style,
     /// Writes a sample.
     pub write: fn(&mut Source, &Context<'_>, &Sample<'_, '_>),
 }
 
-/// A sample with the values in it. A stream without a value is one of bytes.
+/// A sample with its values. A stream without a value carries bytes.
 pub enum Sample<'p, 'm> {
     /// An app calls a command.
     Call(Call<'p>, Record<'p>),
-    /// An app takes a report.
+    /// An app receives a report.
     Take(Call<'p>),
     /// An app subscribes to a stream.
     Subscribe(&'p Spelled<'m, Operation>),
@@ -46,10 +47,10 @@ pub enum Sample<'p, 'm> {
     Stream(&'p Spelled<'m, Operation>, Option<Record<'p>>),
 }
 
-/// Bytes that a stream carries in the samples.
+/// The bytes that a stream carries in the samples.
 pub const BYTES: &str = "any bytes";
 
-/// What an app does with an operation; `None` without a code.
+/// Returns the app's sample of an operation; `None` without a code.
 pub fn app<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
     let example = || example(context, operation, Direction::Request);
     Some(match operation.kind() {
@@ -65,7 +66,7 @@ pub fn app<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option
     })
 }
 
-/// What a robot does with an operation; `None` without a code, and for a stream of the app.
+/// Returns the robot's sample of an operation; `None` without a code, and for a stream of the app.
 pub fn robot<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Option<Sample<'p, 'm>> {
     let example = |direction| example(context, operation, direction);
     Some(match operation.kind() {
@@ -87,7 +88,7 @@ pub fn robot<'p, 'm>(context: &'p Context<'m>, operation: &'p Operation) -> Opti
     })
 }
 
-/// The spec's example of a body; `None` for a stream of bytes.
+/// Returns the spec's example of a body; `None` for a stream of bytes.
 fn example<'p>(
     context: &'p Context<'_>,
     operation: &Operation,
@@ -100,29 +101,29 @@ fn example<'p>(
     Some(Expressions::new(&context.package).record(&body.ty, &value))
 }
 
-/// All samples of a package, in the order in which a file has them.
+/// All samples of a package, in the order of the file.
 pub struct SampleRun<'p, 'm> {
-    /// The answers of the robot.
+    /// The robot's responses.
     pub answers: Vec<Sample<'p, 'm>>,
     steps: Vec<SampleStep<'p, 'm>>,
 }
 
-/// A function with a sample.
+/// A function that contains a sample.
 pub struct SampleStep<'p, 'm> {
-    /// What it does.
+    /// The action of the function.
     pub verb: Verb,
     /// The operation in the spec.
     pub operation: &'p Operation,
-    /// What it shows.
+    /// The sample.
     pub sample: Sample<'p, 'm>,
 }
 
-/// What a step does.
+/// The action of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verb {
     /// An app calls a command.
     Call,
-    /// An app takes a report.
+    /// An app receives a report.
     Take,
     /// A robot pushes a report.
     Push,
@@ -135,7 +136,7 @@ pub enum Verb {
 }
 
 impl<'p, 'm> SampleRun<'p, 'm> {
-    /// The samples of a package, with values from `samples`.
+    /// Builds the samples of a package, with example values.
     pub fn build(context: &'p Context<'m>) -> Self {
         let mut steps = Vec::new();
         let mut add = |verb, operation, sample: Option<Sample<'p, 'm>>| {
@@ -169,17 +170,17 @@ impl<'p, 'm> SampleRun<'p, 'm> {
         }
     }
 
-    /// All steps.
+    /// Returns all steps.
     pub fn steps(&self) -> &[SampleStep<'p, 'm>] {
         &self.steps
     }
 
-    /// The steps that do this.
+    /// Returns the steps with this action.
     pub fn that(&self, verb: Verb) -> impl Iterator<Item = &SampleStep<'p, 'm>> {
         self.steps.iter().filter(move |step| step.verb == verb)
     }
 
-    /// Returns `true` if any step does this.
+    /// Returns `true` if any step has this action.
     pub fn has(&self, verb: Verb) -> bool {
         self.that(verb).next().is_some()
     }
@@ -191,7 +192,7 @@ impl<'p, 'm> SampleRun<'p, 'm> {
 }
 
 impl SampleStep<'_, '_> {
-    /// The name of the function in words: `call_get_station`.
+    /// Returns the name of the function in words: `call_get_station`.
     pub fn name(&self) -> String {
         let verb = match self.verb {
             Verb::Call => "call",
@@ -203,7 +204,7 @@ impl SampleStep<'_, '_> {
         [verb, "_", &self.operation.name].concat()
     }
 
-    /// The name and the type of its parameter, which is a stub.
+    /// Returns the name and the type of the parameter, which is a stub.
     pub fn parameter(&self) -> [&'static str; 2] {
         match self.verb {
             Verb::Call | Verb::Take => ["client", "Client"],

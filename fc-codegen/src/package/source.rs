@@ -1,5 +1,6 @@
-//! Source text under construction: indentation, blank lines, comments, and lists that break when they are too long for a
-//! line. It is laid out as the language's formatter would, so nothing has to format it afterwards.
+//! Builds source text: indentation, blank lines, comments, and lists that break when they exceed a line.
+//!
+//! The layout matches the language's formatter, so the output needs no formatting pass.
 
 use super::docs::{Docs, columns_of};
 use super::style::{Comment, Style};
@@ -10,12 +11,12 @@ pub struct Source {
     style: &'static Style,
     text: String,
     level: usize,
-    /// Whether a block has just been opened.
+    /// `true` if a block was just opened.
     opened: bool,
 }
 
 impl Source {
-    /// An empty one in this style.
+    /// Creates an empty file in this style.
     pub fn new(style: &'static Style) -> Self {
         Self {
             style,
@@ -25,18 +26,18 @@ impl Source {
         }
     }
 
-    /// The text written so far.
+    /// Returns the text written so far.
     pub fn finish(self) -> String {
         self.text
     }
 
-    /// What stands in another part, which was written at the level of a file.
+    /// Appends another part, which was written at the level of a file.
     pub fn append(&mut self, part: &Self) {
         self.text.push_str(&part.text);
         self.opened &= part.text.is_empty();
     }
 
-    /// One line, or several already laid out, each at the current level.
+    /// Writes one line, or several laid out in advance, each at the current level.
     pub fn line(&mut self, text: impl AsRef<str>) {
         let mut rest = text.as_ref();
         while !rest.is_empty() {
@@ -51,25 +52,25 @@ impl Source {
         }
     }
 
-    /// An empty line, unless this is the start of the file or of a block or one stands here already.
+    /// Writes an empty line, except at the start of a file or block, or after another empty line.
     pub fn blank(&mut self) {
         if !(self.opened || self.text.ends_with("\n\n")) {
             self.text.push('\n');
         }
     }
 
-    /// A documentation comment on what follows.
+    /// Writes a documentation comment on the next item.
     pub fn docs(&mut self, docs: &Docs<'_>) {
         self.comment(&self.style.comment, docs);
     }
 
-    /// An empty line, and a documentation comment on what follows.
+    /// Writes an empty line, and a documentation comment on the next item.
     pub fn documented(&mut self, docs: &Docs<'_>) {
         self.blank();
         self.docs(docs);
     }
 
-    /// A comment of this kind.
+    /// Writes a comment of this kind.
     pub fn comment(&mut self, comment: &Comment, docs: &Docs<'_>) {
         let width = self.room().saturating_sub(comment.mark.len() + 1);
         if comment.open.is_empty() {
@@ -101,12 +102,12 @@ impl Source {
         }
     }
 
-    /// `head {`, what `body` writes one level deeper, `}`.
+    /// Writes `head {`, the output of `body` one level deeper, and `}`.
     pub fn block(&mut self, head: impl AsRef<str>, body: impl FnOnce(&mut Self)) {
         self.enclose(&[head.as_ref(), " {"].concat(), "}", body);
     }
 
-    /// `open`, what `body` writes one level deeper, `close`, which may be empty.
+    /// Writes `open`, the output of `body` one level deeper, and `close`, which may be empty.
     pub fn enclose(&mut self, open: &str, close: &str, body: impl FnOnce(&mut Self)) {
         self.line(open);
         self.level += 1;
@@ -117,7 +118,7 @@ impl Source {
         self.opened = false;
     }
 
-    /// `open a, b close` on one line if it fits, else every item on a line of its own.
+    /// Writes `open a, b close` on one line if it fits, otherwise every item on a separate line.
     pub fn list<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
         if self.has_room([open, &joined, close]) {
@@ -127,7 +128,7 @@ impl Source {
         }
     }
 
-    /// `open`, every item on a line of its own with a comma, `close`.
+    /// Writes `open`, every item on a separate line with a comma, and `close`.
     pub fn lines<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         self.enclose(open, close, |out| {
             for item in items {
@@ -136,9 +137,9 @@ impl Source {
         });
     }
 
-    /// Items with commas, as many to a line as fit; `last` stands behind the last.
+    /// Writes items with commas, as many to a line as fit. `last` follows the last item.
     pub fn fill<S: AsRef<str>>(&mut self, items: &[S], last: &str) {
-        // One column is kept free, for the comma after an item.
+        // Reserves one column for the comma after an item.
         let room = self.room() - 1;
         let mut line = String::new();
         for item in items.iter().map(AsRef::as_ref) {
@@ -154,13 +155,13 @@ impl Source {
         self.line([&line, last].concat());
     }
 
-    /// Columns of a line at the current level.
+    /// Returns the number of columns of a line at the current level.
     pub fn room(&self) -> usize {
         let indent = self.level * self.style.indent.len();
         self.style.width.saturating_sub(indent)
     }
 
-    /// Whether these stand on one line at the current level.
+    /// Returns `true` if these parts fit on one line at the current level.
     pub fn has_room<const N: usize>(&self, parts: [&str; N]) -> bool {
         let columns: usize = parts.into_iter().map(columns_of).sum();
         columns <= self.room()
@@ -187,7 +188,7 @@ impl Source {
     }
 }
 
-/// Items as they stand on one line.
+/// Joins items for one line.
 pub fn join<S: AsRef<str>>(items: &[S]) -> String {
     let mut out = String::new();
     for (index, item) in items.iter().enumerate() {
@@ -204,7 +205,7 @@ mod tests {
     use super::*;
     use std::borrow::Cow;
 
-    /// With comments as Java has them.
+    /// A style with the comments of Java.
     static BRACES: Style = Style {
         width: 40,
         indent: "    ",
@@ -222,7 +223,7 @@ mod tests {
         redacted: "",
     };
 
-    /// With comments as Python has them.
+    /// A style with the comments of Python.
     static INDENTED: Style = Style {
         comment: Comment {
             open: "\"\"\"",

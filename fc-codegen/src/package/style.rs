@@ -1,39 +1,39 @@
-//! How a language is written: its lines, its comments, the few words that a comment cannot say without it.
+//! The source style of a language: line width, indentation, comments and a few fixed phrases.
 
 use std::borrow::Cow;
 
-/// How a language is written.
+/// The source style of a language.
 #[derive(Debug)]
 pub struct Style {
-    /// Columns of a line.
+    /// The width of a line, in columns.
     pub width: usize,
     /// One level of indentation.
     pub indent: &'static str,
-    /// The comment on what follows.
+    /// The comment on the next item.
     pub comment: Comment,
-    /// A name in a comment as a link to what it names.
+    /// Formats a name in a comment as a link.
     pub link: fn(&str) -> String,
-    /// An integer as it stands in source text.
+    /// Formats an integer literal.
     pub integer: fn(i128) -> String,
-    /// Says that a value is kept out of what is printed.
+    /// The phrase for a value that is not printed.
     pub redacted: &'static str,
 }
 
 /// A documentation comment.
 #[derive(Clone, Copy, Debug)]
 pub struct Comment {
-    /// What opens it, on a line of its own; empty where each line has its mark.
+    /// The line that opens the comment; empty if each line has a mark.
     pub open: &'static str,
-    /// What each of its lines begins with.
+    /// The start of each line.
     pub mark: &'static str,
-    /// What closes it.
+    /// The end of the comment.
     pub close: &'static str,
-    /// Whether its text begins right behind what opens it.
+    /// `true` if the text begins directly after `open`.
     pub begins_at_once: bool,
-    /// A line of the spec's Markdown as the language's documentation tool takes it for the same.
+    /// Escapes a line of the spec's Markdown for the language's documentation tool.
     pub prose: fn(&str) -> Cow<'_, str>,
-    /// A line of code in fences likewise.
+    /// Escapes a line of code in a fence.
     pub code: fn(&str) -> Cow<'_, str>,
-    /// What a fence says of its language, from what the spec says.
+    /// Converts the language of a fence from the spec.
     pub fence: fn(&str) -> &str,
 }

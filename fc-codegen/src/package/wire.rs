@@ -1,4 +1,4 @@
-//! The layer below the messages: header, kinds of frames, ports, result codes, times and limits.
+//! Facts about the wire: header, frame kinds, ports, result codes, times and limits.
 
 use super::context::Context;
 use crate::package::items::Spelled;
@@ -13,7 +13,7 @@ pub struct WireFacts<'p, 'm> {
     pub name: &'m str,
     /// The address of the robot.
     pub host: &'m str,
-    /// The ports: `command_port`.
+    /// The ports, by name, such as `command_port`.
     pub ports: Vec<(String, u16)>,
     /// The bytes of a frame.
     pub frame: FrameFacts<'p, 'm>,
@@ -21,9 +21,9 @@ pub struct WireFacts<'p, 'm> {
     pub results: Vec<ResultFact<'p, 'm>>,
     /// The times of calls.
     pub times: Vec<(&'static str, u32)>,
-    /// The age in ms at which a request has expired.
+    /// The maximum age of a request, in ms.
     pub max_age_ms: Option<u32>,
-    /// How acknowledgements are awaited.
+    /// The timeout and the retries of an acknowledgement.
     pub ack: Ack,
     /// The limits.
     pub limits: [(&'static str, u32); 6],
@@ -31,7 +31,7 @@ pub struct WireFacts<'p, 'm> {
 
 /// The bytes of a frame.
 pub struct FrameFacts<'p, 'm> {
-    /// The order of the bytes of integers.
+    /// The byte order of integers.
     pub byte_order: ByteOrder,
     /// The fields of the header.
     pub header: &'p [Spelled<'m, HeaderField>],
@@ -39,13 +39,13 @@ pub struct FrameFacts<'p, 'm> {
     pub digest: Option<DigestAlgorithm>,
     /// The first bytes of requests and of responses: `request_head`.
     pub heads: [(&'static str, &'m [u8]); 2],
-    /// The values of the kind field: `stream`.
+    /// The values of the kind field, by name, such as `stream`.
     pub kinds: [(&'static str, u8); 3],
-    /// The kinds that are refused by name.
+    /// The reserved kinds, which are refused.
     pub reserved_kinds: Vec<u8>,
-    /// The value of the encoding field for data that is not packed.
+    /// The value of the encoding field for uncompressed data.
     pub plain: u8,
-    /// The same for packed data.
+    /// The value of the encoding field for gzip data.
     pub gzip: Option<u8>,
     /// `true` if a plain frame may state 0 as the length of its data.
     pub takes_zero_plain_length: bool,
@@ -60,7 +60,7 @@ pub struct ResultFact<'p, 'm> {
 }
 
 impl ResultFact<'_, '_> {
-    /// The number of the code, and its text.
+    /// Returns the number of the code, and its Chinese text.
     pub fn code_and_text(&self) -> (i64, &str) {
         let result = self.result;
         result.map_or((0, ""), |it| (it.code, &*it.text.zh))
@@ -68,7 +68,7 @@ impl ResultFact<'_, '_> {
 }
 
 impl<'p, 'm> WireFacts<'p, 'm> {
-    /// The facts about the wire of a protocol.
+    /// Collects the facts about a protocol's wire.
     pub fn build(context: &'p Context<'m>) -> Self {
         let model = context.model();
         let ports = model.transport.ports.each().into_iter();

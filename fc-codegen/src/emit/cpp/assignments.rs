@@ -1,4 +1,6 @@
-//! Constants of the spec as statements that fill a struct, field by field: C++17 cannot name the fields in one expression.
+//! Constants of the spec as statements that fill a struct, field by field.
+//!
+//! C++17 cannot name the fields of a struct in one expression.
 
 use super::tables::spelled_in;
 use super::types::name_in;
@@ -8,28 +10,28 @@ use crate::package::source::Source;
 use fc_spec::model::Type;
 use std::collections::BTreeSet;
 
-/// Statements that give a struct the values of a constant.
+/// The statements that fill a struct with the values of a constant.
 pub struct Assignments<'c, 'm> {
     context: &'c Context<'m>,
-    /// What stands before each name of the package.
+    /// The qualifier before each name of the package.
     space: &'c str,
-    /// The variables that there are.
+    /// The variables in scope.
     variables: BTreeSet<String>,
     statements: Vec<Statement>,
 }
 
-/// A statement, to be laid out where it stands.
+/// A statement before layout.
 enum Statement {
-    /// A whole one.
+    /// A complete line.
     Line(String),
-    /// What is given to what.
+    /// An assignment: left side, right side.
     Assign(String, String),
-    /// The same, of a list: what opens it, and its items.
+    /// An assignment of a list: left side, type before the braces, items.
     List(String, String, Vec<String>),
 }
 
 impl<'c, 'm> Assignments<'c, 'm> {
-    /// Those that fill the variable `name`, beside the `others` that there are.
+    /// Creates the statements that fill the variable `name`. `others` are the other variables in scope.
     pub fn new(
         context: &'c Context<'m>,
         space: &'c str,
@@ -48,12 +50,12 @@ impl<'c, 'm> Assignments<'c, 'm> {
         made
     }
 
-    /// Whether there is nothing to fill.
+    /// Returns `true` if no statement is necessary.
     pub fn is_empty(&self) -> bool {
         self.statements.is_empty()
     }
 
-    /// All of them.
+    /// Writes all statements.
     pub fn write(&self, out: &mut Source) {
         for statement in &self.statements {
             match statement {
@@ -82,7 +84,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
         }
     }
 
-    /// What fills a place that is called `name`, and may begin as nothing.
+    /// Adds the statements that fill `place`. `name` is the base of new variables.
     fn held(&mut self, place: &str, name: &str, ty: &Type, optional: bool, value: &Expr<'_>) {
         match value {
             Expr::Record(record) if optional => {
@@ -137,7 +139,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
         }
     }
 
-    /// A list of what stands on a line. One that begins empty need not be made so.
+    /// Adds an assignment of items that fit a line. An empty list that is required needs no statement.
     fn filled(&mut self, place: &str, ty: &Type, optional: bool, items: Vec<String>) {
         if optional {
             let open = name_in(self.context, self.space, ty);
@@ -149,7 +151,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
         }
     }
 
-    /// A struct that `made` makes, with what is in it.
+    /// Adds the statements for a struct that the expression `made` creates.
     fn inside(&mut self, made: &str, name: &str, record: &Record<'_>) {
         let start = self.statements.len();
         let variable = self.variable(name);
@@ -162,7 +164,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
         self.statements.insert(start, Statement::Line(line));
     }
 
-    /// A variable with this name, or one like it.
+    /// Returns a free variable with this name, or with a number as a suffix.
     fn variable(&mut self, name: &str) -> String {
         let numbered = (2_usize..).map(|number| format!("{name}_{number}"));
         let mut names = std::iter::once(name.to_owned()).chain(numbered);
@@ -173,7 +175,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
     }
 }
 
-/// `left = right;`, on a second line what does not fit.
+/// Writes `left = right;`, on two lines if it exceeds one.
 pub fn assign(out: &mut Source, left: &str, right: &str) {
     if out.has_room([left, " = ", right, ";"]) {
         out.line(format!("{left} = {right};"));

@@ -1,4 +1,6 @@
-//! The app's stub: a class whose methods are those of its groups, one per command, and one variant over all reports.
+//! The app's stub: a class with the methods of its groups, one per command.
+//!
+//! The stub also contains one variant over all reports.
 
 use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, header_file, literal, source_file};
@@ -8,7 +10,7 @@ use crate::package::facts;
 use crate::package::items::Call;
 use crate::package::source::Source;
 
-/// The header.
+/// Generates `client.hpp`.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let includes = Includes::new(
         context,
@@ -136,7 +138,7 @@ fn client(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     );
 }
 
-/// The commands of a group as methods of the client.
+/// Writes the commands of a group as methods of the client.
 pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，是 `Client`（`Self`）的方法。",
@@ -195,7 +197,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     }
 }
 
-/// The types of a group's requests and of its reports.
+/// Writes the types of a group's requests and of its reports.
 pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
     for (part, zh, en, calls) in [
         (
@@ -216,8 +218,8 @@ pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
         }
         out.line(format!("/// {zh}{en}"));
         out.line(format!("using {} = fc_runtime::Types<", group.part(part)));
-        // A comment on each keeps it on a line of its own, and with an end behind the last a type more changes no line of
-        // another.
+        // The comments and the end marker keep each type on a separate line. A new type therefore changes no other
+        // line.
         for call in calls {
             out.line(format!("    // {}", call.operation.code.spelling));
             out.line(format!("    {},", call.request.ty.name));
@@ -227,7 +229,7 @@ pub fn lists(out: &mut Source, group: &NamedGroup<'_, '_>) {
     }
 }
 
-/// A function over the types of all commands, and one over those of all reports.
+/// Writes a function over the types of all commands, and one over the types of all reports.
 fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     let commands = with_commands(groups, "Commands");
     let reports = with_reports(groups, "Reports");
@@ -253,7 +255,7 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     }
 }
 
-/// The source.
+/// Generates `client.cpp`.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let before = "#include \"fc_runtime/any_report.hpp\"\n\n";
     source_file(context, "client.hpp", before, |out| {

@@ -1,4 +1,4 @@
-//! The sources beside the headers of groups: what each message names of its fields, and each enum of its values.
+//! The sources of the group headers: the fields of each message and the values of each enum.
 
 use super::groups::{self, NamedGroup};
 use super::layout::{float, integer, literal, raw};
@@ -13,7 +13,7 @@ use crate::package::process::has_states;
 use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Number, Scalar, Type, Value};
 
-/// The source of a header.
+/// Generates the source of a header.
 pub fn source(
     context: &Context<'_>,
     header: &Header<'_, '_>,
@@ -41,7 +41,7 @@ pub fn source(
     out.finish()
 }
 
-/// What is declared of the message types of a header, and of their operations.
+/// Writes the codecs and functions of a header's message types, and of their operations.
 fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
     let space = &namespace(context);
     out.namespace("fc_runtime", |out| {
@@ -137,7 +137,7 @@ fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Sp
     });
 }
 
-/// The other keys of a field, and the values that it takes alone.
+/// Writes the alternative keys of a field, and its list of accepted values.
 fn lists(out: &mut Source, field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) {
     let mut list = |ty: &str, name: &str, items: Vec<String>| {
         let (field, items) = (&field.name, items.join(", "));
@@ -160,7 +160,7 @@ fn lists(out: &mut Source, field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_
     }
 }
 
-/// A value that a field takes, as the runtime compares it: all integers as signed ones.
+/// Returns an accepted value as the runtime compares it: all integers are signed.
 fn taken(value: &Scalar) -> String {
     match value {
         Scalar::Number(Number::Int(value)) if i64::try_from(*value).is_err() => {
@@ -170,7 +170,7 @@ fn taken(value: &Scalar) -> String {
     }
 }
 
-/// A value in wire form.
+/// Returns a value in wire form.
 fn scalar(value: &Scalar) -> String {
     match value {
         Scalar::Number(value) => number(value),
@@ -186,7 +186,7 @@ fn number(value: &Number) -> String {
     }
 }
 
-/// A field as it is named to a visitor.
+/// Returns the description of a field for a visitor.
 fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
     let mut out = format!("Field({})", literal(&field.wire));
     out.push_str(match marks.form {
@@ -218,7 +218,7 @@ fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
     out
 }
 
-/// Under which values of the fields beside it a field is there.
+/// Returns the check of a field's condition, which depends on other fields.
 fn asks(
     space: &str,
     expressions: &Expressions<'_, '_>,
@@ -252,7 +252,7 @@ fn asks(
     format!("asked.asks({key}, message.{name}, {holds}, {said});")
 }
 
-/// A constant that a field is compared with.
+/// Returns a constant for a comparison with a field.
 fn compared(space: &str, value: &Expr<'_>) -> String {
     match value {
         Expr::Value(item, value) => format!("{space}::{}::{}", enumerators(item), value.name),
@@ -270,7 +270,7 @@ fn compared(space: &str, value: &Expr<'_>) -> String {
     }
 }
 
-/// Where the values of an enum are.
+/// Returns the scope of an enum's values.
 pub fn enumerators(item: &Item<'_>) -> String {
     match &item.shape {
         Shape::Enum(shape, _) if shape.repr == EnumRepr::String => {
@@ -316,7 +316,7 @@ fn enumeration(
     });
 }
 
-/// The text that is sent beside each error that a command declares.
+/// Writes the function that returns the refusal for each error that a command declares.
 fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     let Some((command, name)) = context.package.declared_by(item) else {
         return;
@@ -340,7 +340,7 @@ fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     );
 }
 
-/// What the header declares of a type.
+/// Defines the functions that the header declares for a type.
 fn functions(out: &mut Source, item: &Item<'_>) {
     let name = &item.ty.name;
     let codec = format!("fc_runtime::Codec<{name}>");

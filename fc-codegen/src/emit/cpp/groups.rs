@@ -1,5 +1,6 @@
-//! The groups of a protocol. Whatever the package has of an operation is in the file of its group; all other files name
-//! groups alone, so that they stay as they are when an operation is added.
+//! The groups of a protocol. The file of a group contains all parts of its operations.
+//!
+//! All other files name only groups, so that a new operation does not change them.
 
 use super::layout::Includes;
 use super::types::{Header, namespace};
@@ -16,9 +17,9 @@ use std::ops::Deref;
 /// A group with operations, and the names of its parts.
 pub struct NamedGroup<'p, 'm> {
     group: Group<'p, 'm>,
-    /// The beginning of the names of its types: `Identity`.
+    /// The prefix of its type names: `Identity`.
     stem: String,
-    /// The namespace that the parts of all groups are in.
+    /// The namespace of the parts of all groups.
     space: String,
     package: &'p Package<'m>,
 }
@@ -32,25 +33,25 @@ impl<'p, 'm> Deref for NamedGroup<'p, 'm> {
 }
 
 impl NamedGroup<'_, '_> {
-    /// The name of a part inside of the namespace: `IdentityCalls`.
+    /// Returns the name of a part inside the namespace: `IdentityCalls`.
     pub fn part(&self, part: &str) -> String {
         let name = [&self.stem, part].concat();
         let is_taken = |name: &str| self.package.items().any(|item| item.ty.name == name);
         free(&[&name], is_taken)
     }
 
-    /// The same outside: `groups::IdentityCalls`.
+    /// Returns the name of a part outside the namespace: `groups::IdentityCalls`.
     pub fn named(&self, part: &str) -> String {
         format!("{}::{}", self.space, self.part(part))
     }
 
-    /// The name of a function outside of the namespace: `groups::serve_identity`.
+    /// Returns the name of a function outside the namespace: `groups::serve_identity`.
     pub fn function(&self, verb: &str) -> String {
         format!("{}::{verb}_{}", self.space, self.id)
     }
 }
 
-/// The groups that have operations, in the order of the spec.
+/// Returns the groups that have operations, in the order of the spec.
 pub fn groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
     let package = &context.package;
     let is_table = |name: &str| package.tables.iter().any(|table| table.name == name);
@@ -70,19 +71,19 @@ pub fn groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
     groups
 }
 
-/// The names of a part of the groups that have commands.
+/// Returns the names of a part, for the groups that have commands.
 pub fn with_commands(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
     let groups = groups.iter().filter(|group| !group.commands.is_empty());
     groups.map(|group| group.named(part)).collect()
 }
 
-/// The names of a part of the groups that have reports.
+/// Returns the names of a part, for the groups that have reports.
 pub fn with_reports(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
     let groups = groups.iter().filter(|group| !group.reports.is_empty());
     groups.map(|group| group.named(part)).collect()
 }
 
-/// The groups whose operations are in a header.
+/// Returns the groups whose operations are in a header.
 pub fn of_header<'g, 'p, 'm>(
     groups: &'g [NamedGroup<'p, 'm>],
     header: &Header<'_, '_>,
@@ -92,7 +93,7 @@ pub fn of_header<'g, 'p, 'm>(
     groups.iter().filter(is_here).collect()
 }
 
-/// What the header has of its groups beside their messages.
+/// Declares the parts of the groups in their header, after the messages.
 pub fn declare(
     out: &mut Source,
     includes: &mut Includes,
@@ -137,7 +138,7 @@ pub fn declare(
     });
 }
 
-/// What the source has of them.
+/// Defines the declared parts in the source.
 pub fn define(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_, '_>]) {
     let Some(first) = groups.first() else {
         return;

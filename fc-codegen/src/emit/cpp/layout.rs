@@ -1,4 +1,4 @@
-//! What clang-format does, in Google's style, beyond any language: parameters, files, namespaces.
+//! Layout rules of clang-format in Google's style: parameters, files and namespaces.
 
 use super::types::namespace;
 use crate::package::context::Context;
@@ -9,7 +9,7 @@ use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// C++ as clang-format lays it out.
+/// The style of clang-format.
 pub static CPP: Style = Style {
     width: 100,
     indent: "  ",
@@ -27,8 +27,10 @@ pub static CPP: Style = Style {
     redacted: "Never printed.",
 };
 
-/// A line of a comment in which no backslash can come last, wherever it is wrapped: the next line would be joined to it.
-/// `??/` is a backslash for compilers that read trigraphs, and others warn of it.
+/// Replaces backslashes that could end a line of a comment after wrapping.
+///
+/// Such a backslash would join the next line to the comment. Some compilers read the trigraph `??/` as a backslash, and
+/// others warn of it.
 fn unspliced<'l>(line: &'l str, shown: &str) -> Cow<'l, str> {
     const TRIGRAPH: &str = "??/";
     if !line.ends_with('\\') && !line.contains("\\ ") && !line.contains(TRIGRAPH) {
@@ -43,7 +45,7 @@ fn unspliced<'l>(line: &'l str, shown: &str) -> Cow<'l, str> {
     Cow::Owned(out)
 }
 
-/// What a file includes.
+/// The includes of a file.
 #[derive(Default)]
 pub struct Includes {
     standard: BTreeSet<&'static str>,
@@ -51,7 +53,9 @@ pub struct Includes {
 }
 
 impl Includes {
-    /// Headers of the standard library, of the package and of the runtime, without their folders and endings.
+    /// Creates includes of the standard library, of the package and of the runtime.
+    ///
+    /// The names have no folder and no extension.
     pub fn new(
         context: &Context<'_>,
         standard: &[&'static str],
@@ -67,17 +71,17 @@ impl Includes {
         }
     }
 
-    /// A header of the standard library.
+    /// Adds a header of the standard library.
     pub fn standard(&mut self, name: &'static str) {
         self.standard.insert(name);
     }
 
-    /// A header of the package.
+    /// Adds a header of the package.
     pub fn own(&mut self, path: impl Into<String>) {
         self.own.insert(path.into());
     }
 
-    /// The lines for all of them.
+    /// Writes all includes.
     pub fn lines(&self, out: &mut Source) {
         for name in &self.standard {
             out.line(format!("#include <{name}>"));
@@ -91,7 +95,7 @@ impl Includes {
     }
 }
 
-/// A header with the namespace of the package.
+/// Generates a header with the namespace of the package.
 pub fn header_file(
     context: &Context<'_>,
     includes: &Includes,
@@ -106,7 +110,7 @@ pub fn header_file(
     out.finish()
 }
 
-/// The source of a header, with lines before the namespace of the package.
+/// Generates the source of a header. `before` precedes the namespace of the package.
 pub fn source_file(
     context: &Context<'_>,
     header: &str,
@@ -125,12 +129,14 @@ pub fn source_file(
 }
 
 impl Source {
-    /// A file of C++.
+    /// Creates an empty C++ file.
     pub fn cpp() -> Self {
         Self::new(&CPP)
     }
 
-    /// `open(a, b)close`: on one line if it fits, else further parameters below the first, as many to a line as fit.
+    /// Writes `open(a, b)close` on one line if it fits.
+    ///
+    /// Otherwise the parameters are aligned below the first, as many to a line as fit.
     pub fn parameters(&mut self, open: &str, parameters: &[String], close: &str) {
         if self.has_room([open, &join(parameters), close]) {
             return self.line([open, &join(parameters), close].concat());
@@ -166,14 +172,14 @@ impl Source {
         self.line(line);
     }
 
-    /// `using name = of<…>;`.
+    /// Writes `using name = of<…>;`.
     pub fn alias(&mut self, name: &str, of: &str, types: &[String]) {
         let using = format!("using {name} =");
         let all = join(types);
         if self.has_room([&using, " ", of, "<", &all, ">;"]) {
             return self.line(format!("{using} {of}<{all}>;"));
         }
-        // Whatever takes fewer lines.
+        // Uses the layout with fewer lines.
         let mut beside = Self::cpp();
         beside.parameters(&format!("{using} {of}<"), types, ">;");
         let mut below = Self::cpp();
@@ -184,7 +190,7 @@ impl Source {
         self.line(if is_below { below } else { beside });
     }
 
-    /// The first line of a class with its bases: on one line if they fit, else each on one of its own.
+    /// Writes the first line of a class with its bases. Bases that exceed the line have one line each.
     pub fn class(&mut self, name: &str, bases: &[String]) {
         if bases.is_empty() {
             return self.line(format!("class {name} {{"));
@@ -197,7 +203,7 @@ impl Source {
         self.line([&open, &*bases.join(&between), " {"].concat());
     }
 
-    /// A namespace, whose contents are not indented.
+    /// Writes a namespace, whose contents are not indented.
     pub fn namespace(&mut self, name: &str, body: impl FnOnce(&mut Self)) {
         self.line(format!("namespace {name} {{"));
         self.blank();
@@ -207,7 +213,7 @@ impl Source {
     }
 }
 
-/// A text as a string literal.
+/// Returns a string literal.
 pub fn literal(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
     out.push('"');
@@ -219,7 +225,7 @@ pub fn literal(text: &str) -> String {
             '\\' => out.push_str("\\\\"),
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
-            // Three digits, so that no digit behind them is taken for one more.
+            // Three digits, so that a following digit does not extend the escape.
             c if c.is_ascii_control() => out.extend(format!("\\{:03o}", u32::from(c)).chars()),
             c if is_hidden(c) => out.extend(format!("\\U{:08x}", u32::from(c)).chars()),
             c => out.push(c),
@@ -229,10 +235,12 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// Bytes of a raw string literal: a compiler may refuse longer ones, and several beside each other are one.
+/// The maximum length of a raw string literal, in bytes.
+///
+/// Compilers may refuse longer ones. Adjacent literals form one string.
 const LONGEST: usize = 16_000;
 
-/// A text as a raw string literal, which shows it as it is.
+/// Returns a raw string literal, which shows the text unescaped.
 pub fn raw(text: &str) -> String {
     if text.contains(is_hidden) {
         return literal(text);
@@ -256,7 +264,7 @@ pub fn raw(text: &str) -> String {
     pieces.collect::<Vec<_>>().join("\n      ")
 }
 
-/// An integer of any width as a literal.
+/// Returns an integer literal of any width.
 pub fn integer(value: i128) -> String {
     if value > i128::from(i64::MAX) {
         return format!("{value}ULL");
@@ -267,7 +275,7 @@ pub fn integer(value: i128) -> String {
     value.to_string()
 }
 
-/// A float as a literal.
+/// Returns a float literal.
 pub fn float(value: f64) -> String {
     format!("{value:?}")
 }

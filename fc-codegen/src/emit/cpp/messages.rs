@@ -1,5 +1,6 @@
-//! The headers of groups: their message types, which are structs, enums and choices, what ties requests to their codes, and
-//! what both stubs have of their operations.
+//! The headers of groups: message types, the codes of requests, and the groups' parts of both stubs.
+//!
+//! Message types are structs, enums and choices.
 
 use super::groups::{self, NamedGroup};
 use super::layout::{CPP, Includes, integer, literal};
@@ -19,7 +20,7 @@ use fc_spec::model::{
     EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Type, Value, Variant,
 };
 
-/// A header, and the groups whose operations are in it.
+/// Generates a header, with the groups whose operations are in it.
 pub fn header(
     context: &Context<'_>,
     header: &Header<'_, '_>,
@@ -46,7 +47,7 @@ pub fn header(
     out.finish()
 }
 
-/// The message types of a header, and their operations.
+/// Writes the message types of a header, and their operations.
 fn types(
     body: &mut Source,
     includes: &mut Includes,
@@ -138,7 +139,7 @@ fn structure(
             out.line(format!(
                 "/// `{name}`，没有时为规范的默认值。`{name}`, or its default."
             ));
-            // No name has two underscores in a row.
+            // A C++ name must not have two underscores in a row.
             let stem = name.trim_end_matches('_');
             let open = format!("[[nodiscard]] {ty} {stem}_or_default() const {{");
             let body = format!("return {name}.value_or({value});");
@@ -165,8 +166,8 @@ fn structure(
     errors(out, includes, context, item);
 }
 
-/// Returns `true` for a required field that begins unset. A list begins empty. A struct or a choice begins
-/// with unset fields.
+/// Returns `true` for a required field that begins unset. A list begins empty. A struct or a choice begins with unset
+/// fields.
 fn must_be_set(context: &Context<'_>, ty: &Type) -> bool {
     match ty {
         Type::Array(_) => false,
@@ -175,7 +176,7 @@ fn must_be_set(context: &Context<'_>, ty: &Type) -> bool {
     }
 }
 
-/// What the type of a field takes of the standard library.
+/// Adds the standard headers that the type of a field needs.
 fn used(includes: &mut Includes, ty: &Type) {
     match ty {
         Type::Int(_) | Type::TimestampMs | Type::TimestampS => includes.standard("cstdint"),
@@ -188,7 +189,7 @@ fn used(includes: &mut Includes, ty: &Type) {
     }
 }
 
-/// A constant as a comment names it.
+/// Returns a constant as comments write it.
 pub fn spelled(value: &Expr<'_>) -> String {
     match value {
         Expr::Value(item, value) => format!("{}::{}", item.ty.name, value.name),
@@ -199,7 +200,7 @@ pub fn spelled(value: &Expr<'_>) -> String {
     }
 }
 
-/// The errors that a command declares, as an enum beside its request.
+/// Writes the enum of the errors that a command declares, next to its request.
 fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
     let Some((command, name)) = package.declared_by(item) else {
@@ -282,7 +283,7 @@ fn enumeration(
     out.parameters("std::ostream& operator<<(", &parameters, ");");
 }
 
-/// An enum that is sent as a text, and keeps what it does not know.
+/// Writes an enum with string values. The enum keeps unknown values.
 fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
     out.line(format!("class {name} {{"));
     out.line(" public:");
@@ -356,7 +357,7 @@ fn choice(
     out.alias(&item.ty.name, "std::variant", &types);
 }
 
-/// What ties a request or a report to its code.
+/// Writes the specialization that ties a request or a report to its code.
 fn operation(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let space = &namespace(context);
     let code = &call.operation.code.spelling;

@@ -1,7 +1,7 @@
-//! The generated part of the C++ package: a file for each group with its messages and its share of both stubs, and what puts
-//! them together: the protocol as a value, client and robot; tables.
+//! The generated part of the C++ package: a file for each group, the protocol as a value, client, robot and tables.
 //!
-//! Headers are laid out as clang-format would; of the sources, which are tables of fields, it is told to leave them.
+//! The file of a group contains its messages and its part of both stubs. Headers have the layout of clang-format.
+//! Sources are tables of fields, and turn clang-format off.
 
 mod assignments;
 mod client;
@@ -22,10 +22,10 @@ use crate::product::{Artifact, Product};
 use crate::target::Targets;
 use fc_spec::model::Model;
 
-/// What tells `CMake` of the sources.
+/// The list of sources for `CMake`.
 const SOURCES: &str = "sources.cmake";
 
-/// All of its files.
+/// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &CPP, &layout::CPP, Some(targets));
@@ -85,7 +85,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     generated.chain(tests).map(artifact).collect()
 }
 
-/// The header that has all message types.
+/// Generates the header that includes all message types.
 fn all(space: &str, ids: &[&str]) -> String {
     let mut out = "#pragma once\n\n".to_owned();
     for id in ids {
@@ -94,7 +94,7 @@ fn all(space: &str, ids: &[&str]) -> String {
     out
 }
 
-/// The sources, for `CMake`.
+/// Generates the list of sources for `CMake`.
 fn sources(ids: &[&str], has_tables: bool) -> String {
     let mut out =
         "set(FC_GENERATED_STUBS\n  generated/src/client.cpp\n  generated/src/robot.cpp\n)\n\n\

@@ -52,7 +52,7 @@ pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
     );
 }
 
-/// Name of the function that checks the order.
+/// Returns the name of the function that checks the order.
 fn follows(shape: &EnumType) -> &'static str {
     if is_complete(shape) {
         "may_follow"
@@ -182,7 +182,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     }
 }
 
-/// `a || b`.
+/// Joins conditions: `a || b`.
 fn any_of(conditions: &[String]) -> String {
     if conditions.is_empty() {
         return "false".to_owned();
@@ -322,7 +322,7 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     out.blank();
 }
 
-/// A pointer to a field inside a message. It is null if a field on the path is absent.
+/// Returns a pointer to a field inside a message. It is null if a field on the path is absent.
 fn at(context: &Context<'_>, message: &str, body: &StructRef, keys: &[String]) -> String {
     let space = &namespace(context);
     let mut out = format!("&{message}");

@@ -16,7 +16,7 @@ use fc_spec::model::{
     Operation, Type,
 };
 
-/// The header.
+/// Generates `protocol.hpp`.
 pub fn header(context: &Context<'_>) -> String {
     let includes = Includes::new(
         context,
@@ -52,7 +52,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.line("[[nodiscard]] fc_runtime::Refusal refusal(ResultCode code);");
 }
 
-/// The codes of the streams, if there are any: their bytes have no type to hold the code.
+/// Writes the codes of the streams, if there are any. A stream of bytes has no type that could hold its code.
 fn streams(out: &mut Source, context: &Context<'_>) {
     if context.package.streams.is_empty() {
         return;
@@ -71,7 +71,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-/// The source.
+/// Generates `protocol.cpp`.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let space = &namespace(context);
     let before = format!(
@@ -161,7 +161,7 @@ fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
     ));
 }
 
-/// Bytes as a string literal.
+/// Returns bytes as a string literal.
 fn bytes(bytes: &[u8]) -> String {
     let escaped: Vec<String> = bytes.iter().map(|it| format!("\\x{it:02X}")).collect();
     format!("\"{}\"sv", escaped.concat())
@@ -228,7 +228,7 @@ fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
     }
 }
 
-/// What tells the protocol of a group's operations, as the header declares it.
+/// Declares the function that adds a group's operations to the protocol.
 pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 把这一组的指令、上报和数据流加到 `protocol().operations` 中。");
     out.line("/// Adds the operations of the group to those of `protocol()`.");
@@ -237,7 +237,7 @@ pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.parameters(&open, &parameters, ");");
 }
 
-/// The function for that.
+/// Defines the function that adds a group's operations to the protocol.
 pub fn operations(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "void add_{}(std::vector<fc_runtime::OperationInfo>& operations) {{",

@@ -1,5 +1,6 @@
-//! The robot's stub: a class to derive from whose methods are those of its groups, one per command, one that answers with
-//! the spec's examples, and typed pushing of reports.
+//! The robot's stub: a base class with the methods of its groups, one per command.
+//!
+//! The stub also contains a robot that responds with the spec's examples, and a typed sender of reports.
 
 use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, header_file, source_file};
@@ -10,7 +11,7 @@ use crate::package::facts;
 use crate::package::ranges::{UNKNOWN, pass_through};
 use crate::package::source::Source;
 
-/// The header.
+/// Generates `robot.hpp`.
 pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let includes = Includes::new(
         context,
@@ -74,7 +75,7 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>])
     });
 }
 
-/// The commands of a group as a robot handles them.
+/// Writes the class with the handlers of a group's commands.
 pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let name = group.part("Robot");
     out.docs(&Docs::said(&[
@@ -104,7 +105,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
     out.line("};");
 }
 
-/// What `PartialRobot` and `ExampleRobot` do with the commands of a group.
+/// Writes the class with the responses of `PartialRobot` and `ExampleRobot` to a group's commands.
 pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
@@ -134,7 +135,7 @@ pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
     });
 }
 
-/// A method for commands without a type, which a robot need not have.
+/// Writes a method for commands without a type, which a robot may omit.
 fn raw(out: &mut Source, docs: &Docs<'_>, name: &str) {
     out.documented(docs);
     let parameters = [
@@ -148,14 +149,14 @@ fn raw(out: &mut Source, docs: &Docs<'_>, name: &str) {
     );
 }
 
-/// What calls such a method.
+/// Returns the statement that calls such a method.
 fn serve_raw(name: &str) -> String {
     format!(
         "return fc_runtime::serve_raw(protocol(), context, text, [&robot](const fc_runtime::Context& known, std::string_view whole) {{ return robot->{name}(known, whole); }});"
     )
 }
 
-/// A robot that has a part for each group, a line for each.
+/// Writes a robot class with a part for each group, one per line.
 fn of_parts(
     out: &mut Source,
     docs: &str,
@@ -167,7 +168,7 @@ fn of_parts(
     let answers = format!("fc_runtime::{answers}<Robot, protocol>");
     let parts = with_commands(groups, "Defaults");
     let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
-    // The formatter would fill the lines, and another group would change all of them.
+    // The formatter would fill the lines, and a new group would change all of them.
     out.line("// clang-format off");
     out.line(docs);
     out.line(format!("class {name} : public fc_runtime::Stacked<"));
@@ -232,7 +233,7 @@ fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     );
 }
 
-/// The reports of a group as methods of the reporter.
+/// Writes the reports of a group as methods of the reporter.
 pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     out.docs(&Docs::said(&[
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
@@ -259,7 +260,7 @@ pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_,
     });
 }
 
-/// What hands a request on to its method, as the header declares it.
+/// Declares the function that passes a request to its method.
 pub fn declare_serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.line("/// 由机器人处理这一组的指令；其他指令没有结果。");
     out.line("/// Has a robot handle a command of the group; none if it is of another.");
@@ -275,7 +276,7 @@ pub fn declare_serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     out.parameters(&open, &parameters, ");");
 }
 
-/// The function for that.
+/// Defines the function that passes a request to its method.
 pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let open = format!(
         "std::optional<fc_runtime::Handled> serve_{}({}& robot, const fc_runtime::Context& context, std::string_view text) {{",
@@ -297,7 +298,7 @@ pub fn serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
     });
 }
 
-/// The source.
+/// Generates `robot.cpp`.
 pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
     let ranges = pass_through(context);
     let before = "#include <utility>\n\n";
@@ -333,7 +334,7 @@ ExampleRobot::~ExampleRobot() = default;",
                 }
                 for (name, range) in &ranges {
                     let (first, last) = (&range.first_spelling, &range.last_spelling);
-                    // What every code is, compilers warn of.
+                    // Compilers warn of a comparison that is always true.
                     let bounds: Vec<String> = [
                         (range.first > 0).then(|| format!("context.code >= {first}")),
                         (range.last < u16::MAX).then(|| format!("context.code <= {last}")),

@@ -1,5 +1,6 @@
-//! How each operation is called and answered, as the pages of the documentation show it. The same text stands in a test
-//! of the package, so no sample can rot.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! A test of the package contains the same text, so no sample can become invalid.
 
 use super::assignments::{Assignments, assign};
 use super::layout::{CPP, Includes, literal};
@@ -13,16 +14,16 @@ use crate::package::source::Source;
 use crate::package::style::Style;
 use fc_spec::model::Operation;
 
-/// C++ as it stands on a page.
+/// The style of C++ on a page.
 static ON_PAGES: Style = Style {
     width: PAGE_WIDTH,
     ..CPP
 };
 
-/// The file of the package that has all samples.
+/// The file of the package that contains all samples.
 pub const FILE: &str = "tests/samples.cpp";
 
-/// How the pages show the package.
+/// The C++ samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "cpp",
     file: FILE,
@@ -31,22 +32,22 @@ pub const SHOWN: Shown = Shown {
     write: |out, context, sample| Writer::new(context).write(out, sample, &Meanwhile::default()),
 };
 
-/// How long an app waits for what the robot sends of its own accord.
+/// The time that an app waits for a message that the robot sends unasked.
 const PATIENCE: &str = "std::chrono::minutes(1)";
 
 /// Writes the samples of a package.
 struct Writer<'p, 'm> {
     context: &'p Context<'m>,
-    /// What comes before each name of the package.
+    /// The qualifier before each name of the package.
     space: String,
 }
 
-/// What the test does in the middle of a sample, which the pages do not show.
+/// Additional statements of the test inside a sample. The pages do not show them.
 #[derive(Default)]
 struct Meanwhile<'t> {
-    /// Once the app receives.
+    /// Runs once the app receives.
     receives: &'t str,
-    /// Once it has what it waits for.
+    /// Runs once the app has the expected message.
     received: &'t str,
 }
 
@@ -151,7 +152,7 @@ if (!pushed) {
         }
     }
 
-    /// Prints a frame of a stream, with another line behind it.
+    /// Prints a frame of a stream, followed by the line `more`.
     fn frame(&self, out: &mut Source, stream: &Operation, more: &str) {
         let Some(content) = self.context.content(stream) else {
             out.line("std::cout << frame->id << \": \" << frame->data.size() << \" bytes\\n\";");
@@ -170,7 +171,7 @@ if (!pushed) {
         format!("static_cast<std::uint16_t>({of})")
     }
 
-    /// Writes what a stream carries, if more than a word, and returns the word for it.
+    /// Assigns the content of a stream, unless it is bytes, and returns the expression for it.
     fn content(&self, out: &mut Source, value: Option<&Record<'_>>) -> String {
         let Some(value) = value else {
             return literal(BYTES);
@@ -182,7 +183,7 @@ if (!pushed) {
         "text".to_owned()
     }
 
-    /// `Type name;`, and what fills it.
+    /// Writes `Type name;`, and the statements that fill it.
     fn declare(
         &self,
         out: &mut Source,
@@ -199,7 +200,7 @@ if (!pushed) {
     }
 }
 
-/// Prints what a result has, with another line behind it, or what has gone wrong.
+/// Prints the value of a result and the line `more`, or its error.
 fn either(out: &mut Source, result: &str, has: &str, more: &str, error: &str) {
     out.enclose(&format!("if ({result}) {{"), "} else {", |out| {
         out.line(format!("std::cout << {has};"));
@@ -210,7 +211,7 @@ fn either(out: &mut Source, result: &str, has: &str, more: &str, error: &str) {
     });
 }
 
-/// The test that compiles and runs every sample.
+/// Generates the test that compiles and runs every sample.
 #[must_use]
 pub fn samples_file(context: &Context<'_>) -> String {
     let writer = Writer::new(context);
@@ -302,7 +303,7 @@ pub fn samples_file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-/// The function that runs them.
+/// Writes the function that runs all samples.
 fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>, writer: &Writer<'_, '_>) {
     let check = |out: &mut Source, call: String| {
         let (name, _) = call.split_once('(').unwrap_or((&call, ""));

@@ -1,4 +1,4 @@
-//! The spec's tables of constants, each a function that answers its rows as typed values.
+//! The spec's tables of constants. Each is a function that returns its rows as typed values.
 
 use super::fields::enumerators;
 use super::layout::{Includes, float, header_file, integer, literal, raw, source_file};
@@ -8,7 +8,7 @@ use crate::package::context::Context;
 use crate::package::expr::{Expr, Expressions, Record};
 use fc_spec::model::Type;
 
-/// The header.
+/// Generates `tables.hpp`.
 pub fn header(context: &Context<'_>) -> String {
     let includes = Includes::new(context, &["vector"], &["messages"], &[]);
     header_file(context, &includes, |out| {
@@ -23,7 +23,7 @@ pub fn header(context: &Context<'_>) -> String {
     })
 }
 
-/// The source.
+/// Generates `tables.cpp`.
 pub fn source(context: &Context<'_>) -> String {
     let package = &context.package;
     let expressions = Expressions::new(package);
@@ -55,7 +55,7 @@ pub fn source(context: &Context<'_>) -> String {
     })
 }
 
-/// A struct with all of its fields.
+/// Returns a struct with all of its fields.
 fn record(context: &Context<'_>, space: &str, of: &Record<'_>) -> String {
     let members = of.members.iter().map(|(field, value)| match value {
         Some(value) => spelled_in(context, space, value, &field.ty),
@@ -65,12 +65,12 @@ fn record(context: &Context<'_>, space: &str, of: &Record<'_>) -> String {
     format!("{space}{}{{{}}}", of.item.ty.name, members.join(", "))
 }
 
-/// A constant of a type, inside of the package's namespace.
+/// Returns a constant of a type, inside the package's namespace.
 pub fn spelled(context: &Context<'_>, expr: &Expr<'_>, ty: &Type) -> String {
     spelled_in(context, "", expr, ty)
 }
 
-/// The same with `space` before each name of the package, such as `fc::`.
+/// Returns a constant with `space` before each name of the package, such as `fc::`.
 pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &Type) -> String {
     match expr {
         Expr::Bool(value) => value.to_string(),

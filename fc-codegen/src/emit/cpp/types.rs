@@ -1,4 +1,4 @@
-//! The types of C++, and in which order and files those of the spec stand: what holds a type comes behind it.
+//! C++ types, and the order of the spec's types in files. A type comes after the types that it contains.
 
 use crate::package::context::Context;
 use crate::package::cycles::{Needs, first_of_circle, reached};
@@ -9,18 +9,18 @@ use fc_spec::model::{Accepted, Direction, Type, TypeRef};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The namespace and folder of the package.
+/// Returns the namespace and folder of the package.
 pub fn namespace<'c>(context: &'c Context<'_>) -> Cow<'c, str> {
     let (Ok(name) | Err(name)) = CPP.spelling(Role::Module, &context.model().protocol.id);
     name
 }
 
-/// The C++ type of a type of the spec, inside of the package's namespace.
+/// Returns the C++ type of a type of the spec, inside the package's namespace.
 pub fn name_of(context: &Context<'_>, ty: &Type) -> String {
     name_in(context, "", ty)
 }
 
-/// The same with `space` before each name of the package, such as `fc::`.
+/// Returns a C++ type with `space` before each name of the package, such as `fc::`.
 pub fn name_in(context: &Context<'_>, space: &str, ty: &Type) -> String {
     match ty {
         Type::Bool => "bool".to_owned(),
@@ -39,7 +39,7 @@ pub fn name_in(context: &Context<'_>, space: &str, ty: &Type) -> String {
     }
 }
 
-/// `u16` as `std::uint16_t`.
+/// Converts an integer type: `u16` to `std::uint16_t`.
 pub fn integer_type(name: &str) -> String {
     let (sign, bits) = name.split_at(1);
     let unsigned = if sign == "u" { "u" } else { "" };
@@ -48,15 +48,15 @@ pub fn integer_type(name: &str) -> String {
 
 /// A header: a group's types and operations, or those of several groups that need each other.
 pub struct Header<'p, 'm> {
-    /// What it is called.
+    /// The name of the header.
     pub id: &'p str,
-    /// Its types, each behind those that it holds.
+    /// The types, each after the types that it contains.
     pub items: Vec<&'p Item<'m>>,
-    /// The headers that it needs.
+    /// The ids of the headers that it includes.
     pub needs: BTreeSet<&'p str>,
 }
 
-/// The message types by header, and for each group the header that has its types.
+/// Returns the headers with their types, and the header of each group.
 pub fn headers<'p, 'm>(
     context: &'p Context<'m>,
 ) -> (Vec<Header<'p, 'm>>, BTreeMap<&'p str, &'p str>) {
@@ -90,7 +90,7 @@ pub fn headers<'p, 'm>(
             }),
         }
     }
-    // What has streams alone has no types, and a header nevertheless.
+    // A group that has only streams has no types, but needs a header.
     for operation in &context.model().operations {
         let id = operation.group.as_str();
         if homes
@@ -112,7 +112,7 @@ pub fn headers<'p, 'm>(
     (headers, homes)
 }
 
-/// Puts a type behind those of the same header that it holds.
+/// Adds a type to `ordered`, after the types of the same header that it contains.
 fn place<'p, 'm>(
     context: &'p Context<'m>,
     item: &'p Item<'m>,
@@ -135,7 +135,7 @@ fn place<'p, 'm>(
     ordered.push(item);
 }
 
-/// The types that have to be there before this one.
+/// Returns the types that must be declared before a type.
 fn held_by<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Vec<&'p TypeRef> {
     let mut held: Vec<&TypeRef> = match &item.shape {
         Shape::Record(_, fields) => fields

@@ -13,7 +13,7 @@ use crate::package::items::{Call, Item};
 use crate::package::process::{ending, set_off};
 use crate::package::source::Source;
 
-/// The file.
+/// Generates `Client.kt`.
 pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let protocol = &context.package.name;
@@ -92,7 +92,7 @@ const PROPERTY: &str = "connection: Connection";
 const CONNECTION: &str =
     "/** 底层连接。The underlying connection: raw commands and options of a call. */";
 
-/// The methods for the commands of a group.
+/// Writes a group's part of `Client`: a method for each command.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.commands.is_empty() {
         return;
@@ -106,7 +106,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     });
 }
 
-/// Whether a request can be made of nothing.
+/// Returns `true` if a request needs no values.
 pub fn is_bare(item: &Item<'_>) -> bool {
     item.fields().iter().all(|field| field.optional)
 }
@@ -150,14 +150,14 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &given,
         &format!("connection.callAsync(Operations.{method}, request)"),
     );
-    // An interface cannot have overloads made for it.
+    // `@JvmOverloads` does not work in an interface.
     if let Some(bare) = bare {
         for_java("", &format!("{method}Async({bare})"));
     }
     followed(out, context, command, &parameter);
 }
 
-/// A method for each kind of report that a command sets off.
+/// Writes a method for each kind of report that a command sets off.
 fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, parameter: &str) {
     let operation = command.operation;
     let (method, response) = (command.method, &command.response.ty.name);
@@ -218,7 +218,7 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
     }
 }
 
-/// A function of one expression, broken where it is too long for a line.
+/// Writes a function with an expression body. The function has several lines if it exceeds one.
 fn function(out: &mut Source, open: &str, parameter: &str, close: &str, body: &str) {
     if out.has_room([open, parameter, close, " ", body]) {
         out.line([open, parameter, close, " ", body].concat());

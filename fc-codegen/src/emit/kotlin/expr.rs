@@ -1,4 +1,4 @@
-//! Constants of the spec as Kotlin.
+//! Constants of the spec as Kotlin expressions.
 
 use super::text::{integer, literal};
 use crate::package::expr::{Expr, Record};
@@ -6,16 +6,16 @@ use crate::package::items::Spelled;
 use crate::package::source::Source;
 use fc_spec::model::{Field, FloatKind, IntKind, Type};
 
-/// How a message is made.
+/// The form of a message in source text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// `Thing.builder().size(1).build()`: an expression alone, so that a long list of them stays small as byte code.
+    /// `Thing.builder().size(1).build()`: a single expression, so that long lists compile to small byte code.
     Chain,
-    /// `Thing { size(1) }`: as it is written by hand.
+    /// `Thing { size(1) }`: the form of handwritten code.
     Block,
 }
 
-/// A constant of a type on one line.
+/// Returns a constant of a type on one line.
 pub fn expression(value: &Expr<'_>, ty: &Type) -> String {
     flat(value, ty, Form::Chain)
 }
@@ -49,13 +49,13 @@ fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
     }
 }
 
-/// Bytes as those of the JVM are.
+/// Converts bytes to the signed bytes of the JVM.
 fn signed(bytes: &[u8]) -> Vec<String> {
     let bytes = bytes.iter();
     bytes.map(|byte| byte.cast_signed().to_string()).collect()
 }
 
-/// A message on one line.
+/// Returns a message on one line.
 fn record(record: &Record<'_>, form: Form) -> String {
     let call = |(field, value): (&Spelled<'_, Field>, &Expr<'_>)| {
         format!("{}({})", field.name, flat(value, &field.ty, form))
@@ -74,7 +74,7 @@ fn record(record: &Record<'_>, form: Form) -> String {
     }
 }
 
-/// How many messages are in a constant, itself among them.
+/// Returns the number of messages in a constant, itself included.
 fn messages(value: &Expr<'_>) -> usize {
     match value {
         Expr::List(items) => items.iter().map(messages).sum(),
@@ -85,12 +85,12 @@ fn messages(value: &Expr<'_>) -> usize {
     }
 }
 
-/// Whether it stands on one line where that has room.
+/// Returns `true` if the constant may be on one line.
 fn is_flat(value: &Expr<'_>, form: Form) -> bool {
     messages(value) < 2 && (form == Form::Chain || has_short_blocks(value))
 }
 
-/// Whether no block has two statements, each of which has a line of its own.
+/// Returns `true` if no block has two statements. Each of two statements would need a separate line.
 fn has_short_blocks(value: &Expr<'_>) -> bool {
     match value {
         Expr::List(items) => items.iter().all(has_short_blocks),
@@ -99,7 +99,7 @@ fn has_short_blocks(value: &Expr<'_>) -> bool {
     }
 }
 
-/// The fields of a message that have a value.
+/// Returns the fields of a message that have a value.
 fn set<'r, 'v>(
     record: &'r Record<'v>,
 ) -> impl Iterator<Item = (&'v Spelled<'v, Field>, &'r Expr<'v>)> {
@@ -107,7 +107,7 @@ fn set<'r, 'v>(
     members.filter_map(|(field, value)| Some((*field, value.as_ref()?)))
 }
 
-/// A constant between two texts, broken into lines where it is too long for one.
+/// Writes a constant between `before` and `behind`. The constant has several lines if it exceeds one.
 pub fn laid_out(
     out: &mut Source,
     before: &str,
@@ -153,7 +153,7 @@ pub fn laid_out(
     }
 }
 
-/// A message on lines of its own.
+/// Writes a message on several lines.
 fn record_laid_out(out: &mut Source, before: &str, made: &Record<'_>, behind: &str, form: Form) {
     let name = &made.item.ty.name;
     let (open, dot, close) = match form {

@@ -1,7 +1,6 @@
-//! The file of a group: all that the package has of its operations, so that a command more is a change of this file alone.
+//! The file of a group, which contains all of its operations. A new command changes only this file.
 //!
-//! What users name, such as `Client`, is made of parts, one of each group. The files of the wholes list groups and know no
-//! operation.
+//! Public classes such as `Client` combine one part from each group. Their files list groups and name no operation.
 
 use super::text::STYLE;
 use super::{client, messages, operations, robot, streams};
@@ -11,13 +10,13 @@ use crate::package::group::Group;
 use crate::package::language::{KOTLIN, Role};
 use crate::package::source::Source;
 
-/// The part of a class that a group has: `UpperBodyClient` of `Client`.
+/// Returns the name of a group's part of a class: `UpperBodyClient` of `Client`.
 pub fn part_name(group: &Group<'_, '_>, whole: &str) -> String {
     let (Ok(stem) | Err(stem)) = KOTLIN.spelling(Role::Type, group.id);
     [&stem, whole].concat()
 }
 
-/// An interface with the part of `whole` that a group has.
+/// Writes an interface with a group's part of `whole`.
 pub fn part_of(
     out: &mut Source,
     group: &Group<'_, '_>,
@@ -34,7 +33,7 @@ pub fn part_of(
     out.block(["public interface ", head].concat(), body);
 }
 
-/// The file of a group, or of the types that several share.
+/// Generates the file of a group, or of the types that several groups share.
 pub fn group_file(context: &Context<'_>, group: &Group<'_, '_>) -> Source {
     let mut out = Source::new(&STYLE);
     operations::part(&mut out, context, group);
@@ -45,7 +44,7 @@ pub fn group_file(context: &Context<'_>, group: &Group<'_, '_>) -> Source {
     out
 }
 
-/// The parts of a class that those groups have for which it is not empty.
+/// Returns the parts of a class from those groups that have such a part.
 pub fn parts(
     groups: &[Group<'_, '_>],
     whole: &str,
@@ -55,7 +54,9 @@ pub fn parts(
     groups.map(|group| part_name(group, whole)).collect()
 }
 
-/// A class and what it extends, each on a line of its own, so that what a group adds is a line.
+/// Returns a class and its supertypes, each on a separate line.
+///
+/// A new group therefore adds one line.
 pub fn heading(head: &str, supers: &[String]) -> String {
     if supers.is_empty() {
         return head.to_owned();
@@ -64,7 +65,7 @@ pub fn heading(head: &str, supers: &[String]) -> String {
     [head, gap, &supers.join(",\n    ")].concat()
 }
 
-/// A class that wraps what its parts work on, up to its body.
+/// Writes the head of a class with one property, which its parts use.
 pub fn wrapper(out: &mut Source, name: &str, property: &str, docs: &str, parts: &[String]) {
     let modifier = if parts.is_empty() {
         "public"

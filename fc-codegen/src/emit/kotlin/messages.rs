@@ -14,7 +14,7 @@ use crate::package::process::{has_states, next_values};
 use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
 
-/// Message types.
+/// Writes message types.
 pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
     for item in items {
         out.blank();
@@ -26,7 +26,7 @@ pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
     }
 }
 
-/// The constant that stands for a field: not what a type of the package is called.
+/// Returns the name of a field's constant. It avoids the names of the package's types.
 fn constant(context: &Context<'_>, field: &Field) -> String {
     let name = field.name.to_uppercase();
     let is_type = context
@@ -82,7 +82,7 @@ fn message(
     });
 }
 
-/// A class and what it extends, on two lines where one is too long.
+/// Returns a class and its supertypes, on two lines if they exceed one.
 fn heading(out: &Source, head: &str, supers: &[String]) -> String {
     let supers = supers.join(", ");
     if out.has_room([head, " : ", &supers, " {"]) {
@@ -92,7 +92,7 @@ fn heading(out: &Source, head: &str, supers: &[String]) -> String {
     }
 }
 
-/// The choices of which a message is a form.
+/// Returns the choices that have a message as a variant.
 fn choices_of(context: &Context<'_>, item: &Item<'_>) -> Vec<String> {
     let mut names = Vec::new();
     for other in context.package.items() {
@@ -107,12 +107,12 @@ fn choices_of(context: &Context<'_>, item: &Item<'_>) -> Vec<String> {
     names
 }
 
-/// A value as a comment names it.
+/// Returns a value as comments write it.
 fn spelled(value: &Expr<'_>) -> String {
     expr::expression(value, &Type::Json)
 }
 
-/// A comment of the generator's own: on one line if it is short.
+/// Creates a comment of the generator, on one line if it is short.
 pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
     if columns_of(zh) + en.len() <= SHORT {
         return Docs::linked([zh, en].concat());
@@ -120,7 +120,7 @@ pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
     Docs::said(&[zh, en])
 }
 
-/// Columns of a comment on one line.
+/// The maximum width of a comment on one line, in columns.
 const SHORT: usize = 100;
 
 fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>) {
@@ -226,7 +226,7 @@ fn companion(
     });
 }
 
-/// Conditions come after all fields: they may ask a later one.
+/// Writes the conditions after all fields, because a condition may test a later field.
 fn conditions(out: &mut Source, context: &Context<'_>, fields: &[Spelled<'_, Field>]) {
     let lines = fields.iter().filter_map(|field| {
         let condition = FieldMarks::build(field.of, fields).condition?;
@@ -309,7 +309,7 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
     });
 }
 
-/// What the spec says of the values as states.
+/// Writes the rules for the values as states.
 fn steps(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) {
     let order = match shape.order {
         None => "UNSAID",

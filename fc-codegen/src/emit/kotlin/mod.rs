@@ -1,6 +1,7 @@
-//! The generated part of the Kotlin package: messages over the runtime's descriptors, operations, both sides, tables.
+//! The generated part of the Kotlin package: messages, operations, both sides and tables.
 //!
-//! All of it is one package, so that no file imports another; text is laid out as it is written.
+//! Messages use the descriptors of the runtime. All code is in one package, so that no file imports another. The
+//! emitter lays out the text directly.
 
 mod client;
 mod expr;
@@ -25,12 +26,12 @@ use fc_spec::model::Model;
 use std::collections::HashSet;
 use text::STYLE;
 
-/// All of its files.
+/// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &KOTLIN, &STYLE, Some(targets));
     let id = &model.protocol.id;
-    // A keyword is no name of a package either.
+    // A keyword cannot be the name of a package either.
     let package = KOTLIN
         .spelling(Role::Module, id)
         .unwrap_or_else(|name| name);
@@ -64,7 +65,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     };
     let files = wholes.chain(own);
     let files = files.map(|(name, body)| (name, body.finish()));
-    // A group may have nothing but operations without a code.
+    // A group may contain only operations without a code.
     let files = files.filter(|(_, body)| !body.is_empty());
     let files = files.map(|(name, body)| whole(&format!("{folder}/{name}.kt"), &body, &[]));
     let samples = whole(
@@ -78,7 +79,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// The file of the types that several groups share.
 const SHARED: &str = "SharedTypes";
 
-/// What the package has from elsewhere; names of a spec are kept off them.
+/// The imports of the package. Names in a spec must differ from them.
 const IMPORTED: &[&str] = &[
     "fc.runtime.AckPolicy",
     "fc.runtime.Acknowledgement",
@@ -132,7 +133,9 @@ const IMPORTED: &[&str] = &[
     "kotlinx.coroutines.flow.Flow",
 ];
 
-/// What each file begins with; `further` is what it has from elsewhere besides. What is withdrawn is still in the package.
+/// Returns the head of a file. `further` are additional imports.
+///
+/// The head suppresses deprecation warnings, because the package still contains deprecated items.
 fn head(package: &str, body: &str, further: &[&str]) -> String {
     let is_code = |line: &&str| !line.trim_start().starts_with('*');
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
@@ -156,7 +159,7 @@ fn head(package: &str, body: &str, further: &[&str]) -> String {
     out.finish()
 }
 
-/// A stream within the name of a method: `SubscribeMapImage`.
+/// Returns a stream's name as a part of a method name: `MapImage` in `SubscribeMapImage`.
 fn method_of(stream: &crate::package::items::Spelled<'_, fc_spec::model::Operation>) -> String {
     let name = KOTLIN.spelling(Role::Type, &stream.of.name);
     name.unwrap_or_else(|name| name).into_owned()
@@ -166,7 +169,7 @@ fn method_of(stream: &crate::package::items::Spelled<'_, fc_spec::model::Operati
 mod tests {
     use super::*;
 
-    /// An import goes before what the package has itself: no type of a spec may be called so.
+    /// An import takes precedence over the types of the package, so no type of a spec may have its name.
     #[test]
     fn what_is_imported_is_kept_off_a_spec() {
         for path in IMPORTED {

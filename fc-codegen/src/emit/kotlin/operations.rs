@@ -12,7 +12,7 @@ use crate::package::process::{has_states, state};
 use crate::package::source::Source;
 use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
 
-/// The file.
+/// Generates `Operations.kt`.
 pub fn operations_file(groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     out.docs(&Docs::said(&[
@@ -28,7 +28,9 @@ fn has_calls(group: &Group<'_, '_>) -> bool {
     !(group.commands.is_empty() && group.reports.is_empty())
 }
 
-/// The commands and reports of a group. Java has constants from an interface, and Kotlin has properties: neither has the other's.
+/// Writes the commands and reports of a group, as constants and as properties.
+///
+/// Java reads constants from an interface, Kotlin reads properties, and neither can read the other form.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if !has_calls(group) {
         return;
@@ -64,7 +66,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     });
 }
 
-/// What the protocol knows of the group.
+/// Writes the list of a group's commands or reports, for the protocol.
 fn list(out: &mut Source, name: &str, ty: &str, calls: &[Call<'_>]) {
     if calls.is_empty() {
         return;
@@ -84,7 +86,7 @@ fn type_of(call: &Call<'_>) -> String {
     }
 }
 
-/// The head of a constant.
+/// Writes the comment on a constant, and returns its head.
 fn constant(out: &mut Source, context: &Context<'_>, call: &Call<'_>) -> String {
     let operation = call.operation;
     let mut docs = Docs::titled(&operation.title);
@@ -95,7 +97,7 @@ fn constant(out: &mut Source, context: &Context<'_>, call: &Call<'_>) -> String 
     format!("public val {}: {} =", call.method, type_of(call))
 }
 
-/// The mark of what is withdrawn.
+/// Writes the annotation of a deprecated operation.
 pub fn deprecated(out: &mut Source, operation: &Operation) {
     if let Some(deprecation) = &operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));
@@ -134,7 +136,7 @@ fn command_value(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     out.enclose(&head, "", |out| made.iter().for_each(|line| out.line(line)));
 }
 
-/// What people call an operation.
+/// Returns the titles of an operation in both languages.
 fn titled(operation: &Operation) -> String {
     let title = &operation.title;
     format!(
@@ -144,7 +146,7 @@ fn titled(operation: &Operation) -> String {
     )
 }
 
-/// The states in which a command is accepted.
+/// Returns the states in which a command is accepted.
 fn accepted(context: &Context<'_>, operation: &Operation) -> Vec<String> {
     let states = context.accepted_states(operation);
     let states = states.iter().flat_map(|states| {
@@ -208,7 +210,7 @@ fn is_state(context: &Context<'_>, body: &StructRef, keys: &[String]) -> bool {
     at.is_some_and(|(_, shape)| has_states(shape))
 }
 
-/// The way to a field: `report.data?.status`.
+/// Returns the path to a field: `report.data?.status`.
 pub fn way(context: &Context<'_>, body: &StructRef, keys: &[String], from: &str) -> String {
     let mut out = from.to_owned();
     let mut dot = ".";

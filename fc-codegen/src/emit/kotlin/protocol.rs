@@ -1,4 +1,4 @@
-//! The protocol itself: header, envelopes, result codes, ports and limits.
+//! The protocol: header, envelopes, result codes, ports and limits.
 
 use super::group::parts;
 use super::messages::both;
@@ -13,7 +13,7 @@ use crate::package::source::Source;
 use crate::package::wire::WireFacts;
 use fc_spec::model::{DigestAlgorithm, EnvelopeField, HeaderField, HeaderRole};
 
-/// The file.
+/// Generates `Protocol.kt`.
 pub fn protocol_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     protocol(&mut out, context, groups);
@@ -94,7 +94,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_, '_>]) {
     });
 }
 
-/// The commands and reports, which know the protocol as little as the runtime does.
+/// Writes the lists of commands and reports, which do not refer to the protocol.
 fn operations(out: &mut Source, groups: &[Group<'_, '_>]) {
     let lists = |name: &str, has: fn(&Group<'_, '_>) -> bool| {
         let parts = parts(groups, "Operations", has).into_iter();

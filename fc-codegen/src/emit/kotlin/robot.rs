@@ -1,4 +1,4 @@
-//! The robot's side: complete, partial, by example; typed reports and streams.
+//! The robot's side: complete, partial and example robots, and typed reports and streams.
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
@@ -15,7 +15,7 @@ use crate::package::ranges::{UNKNOWN, pass_through};
 use crate::package::source::Source;
 use std::borrow::Cow;
 
-/// The file.
+/// Generates `Robot.kt`.
 pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = Source::new(&STYLE);
     let handlers = parts(groups, "Handlers", has_commands);
@@ -76,18 +76,18 @@ fn has_commands(group: &Group<'_, '_>) -> bool {
     !group.commands.is_empty()
 }
 
-/// What is a `Robot` by these parts.
+/// Returns `Robot` and these parts, as supertypes.
 fn robot_and(parts: impl Iterator<Item = String>) -> Vec<String> {
     let robot = "Robot".to_owned();
     std::iter::once(robot).chain(parts).collect()
 }
 
-/// The function that has a robot serve the commands of a group.
+/// Returns the name of the function that registers a group's commands with a service.
 fn registration(group: &Group<'_, '_>) -> String {
     ["on", &*part_name(group, "")].concat()
 }
 
-/// The robot's side of a group.
+/// Writes a group's part of the robot's side.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if has_commands(group) {
         handlers(out, context, group);
@@ -139,13 +139,13 @@ fn served(out: &mut Source, group: &Group<'_, '_>) {
     });
 }
 
-/// The method for what has no type, from words that a language joins in its own way.
+/// Returns the name of a method, from its words.
 fn method(words: &str) -> Cow<'_, str> {
     let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, words);
     name
 }
 
-/// A method for requests without a type, which refuses them unless a robot has it.
+/// Writes a method for requests without a type. The default refuses them.
 fn raw(out: &mut Source, name: &str, docs: &Docs<'_>) {
     out.documented(docs);
     out.line(format!(
@@ -183,7 +183,7 @@ internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
     );
 }
 
-/// The examples of a group as a robot's answers.
+/// Writes the class that responds to a group's commands with the spec's examples.
 fn answers(out: &mut Source, group: &Group<'_, '_>) {
     let name = part_name(group, "Example");
     let head = format!("internal class {name}(pretendMotion: Boolean)");

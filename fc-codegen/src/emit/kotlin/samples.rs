@@ -1,5 +1,6 @@
-//! How each operation is called and answered, as the pages of the documentation show it. The same text stands in
-//! `Samples.kt` among the tests of the package, so no sample can rot.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! `Samples.kt` among the tests of the package contains the same text, so no sample can become invalid.
 
 use super::client::is_bare;
 use super::expr::{Form, laid_out};
@@ -15,13 +16,13 @@ use crate::package::source::Source;
 use crate::package::style::Style;
 use fc_spec::model::Type;
 
-/// Kotlin as it stands on a page.
+/// The style of Kotlin on a page.
 static ON_PAGES: Style = Style {
     width: PAGE_WIDTH,
     ..STYLE
 };
 
-/// How the pages show the package.
+/// The Kotlin samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "kotlin",
     file: "generated/src/test/kotlin/Samples.kt",
@@ -30,7 +31,7 @@ pub const SHOWN: Shown = Shown {
     write,
 };
 
-/// What the samples have from elsewhere besides.
+/// The additional imports of the samples.
 pub const IMPORTED: &[&str] = &[
     "kotlinx.coroutines.CoroutineStart.UNDISPATCHED",
     "kotlinx.coroutines.coroutineScope",
@@ -110,7 +111,7 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
     }
 }
 
-/// `val content = …`.
+/// Writes `val content = …`.
 fn assign_content(out: &mut Source, value: Option<&Record<'_>>) {
     match value {
         Some(value) => assign(out, "val content = ", value),
@@ -118,13 +119,13 @@ fn assign_content(out: &mut Source, value: Option<&Record<'_>>) {
     }
 }
 
-/// `before`, and a message as it is written by hand.
+/// Writes `before` and a message in the form of handwritten code.
 fn assign(out: &mut Source, before: &str, message: &Record<'_>) {
     let message = Expr::Record(message.clone());
     laid_out(out, before, &message, &Type::Json, "", Form::Block);
 }
 
-/// A robot that answers by the samples.
+/// Writes a robot that responds with the samples.
 fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
     let is_there = |name: &str| context.package.has_type(name);
     let name = free(&["SampleRobot", "RobotOfTheSamples"], is_there);
@@ -145,7 +146,7 @@ fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
     });
 }
 
-/// All samples, and a function that runs them.
+/// Generates all samples, and a function that runs them.
 #[must_use]
 pub fn samples_file(context: &Context<'_>) -> Source {
     let run = &SampleRun::build(context);

@@ -1,4 +1,4 @@
-//! The streams of the data port, as the app takes and sends them and as the robot sends them.
+//! The streams of the data port on both sides.
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
@@ -9,7 +9,7 @@ use crate::package::items::Spelled;
 use crate::package::source::Source;
 use fc_spec::model::{Operation, Side};
 
-/// The app's side, if there are streams.
+/// Writes the app's side, if there are streams.
 pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Streams", |it| !it.streams.is_empty());
     if parts.is_empty() {
@@ -23,7 +23,7 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     out.line(heading(")", &parts));
 }
 
-/// The robot's side, if it sends any.
+/// Writes the robot's side, if it sends any stream.
 pub fn for_robot(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Streamer", |it| it.subscribed().next().is_some());
     if parts.is_empty() {
@@ -42,13 +42,13 @@ const DATA: &str = "data: DataConnection";
 const DATA_DOCS: &str =
     "/** 数据连接。The data connection: its state, and frames without a subscription. */";
 
-/// What the robot's reports and streams go through.
+/// The property that sends the robot's reports and streams.
 pub const SERVER: &str = "server: Server";
 
-/// What is said of it.
+/// The comment on that property.
 pub const SERVER_DOCS: &str = "/** 由它发送。The server that sends them. */";
 
-/// The streams of a group.
+/// Writes the streams of a group.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.streams.is_empty() {
         return;

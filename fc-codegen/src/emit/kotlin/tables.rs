@@ -1,4 +1,4 @@
-//! The spec's tables of constants, each a function that answers its rows as messages.
+//! The spec's tables of constants. Each is a function that returns its rows as messages.
 
 use super::expr::{self, Form};
 use super::text::STYLE;
@@ -9,7 +9,7 @@ use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
 use fc_spec::model::Type;
 
-/// The file.
+/// Generates `Tables.kt`.
 pub fn tables_file(context: &Context<'_>) -> Source {
     let mut out = Source::new(&STYLE);
     let expressions = Expressions::new(&context.package);

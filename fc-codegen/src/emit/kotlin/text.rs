@@ -1,4 +1,4 @@
-//! What Kotlin makes of types, numbers and texts.
+//! Types, numbers and strings in Kotlin.
 
 use crate::package::context::Context;
 use crate::package::digits::grouped;
@@ -10,7 +10,7 @@ use fc_spec::model::{Field, FloatKind, IntKind, Number, Scalar, Type, has_unprin
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Kotlin as ktlint lays it out.
+/// The style of ktlint.
 pub static STYLE: Style = Style {
     width: 120,
     indent: "    ",
@@ -35,7 +35,7 @@ fn prose(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// Comments of Kotlin nest, and end where they are told to.
+/// Breaks up the marks of nested comments in a line. Comments nest in Kotlin, so both marks matter.
 fn closed(line: &str) -> Cow<'_, str> {
     if line.contains("/*") || line.contains("*/") {
         Cow::Owned(line.replace("/*", "/ *").replace("*/", "* /"))
@@ -44,7 +44,7 @@ fn closed(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// An integer for a `Long`, with its digits in groups of three. Above `i64`, the `Long` has the same bits.
+/// Returns an integer for a `Long`, with digits in groups of three. Above `i64`, the `Long` has the same bits.
 pub fn integer(value: i128) -> String {
     if value == i64::MIN.into() {
         return "Long.MIN_VALUE".to_owned();
@@ -55,7 +55,7 @@ pub fn integer(value: i128) -> String {
     grouped(value)
 }
 
-/// A number that may be either.
+/// Returns an integer or a float.
 pub fn number(number: &Number) -> String {
     match number {
         Number::Int(value) if *value > i64::MAX.into() => format!("BigInteger(\"{value}\")"),
@@ -64,7 +64,7 @@ pub fn number(number: &Number) -> String {
     }
 }
 
-/// What travels, as it stands in source text.
+/// Returns a value in wire form as source text.
 pub fn scalar(wire: &Scalar) -> String {
     match wire {
         Scalar::Number(Number::Int(value)) => integer(*value),
@@ -74,7 +74,7 @@ pub fn scalar(wire: &Scalar) -> String {
     }
 }
 
-/// A text as a string literal, raw where that spares escapes.
+/// Returns a string literal. The literal is raw if that avoids escapes.
 pub fn literal(text: &str) -> String {
     let needs_escape = |c: char| c.is_control() || is_hidden(c);
     let is_plain = !has_unprintable(text) && !text.contains('$');
@@ -91,7 +91,7 @@ pub fn literal(text: &str) -> String {
             '\t' => out.push_str("\\t"),
             c if needs_escape(c) => {
                 for unit in c.encode_utf16(&mut [0; 2]) {
-                    // Writing to a String cannot fail.
+                    // Writing to a `String` cannot fail.
                     let _ = write!(out, "\\u{unit:04x}");
                 }
             }
@@ -102,7 +102,7 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// The type of a value.
+/// Returns the Kotlin type of a value.
 pub fn type_of(context: &Context<'_>, ty: &Type) -> String {
     match ty {
         Type::Bool => "Boolean".to_owned(),
@@ -121,7 +121,7 @@ pub fn type_of(context: &Context<'_>, ty: &Type) -> String {
     }
 }
 
-/// The codec of a plain type.
+/// Returns the codec of a plain type.
 pub fn plain_codec(ty: &Type) -> String {
     let name = match ty {
         Type::Bool => "BOOL",
@@ -135,7 +135,7 @@ pub fn plain_codec(ty: &Type) -> String {
     format!("Types.{name}")
 }
 
-/// How a field is read and written, and what is demanded of it.
+/// Returns the codec of a field, with its wire form and its constraints.
 pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -> String {
     let mut lists = 0;
     let mut inner = &field.ty;

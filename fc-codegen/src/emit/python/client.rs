@@ -1,4 +1,4 @@
-//! What a group has of the app's stubs: the methods of its commands, with and without `async`, and of its streams.
+//! A group's part of the app's stubs: methods for its commands, with and without `async`, and for its streams.
 
 use super::group::part_of;
 use super::literal::literal;
@@ -17,7 +17,7 @@ use fc_spec::model::Operation;
 /// The options of a call.
 const OPTIONS: [&str; 2] = ["timeout", "repeat"];
 
-/// Any of a group's reports.
+/// Writes the union of a group's reports.
 pub fn any_report(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::AnyReport) else {
         return;
@@ -28,7 +28,7 @@ pub fn any_report(out: &mut Source, group: &NamedGroup<'_, '_>) {
     union.write_in_parentheses(out, &format!("{name}: TypeAlias = "));
 }
 
-/// The methods of a group's commands.
+/// Writes the methods of a group's commands.
 pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::Calls) else {
         return;
@@ -42,7 +42,7 @@ pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>
     });
 }
 
-/// `self`, the request and the options of a call.
+/// Returns `self`, the request and the options of a call.
 fn parameters(command: &Call<'_>) -> Vec<Code> {
     let request = &command.request.ty.name;
     let is_empty = command.request.fields().iter().all(|field| field.optional);
@@ -69,7 +69,7 @@ fn deprecated(out: &mut Source, command: &Call<'_>) {
     }
 }
 
-/// The reports that a command sets off, and their type.
+/// Returns the reports that a command sets off, and their type.
 fn followed<'c>(context: &'c Context<'_>, command: &'c Operation) -> (Vec<&'c Operation>, String) {
     let reports = process::set_off(context, command);
     let (reports, types): (Vec<_>, Vec<_>) = reports
@@ -78,7 +78,7 @@ fn followed<'c>(context: &'c Context<'_>, command: &'c Operation) -> (Vec<&'c Op
     (reports, types.join(" | "))
 }
 
-/// What says which of its errors a command was refused with.
+/// Returns the sentence about the errors of a refused call.
 fn declared(error: &str) -> String {
     format!("`CallError.declared({error})` returns the error of a refused call.")
 }
@@ -112,7 +112,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     });
 }
 
-/// The parameter with what is sent.
+/// Returns the parameter with the content of a stream.
 pub fn content(context: &Context<'_>, stream: &Operation) -> String {
     format!("content: {}", context.content(stream).unwrap_or("bytes"))
 }
@@ -128,7 +128,7 @@ fn subscribe(out: &mut Source, context: &Context<'_>, stream: &Operation) {
     });
 }
 
-/// What a method says that calls a command and follows one of its reports, whose type is `followed`.
+/// Returns the comment on a method that calls a command and follows one of its reports, of type `followed`.
 fn follow_docs<'c>(
     context: &Context<'_>,
     command: &'c Operation,
@@ -148,7 +148,7 @@ fn follow_docs<'c>(
     docs
 }
 
-/// The methods of a group's commands, each of which waits.
+/// Writes the methods of a group's commands without `async`. Each waits for the response.
 pub fn sync_calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::SyncCalls) else {
         return;
@@ -199,7 +199,7 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     }
 }
 
-/// The methods of a group's streams: those of the robot first.
+/// Writes the methods of a group's streams. The robot's streams come first.
 pub fn streams(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::Streams) else {
         return;

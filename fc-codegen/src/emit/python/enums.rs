@@ -1,4 +1,4 @@
-//! Enums, and what the spec says of their values as states.
+//! Enums, and the rules for their values as states.
 
 use super::literal::wire;
 use super::source::{Code, Python};
@@ -9,7 +9,9 @@ use crate::package::process::{self, has_states, next_values};
 use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
 
-/// Whether the values of an enum are states of a process: the spec says so, or a report has it for its state.
+/// Returns `true` if the values of an enum are states of a process.
+///
+/// They are states if the spec has rules for them, or if a report has the enum as its state.
 pub fn is_state(context: &Context<'_>, shape: &EnumType, ty: &TypeDef) -> bool {
     has_states(shape)
         || context.model().operations.iter().any(|report| {
@@ -17,7 +19,7 @@ pub fn is_state(context: &Context<'_>, shape: &EnumType, ty: &TypeDef) -> bool {
         })
 }
 
-/// An enum and its values.
+/// Writes an enum and its values.
 pub fn enumeration(
     out: &mut Source,
     context: &Context<'_>,
@@ -51,7 +53,7 @@ pub fn enumeration(
     });
 }
 
-/// What is said of the values as states.
+/// Writes the rules for the values as states.
 fn states(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) {
     let named = |name: &str| Code::Text(format!("cls.{name}"));
     let all = |is: fn(&EnumValue) -> bool| {

@@ -1,4 +1,4 @@
-//! `groups/….py`: all that there is of a group. Its types, its operations as values, and its part of each stub.
+//! `groups/….py`: the types of a group, its operations as values, and its part of each stub.
 
 use super::client;
 use super::messages;
@@ -12,7 +12,7 @@ use crate::package::docs::Docs;
 use crate::package::group::Group;
 use crate::package::source::Source;
 
-/// The file of a group, and of those that cannot be parted from it.
+/// Generates the file of a group, and of the groups that share the file because of an import cycle.
 pub fn group_file(
     context: &Context<'_>,
     plan: &ModulePlan<'_, '_>,
@@ -52,7 +52,7 @@ pub fn group_file(
     out.finish()
 }
 
-/// What a group has of the classes that a user names.
+/// Writes the group's part of each public class.
 fn stubs(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     client::calls(out, context, group);
     client::sync_calls(out, context, group);
@@ -63,7 +63,7 @@ fn stubs(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     robot::streamer(out, context, group);
 }
 
-/// What these and the operations of the group have to import.
+/// Adds the imports of the stubs and of the operations.
 fn uses<'p>(used: &mut Used<'p>, context: &'p Context<'_>, group: &NamedGroup<'_, 'p>) {
     for operation in &group.operations {
         used.library("typing", "Final");
@@ -78,7 +78,9 @@ fn uses<'p>(used: &mut Used<'p>, context: &'p Context<'_>, group: &NamedGroup<'_
     }
 }
 
-/// A class with what a group has of another, whose name and methods are `about`: `["Client", "指令", "commands"]`.
+/// Writes a class with the group's part of another class.
+///
+/// `about` contains the name of that class and its members in both languages: `["Client", "指令", "commands"]`.
 pub fn part_of(
     out: &mut Source,
     group: &NamedGroup<'_, '_>,

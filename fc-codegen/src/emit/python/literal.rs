@@ -1,4 +1,4 @@
-//! Literals of Python, and constants made of them.
+//! Literals of Python, and constants built from them.
 
 use super::source::Code;
 use crate::package::digits::grouped;
@@ -8,7 +8,7 @@ use fc_spec::model::{Number, Scalar, has_unprintable, is_hidden};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// A text in the quotes that spare escapes, which are double ones where it does not matter.
+/// Returns a string literal in the quotes that need fewer escapes. Double quotes are the default.
 pub fn literal(text: &str) -> String {
     let count = |quote| text.matches(quote).count();
     let quote = if count('"') > count('\'') { '\'' } else { '"' };
@@ -39,7 +39,7 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// A regular expression: raw where that shows it as it is.
+/// Returns a regular expression as a literal, which is raw if that needs no escapes.
 pub fn regex(text: &str) -> String {
     let plain = |c: char| !(c.is_control() || is_hidden(c) || c == '"');
     if text.contains('\\') && text.chars().all(plain) {
@@ -49,7 +49,7 @@ pub fn regex(text: &str) -> String {
     }
 }
 
-/// Bytes: `b"\xfc\xaa"`.
+/// Returns a literal of bytes: `b"\xfc\xaa"`.
 pub fn bytes(bytes: &[u8]) -> String {
     let has = |quote| bytes.contains(&quote);
     let quote = if has(b'"') && !has(b'\'') { '\'' } else { '"' };
@@ -67,7 +67,6 @@ pub fn bytes(bytes: &[u8]) -> String {
     out
 }
 
-/// A number.
 pub fn number(number: &Number) -> String {
     match number {
         Number::Int(value) => grouped(*value),
@@ -79,7 +78,7 @@ fn float(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A value of an enum as it travels.
+/// Returns an enum value in its wire form.
 pub fn wire(wire: &Scalar) -> String {
     match wire {
         Scalar::Number(value) => number(value),
@@ -88,22 +87,21 @@ pub fn wire(wire: &Scalar) -> String {
     }
 }
 
-/// A bool.
 pub fn boolean(value: bool) -> &'static str {
     if value { "True" } else { "False" }
 }
 
-/// Constants of the spec, and the types that they name.
+/// Builds constants of the spec, and collects the types that they name.
 #[derive(Debug, Default)]
 pub struct Constants {
-    /// The types that have been named.
+    /// The types named so far.
     pub types: BTreeSet<String>,
-    /// Whether anything of the runtime has been named.
+    /// `true` if a constant names anything of the runtime.
     pub runtime: bool,
 }
 
 impl Constants {
-    /// A constant.
+    /// Returns a constant.
     pub fn value(&mut self, expr: &Expr<'_>) -> Code {
         self.runtime |= matches!(expr, Expr::Json(_) | Expr::Unlisted(..));
         Code::Text(match expr {
@@ -127,7 +125,7 @@ impl Constants {
         })
     }
 
-    /// A message with what is in it.
+    /// Returns a message with a constant in each of its fields.
     pub fn record(&mut self, record: &Record<'_>) -> Code {
         let members = record.members.iter();
         let members = members.filter_map(|(field, value)| {
@@ -145,7 +143,7 @@ impl Constants {
     }
 }
 
-/// A constant that names types of its own module.
+/// Returns a constant that names only types of its module.
 pub fn constant(expr: &Expr<'_>) -> Code {
     Constants::default().value(expr)
 }

@@ -16,14 +16,15 @@ use crate::package::name::free;
 use crate::package::source::Source;
 use fc_spec::model::{EnumRepr, Field, Scalar, Type, TypeShape, Value, Variant};
 
-/// Message types.
+/// Writes message types. Enums come first, and choices last.
 pub fn types<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
     context: &'m Context<'_>,
     items: &[&'m Item<'_>],
 ) {
-    // Annotations of fields are read late, but not the constants of classes, which may be values of enums.
+    // Python evaluates annotations of fields late, but constants of classes at once. A constant may be a value of an
+    // enum.
     for item in items {
         if let Shape::Enum(shape, values) = &item.shape {
             if !is_state(context, shape, item.ty.of) {
@@ -40,7 +41,7 @@ pub fn types<'m>(
             errors(out, context, item);
         }
     }
-    // These are made of structs, where they stand.
+    // A choice refers to its structs at once.
     for item in items {
         if let Shape::Choice(_, variants) = &item.shape {
             out.gap();
@@ -49,7 +50,7 @@ pub fn types<'m>(
     }
 }
 
-/// What message types are called, and the errors beside them.
+/// Returns the names of message types, each with the enum of its declared errors.
 pub fn names<'n>(context: &'n Context<'_>, items: &[&'n Item<'_>]) -> Vec<&'n str> {
     let errors = |item: &Item<'n>| Some(context.package.declared_by(item)?.1);
     let names = items.iter();
@@ -138,13 +139,13 @@ fn structure<'m>(
     });
 }
 
-/// The keys that a message keeps without knowing them.
+/// Writes the field that keeps unknown keys.
 pub fn extra(out: &mut Source) {
     out.line("extra: rt.Extra = field(default_factory=rt.Extra)");
     out.line("\"\"\"其他键，原样保留。Other keys, kept unchanged.\"\"\"");
 }
 
-/// The type of a field: of ids their own, where they have one.
+/// Returns the type of a field. An id field has its id type, if one exists.
 fn field_annotation(context: &Context<'_>, field: &Field, optional: bool) -> String {
     let Some(id) = context.package.id_of(field) else {
         return annotation(context, &field.ty, optional);
@@ -158,7 +159,7 @@ fn field_annotation(context: &Context<'_>, field: &Field, optional: bool) -> Str
     if optional { ty + " | None" } else { ty }
 }
 
-/// A type, with or without its absence.
+/// Returns a type, optional or not.
 pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
     let ty = match ty {
         Type::Bool => "bool".to_owned(),
@@ -191,7 +192,7 @@ pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
     }
 }
 
-/// How a field travels, and what is demanded of it.
+/// Returns the wire form and the constraints of a field.
 fn key(
     field: &Spelled<'_, Field>,
     fields: &[Spelled<'_, Field>],
@@ -235,7 +236,7 @@ fn key(
     Code::call("rt.Key", items)
 }
 
-/// What the absence of a field means.
+/// The default of a field, which is the meaning of its absence.
 struct Default {
     name: String,
     constant: String,
@@ -244,7 +245,7 @@ struct Default {
     value: String,
 }
 
-/// The defaults of a message's fields.
+/// Returns the defaults of a message's fields.
 fn defaults(
     context: &Context<'_>,
     expressions: &Expressions<'_, '_>,
@@ -271,7 +272,7 @@ fn defaults(
     defaults.collect()
 }
 
-/// The errors that a command declares, as an enum beside its request.
+/// Writes the enum of the errors that a command declares, next to its request.
 fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
     let Some((command, name)) = package.declared_by(item) else {

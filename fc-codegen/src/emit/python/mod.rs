@@ -1,7 +1,8 @@
-//! The generated part of the Python package. All that there is of a group is in one file (`group`); the files beside
-//! the groups put their parts together, and change only with the groups.
+//! The generated part of the Python package.
 //!
-//! Text is laid out as it is written (`source`), the way `ruff format` would; the tests hold it to that.
+//! All content of a group is in one file (`group`). The files outside `groups` combine the parts of the groups, and
+//! change only when groups are added or removed. `source` lays out the text the way `ruff format` would, and the tests
+//! check this.
 
 mod client;
 mod enums;
@@ -24,7 +25,7 @@ use crate::target::Targets;
 use fc_spec::model::Model;
 use modules::ModulePlan;
 
-/// All of its files.
+/// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.python(), &source::PYTHON, Some(targets));

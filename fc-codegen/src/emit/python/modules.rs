@@ -1,7 +1,7 @@
-//! The modules of the groups, the names of the parts of a group, and the imports of a module.
+//! The modules of the groups, the names of a group's parts, and the imports of a module.
 //!
-//! Python cannot import names in a circle: groups that use each other's types or reports share the file of the first of
-//! them.
+//! Python cannot import names in a cycle. Groups that use each other's types or reports therefore share the file of the
+//! first of them.
 
 use super::operations::constant;
 use super::source::Python;
@@ -31,16 +31,16 @@ impl<'p, 'm> Deref for NamedGroup<'p, 'm> {
     }
 }
 
-/// What the module of a group has for a file of the package to put together.
+/// A part of a group's module that a file of the package combines with those of other groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GroupPart {
     /// The methods of the client.
     Calls,
-    /// Those of the client without `async`.
+    /// The methods of the client without `async`.
     SyncCalls,
     /// The methods of a complete robot.
     Handlers,
-    /// Those of a robot that has some of them.
+    /// The methods of a robot that implements only some of them.
     PartialHandlers,
     /// The methods that push reports.
     Reporter,
@@ -48,7 +48,7 @@ pub enum GroupPart {
     Streams,
     /// The robot's methods for streams.
     Streamer,
-    /// Any report.
+    /// The union of the reports.
     AnyReport,
     /// All operations of a kind.
     All(Kind),
@@ -110,9 +110,9 @@ impl NamedGroup<'_, '_> {
 /// The modules that have a file, and the groups in each.
 pub struct ModulePlan<'p, 'm> {
     package: &'p Package<'m>,
-    /// The groups, by their ids.
+    /// The groups, sorted by id.
     groups: Vec<NamedGroup<'p, 'm>>,
-    /// The group whose file holds a group, by their ids.
+    /// The group whose file contains a group, by the id of the latter.
     homes: HashMap<&'p str, &'p str>,
     ids: String,
 }
@@ -150,32 +150,32 @@ impl<'p, 'm> ModulePlan<'p, 'm> {
         }
     }
 
-    /// The module with the types of ids.
+    /// Returns the module with the id types.
     pub fn ids(&self) -> &str {
         &self.ids
     }
 
-    /// The groups that have a file, by the names of the files.
+    /// Returns the groups that have a file, sorted by id.
     pub fn files(&self) -> impl Iterator<Item = &NamedGroup<'p, 'm>> {
         let groups = self.groups.iter();
         groups.filter(|group| self.homes.get(group.id) == Some(&group.id))
     }
 
-    /// The groups in the file of this one.
+    /// Returns the groups in the file of `home`.
     pub fn members(&self, home: &Group<'_, '_>) -> Vec<&NamedGroup<'p, 'm>> {
         let groups = self.groups.iter();
         let members = groups.filter(|group| self.homes.get(group.id) == Some(&home.id));
         members.collect()
     }
 
-    /// The names of one part of all groups, in the order of the spec.
+    /// Returns the names of one part of all groups, in the order of the spec.
     pub fn parts(&self, part: GroupPart) -> Vec<&str> {
         let groups = self.package.model.groups.iter();
         let names = groups.filter_map(|group| self.group(&group.id)?.part(part));
         names.collect()
     }
 
-    /// Imports these parts of all groups.
+    /// Writes imports of these parts of all groups.
     pub fn import(&self, out: &mut Source, parts: &[GroupPart]) {
         let mut modules: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for group in &self.groups {
@@ -194,14 +194,14 @@ impl<'p, 'm> ModulePlan<'p, 'm> {
         self.groups.iter().find(|group| group.id == id)
     }
 
-    /// The module whose file holds a group.
+    /// Returns the module whose file contains a group.
     fn module(&self, group: &str) -> &str {
         let home = self.homes.get(group).and_then(|id| self.group(id));
         home.map_or(&self.ids, |home| home.name)
     }
 }
 
-/// The groups by their ids.
+/// Returns the groups, sorted by id.
 fn named_groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
     let package = &context.package;
     let operations = context.model().operations.iter();
@@ -227,33 +227,33 @@ fn named_groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
 pub struct Used<'m> {
     library: BTreeMap<&'static str, BTreeSet<&'static str>>,
     types: BTreeSet<&'m TypeRef>,
-    /// The reports that commands set off, by what they are called.
+    /// The reports that commands set off, by the names of their constants.
     reports: BTreeMap<String, &'m Operation>,
     ids: BTreeSet<String>,
 }
 
 impl<'m> Used<'m> {
-    /// A name of the standard library.
+    /// Adds a name of the standard library.
     pub fn library(&mut self, module: &'static str, name: &'static str) {
         self.library.entry(module).or_default().insert(name);
     }
 
-    /// A message type.
+    /// Adds a message type.
     pub fn named(&mut self, named: &'m TypeRef) {
         self.types.insert(named);
     }
 
-    /// The message type in the type of a field, if there is one.
+    /// Adds the message type in the type of a field, if there is one.
     pub fn all_in(&mut self, ty: &'m Type) {
         self.types.extend(ty.innermost());
     }
 
-    /// The type of an id.
+    /// Adds an id type.
     pub fn id(&mut self, name: &str) {
         self.ids.insert(name.to_owned());
     }
 
-    /// What an operation and its methods name.
+    /// Adds the names that an operation and its methods use.
     pub fn operation(&mut self, context: &'m Context<'_>, operation: &'m Operation) {
         self.types.extend(operation.bodies().map(|it| &*it.ty));
         let accepted = operation.accepted().into_iter();

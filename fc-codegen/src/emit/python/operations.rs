@@ -1,4 +1,4 @@
-//! Commands, reports and streams as values, with all that the spec says of them.
+//! Commands, reports and streams as values, with their facts from the spec.
 
 use super::literal::{boolean, constant as constant_of, literal};
 use super::modules::{GroupPart, NamedGroup};
@@ -16,7 +16,7 @@ use fc_spec::model::{
     StructRef, Type, Value,
 };
 
-/// The operations of these groups, as values. Reports come first, for commands name them.
+/// Writes the operations of these groups as values. Reports come first, because commands refer to them.
 pub fn values(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_, '_>]) {
     out.gap();
     for kind in KINDS {
@@ -41,10 +41,12 @@ pub fn values(out: &mut Source, context: &Context<'_>, groups: &[&NamedGroup<'_,
     }
 }
 
-/// The kinds of operations, as they follow each other.
+/// The kinds of operations, in the order of a file.
 const KINDS: [Kind; 3] = [Kind::Report, Kind::Command, Kind::Stream];
 
-/// What the value of an operation is called: like it, unless a type beside it is called that, or what the file imports.
+/// Returns the name of an operation's value.
+///
+/// The name gets the kind as a suffix if a type, the protocol or an import of the file has the same name.
 pub fn constant(context: &Context<'_>, operation: &Operation) -> String {
     let screaming = |operation: &Operation| Case::Screaming.apply(&operation.name).into_owned();
     let name = screaming(operation);
@@ -59,12 +61,12 @@ pub fn constant(context: &Context<'_>, operation: &Operation) -> String {
     })
 }
 
-/// Seconds.
+/// Converts to seconds.
 pub fn seconds(ms: u32) -> String {
     format!("{:?}", f64::from(ms) / 1000.0)
 }
 
-/// How the acknowledgement of a report is awaited.
+/// Returns the timeout and the retries of an acknowledgement.
 pub fn ack(ack: Ack) -> Code {
     let timeout = format!("timeout={}", seconds(ack.timeout_ms));
     let retries = format!("retries={}", ack.retries);
@@ -217,7 +219,7 @@ fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
     reports.collect()
 }
 
-/// The way to a field, by the names of the fields on it.
+/// Returns the path to a field, as the names of its fields.
 fn way(context: &Context<'_>, body: &StructRef, keys: &[String]) -> Code {
     let steps = context.steps(body, keys);
     let names: Vec<&str> = steps.iter().map(|step| step.name).collect();

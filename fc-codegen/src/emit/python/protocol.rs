@@ -1,4 +1,4 @@
-//! `protocol.py`: result codes, envelopes, and the protocol itself with its numbers.
+//! `protocol.py`: result codes, envelopes, and the protocol with its numbers.
 
 use super::literal::{bytes, literal};
 use super::messages::annotation;
@@ -29,20 +29,20 @@ const COMMENT: Comment = Comment {
     ..PYTHON.comment
 };
 
-/// Its operations, by kind.
+/// The kinds of operations, with the names of their parameters.
 const KINDS: [(&str, Kind); 3] = [
     ("commands", Kind::Command),
     ("reports", Kind::Report),
     ("streams", Kind::Stream),
 ];
 
-/// What the protocol's value is called.
+/// Returns the name of the protocol's value.
 pub fn name(context: &Context<'_>) -> String {
     let wish = Case::Screaming.apply(&context.model().protocol.id);
     free(&[&wish, "PROTOCOL"], |name| context.package.has_type(name))
 }
 
-/// The file.
+/// Generates `protocol.py`.
 pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let package = &context.package;
     let mut out = Source::new(&PYTHON);
@@ -200,7 +200,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
     out.docstring(&docs);
 }
 
-/// The codes that are passed through.
+/// Returns the pass-through ranges.
 fn ranges(context: &Context<'_>) -> Code {
     let ranges = pass_through(context).into_iter().map(|(name, range)| {
         let items = vec![

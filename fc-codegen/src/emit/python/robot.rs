@@ -1,4 +1,4 @@
-//! What a group has of the robot's stubs: the methods of its commands, its reports and its streams.
+//! A group's part of the robot's stubs: methods for its commands, reports and streams.
 
 use super::client::content;
 use super::group::part_of;
@@ -10,7 +10,7 @@ use crate::package::facts;
 use crate::package::items::Call;
 use crate::package::source::Source;
 
-/// A method that handles a command.
+/// Writes a method that handles a command.
 fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source)) {
     let request = format!("request: {}", command.request.ty.name);
     let parameters = ["self", "context: rt.Context", &request].map(Code::from);
@@ -19,7 +19,7 @@ fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source))
     method(out, &open, parameters.to_vec(), returns, body);
 }
 
-/// The methods that a complete robot has to have.
+/// Writes the methods that a complete robot must implement.
 pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::Handlers) else {
         return;
@@ -38,7 +38,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
     });
 }
 
-/// The same, none of which has to be there.
+/// Writes the same methods for a robot that implements only some of them.
 pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let (Some(name), Some(base)) = (
         group.part(GroupPart::PartialHandlers),
@@ -59,7 +59,7 @@ pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
     });
 }
 
-/// The methods that push reports.
+/// Writes the methods that push reports.
 pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::Reporter) else {
         return;
@@ -86,7 +86,7 @@ pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
     });
 }
 
-/// The methods that send the robot's streams.
+/// Writes the methods that send the robot's streams.
 pub fn streamer(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let Some(name) = group.part(GroupPart::Streamer) else {
         return;

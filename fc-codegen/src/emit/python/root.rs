@@ -1,4 +1,4 @@
-//! What the package shows at its root and of all groups, its tool, its constants, the types of ids.
+//! Re-exports of the package: its root, its groups, its tool, its tables and its id types.
 
 use super::literal::Constants;
 use super::messages::annotation;
@@ -12,7 +12,7 @@ use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
 use fc_spec::model::Type;
 
-/// `__all__` where it is made of others, for those who run the package.
+/// Writes a computed `__all__` that only takes effect at run time.
 fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
     let comment =
         "# Type checkers use the imports above: not all of them read a computed `__all__`.";
@@ -20,7 +20,7 @@ fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
     out.suite("if not TYPE_CHECKING", all);
 }
 
-/// The head of a file that shows what others have.
+/// Creates the head of a file that re-exports names.
 fn head(docs: &Docs<'_>) -> Source {
     let mut out = Source::new(&PYTHON);
     out.docstring(docs);
@@ -29,7 +29,7 @@ fn head(docs: &Docs<'_>) -> Source {
     out
 }
 
-/// `__init__.py`.
+/// Generates `__init__.py`.
 pub fn root_file(context: &Context<'_>) -> String {
     let package = &context.package;
     let model = context.model();
@@ -55,7 +55,7 @@ pub fn root_file(context: &Context<'_>) -> String {
     ];
     for (module, names) in &imports {
         for name in names {
-            // To type checkers a module shows what it imports under its own name.
+            // Type checkers treat an import as a re-export only if it has an `as` with the same name.
             let its_own = if *name == "*" {
                 ""
             } else {
@@ -76,7 +76,7 @@ pub fn root_file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-/// `groups/__init__.py`.
+/// Generates `groups/__init__.py`.
 pub fn groups(plan: &ModulePlan<'_, '_>, ids: bool) -> String {
     let mut out = head(&Docs::said(&[
         "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
@@ -99,7 +99,7 @@ pub fn groups(plan: &ModulePlan<'_, '_>, ids: bool) -> String {
     out.finish()
 }
 
-/// `messages.py`.
+/// Generates `messages.py`.
 pub fn messages() -> String {
     let mut out = head(&Docs::said(&[
         "所有分组的报文类型。",
@@ -116,7 +116,7 @@ pub fn messages() -> String {
     out.finish()
 }
 
-/// `operations.py`.
+/// Generates `operations.py`.
 pub fn operations() -> String {
     let mut out = head(&Docs::said(&[
         "所有分组的接口，以及规范中的说明。",
@@ -133,7 +133,7 @@ pub fn operations() -> String {
     out.finish()
 }
 
-/// The types of ids.
+/// Generates the file of the id types.
 pub fn ids(context: &Context<'_>) -> String {
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&[
@@ -162,7 +162,7 @@ pub fn ids(context: &Context<'_>) -> String {
     out.finish()
 }
 
-/// `call.py`.
+/// Generates `call.py`.
 pub fn call(context: &Context<'_>, package: &str) -> String {
     let name = protocol::name(context);
     format!(
@@ -181,7 +181,7 @@ if __name__ == \"__main__\":
     )
 }
 
-/// `tables.py`.
+/// Generates `tables.py`.
 pub fn tables(context: &Context<'_>) -> String {
     let mut constants = Constants::default();
     let mut body = Source::new(&PYTHON);

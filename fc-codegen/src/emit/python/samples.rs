@@ -1,5 +1,6 @@
-//! How each operation is called and answered, as the pages of the documentation show it. The same text stands in a test
-//! of the package, so no sample can rot.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! A test of the package contains the same text, so no sample can become invalid.
 
 use super::literal::Constants;
 use super::source::{Code, PYTHON, Python, method};
@@ -10,13 +11,13 @@ use crate::package::source::Source;
 use crate::package::style::Style;
 use crate::target::Targets;
 
-/// Python as it stands on a page.
+/// The style of Python on a page.
 static ON_PAGES: Style = Style {
     width: PAGE_WIDTH,
     ..PYTHON
 };
 
-/// How the pages show the package.
+/// The Python samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "python",
     file: "tests/test_samples.py",
@@ -78,7 +79,7 @@ fn write(out: &mut Source, names: &mut Constants, sample: &Sample<'_, '_>) {
     }
 }
 
-/// `content = …`.
+/// Writes `content = …`.
 fn assign_content(out: &mut Source, names: &mut Constants, value: Option<&Record<'_>>) {
     match value {
         Some(value) => names.record(value).write(out, "content = ", ""),
@@ -86,7 +87,7 @@ fn assign_content(out: &mut Source, names: &mut Constants, value: Option<&Record
     }
 }
 
-/// The test that type-checks and runs every sample.
+/// Generates the test that type-checks and runs every sample.
 pub fn samples_file(context: &Context<'_>, package: &str) -> String {
     let run = &SampleRun::build(context);
     let mut names = Constants::default();

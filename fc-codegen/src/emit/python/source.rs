@@ -1,4 +1,4 @@
-//! What `ruff format` does: docstrings, imports, and brackets that open when what they hold is too long for a line.
+//! Source text in the layout of `ruff format`: docstrings, imports, and brackets that break if they exceed a line.
 
 use super::literal::literal;
 use crate::package::docs::Docs;
@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// Python as the package's formatter lays it out.
+/// The style of the package's formatter.
 pub static PYTHON: Style = Style {
     width: 120,
     indent: "    ",
@@ -26,41 +26,41 @@ pub static PYTHON: Style = Style {
     redacted: "Never shown by `repr()`.",
 };
 
-/// The columns that a docstring leaves free for its quotes, which stand on its first line.
+/// The columns of a docstring's first line that its quotes take.
 const QUOTES: usize = 4;
 
-/// An expression or a statement, which opens its brackets where it is too long for a line.
+/// An expression or a statement, whose brackets break if it exceeds a line.
 #[derive(Clone, Debug)]
 pub enum Code {
-    /// What has no brackets, or none that open.
+    /// Text without brackets, or with brackets that never break.
     Text(String),
     /// A keyword and its value: `min=`.
     Named(String, Box<Code>),
-    /// A call, parameters or a subscript. What is in it stands on one line if it can.
+    /// A call, parameters or a subscript. After a break, its content stays on one line if it fits.
     Call(String, Vec<Code>, &'static str),
-    /// A list, tuple or dict. Each of its items gets a line as soon as it opens.
+    /// A list, tuple or dict. After a break, each item has a separate line.
     List(&'static str, Vec<Code>, &'static str),
     /// `A | B`.
     Union(Vec<String>),
 }
 
 impl Code {
-    /// `function(…)`.
+    /// Returns `function(…)`.
     pub fn call(function: &str, arguments: Vec<Self>) -> Self {
         Self::Call(format!("{function}("), arguments, ")")
     }
 
-    /// `name=value`.
+    /// Returns `name=value`.
     pub fn named(name: &str, value: impl Into<Self>) -> Self {
         Self::Named(format!("{name}="), Box::new(value.into()))
     }
 
-    /// A tuple.
+    /// Returns a tuple.
     pub fn tuple(items: Vec<Self>) -> Self {
         Self::List("(", items, ")")
     }
 
-    /// On one line.
+    /// Returns the code on one line.
     pub fn flat(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -72,7 +72,7 @@ impl Code {
         }
     }
 
-    /// Writes it with what stands before and behind it.
+    /// Writes the code between `before` and `behind`.
     pub fn write(&self, out: &mut Source, before: &str, behind: &str) {
         let flat = self.flat();
         if out.has_room([before, &flat, behind]) {
@@ -102,7 +102,7 @@ impl Code {
                 return out.line(shared);
             }
             for item in items {
-                // A lone star or a comprehension has its comma as well.
+                // A lone star or a comprehension also gets a comma.
                 item.write(out, "", ",");
             }
         });
@@ -127,15 +127,15 @@ impl From<&str> for Code {
 
 /// A file of Python under construction.
 pub trait Python {
-    /// The string that documents what stands above it, or what it stands in.
+    /// Writes the docstring of the item above, or of the enclosing item.
     fn docstring(&mut self, docs: &Docs<'_>);
-    /// `head:` and what `body` writes inside it.
+    /// Writes `head:` and an indented body.
     fn suite(&mut self, head: &str, body: impl FnOnce(&mut Self));
-    /// The two empty lines between what stands at the level of a file.
+    /// Writes the two empty lines between items at the level of a file.
     fn gap(&mut self);
-    /// `from module import a, b`, each name once and in the linter's order.
+    /// Writes `from module import a, b`, with each name once and in the linter's order.
     fn import_from(&mut self, module: &str, names: &[&str]);
-    /// The same with a line for each name: one more changes none of them.
+    /// Writes an import with a line for each name. A new name therefore changes no other line.
     fn import_each(&mut self, module: &str, names: &[&str]);
 }
 
@@ -148,7 +148,7 @@ impl Python for Source {
             lines.push(line.trim_end().to_owned());
         });
         let text = lines.join("\n");
-        // Such quotes would end it, and backslashes stand for themselves.
+        // Triple quotes would end the docstring. A raw string keeps backslashes.
         let text = text.replace("\"\"\"", "'''");
         let open = if text.contains('\\') {
             "r\"\"\""
@@ -196,7 +196,7 @@ impl Python for Source {
 }
 
 impl Code {
-    /// A union behind `before`, in parentheses where it is too long for a line.
+    /// Writes a union after `before`, in parentheses if it exceeds a line.
     pub fn write_in_parentheses(&self, out: &mut Source, before: &str) {
         let flat = self.flat();
         if out.has_room([before, &flat]) {
@@ -207,7 +207,7 @@ impl Code {
     }
 }
 
-/// `before = "text"`, in parentheses and on several lines where it is too long for one.
+/// Writes `before = "text"`. A long text has parentheses and several lines.
 pub fn assign_text(out: &mut Source, before: &str, text: &str) {
     let flat = literal(text);
     if out.has_room([before, " = ", &flat]) {
@@ -223,7 +223,7 @@ pub fn assign_text(out: &mut Source, before: &str, text: &str) {
     });
 }
 
-/// How much of a text stands on a line of its own, as far as a comma if there is one.
+/// Returns the length of the text that fits on a line. The line ends at a comma, if it has one.
 fn end_of_line(out: &Source, text: &str) -> usize {
     let mut fitting = 0;
     let mut comma = None;
@@ -244,7 +244,7 @@ fn end_of_line(out: &Source, text: &str) -> usize {
     comma.unwrap_or(fitting).max(1)
 }
 
-/// A function from its first line on, which `open` begins: `async def name(`.
+/// Writes a function. `open` is the start of its first line: `async def name(`.
 pub fn method(
     out: &mut Source,
     open: &str,
@@ -257,8 +257,9 @@ pub fn method(
     out.enclose("", "", body);
 }
 
-/// `before(a, b)behind`, each item on a line of its own: one more changes none of them. The formatter never opens the
-/// brackets of one alone.
+/// Writes `before(a, b)behind`, with each item on a separate line. A new item therefore changes no other line.
+///
+/// The formatter never breaks the brackets of a single item.
 pub fn tuple(out: &mut Source, before: &str, items: &[String], behind: &str) {
     match items {
         [] => out.line([before, "()", behind].concat()),
@@ -267,14 +268,16 @@ pub fn tuple(out: &mut Source, before: &str, items: &[String], behind: &str) {
     }
 }
 
-/// `__all__`, in the linter's order.
+/// Writes `__all__`, in the linter's order.
 pub fn exported(out: &mut Source, names: &[&str]) {
     let names = sorted(names, str::to_owned);
     let names = names.iter().map(|name| format!("\"{name}\""));
     out.lines("__all__ = [", &names.collect::<Vec<_>>(), "]");
 }
 
-/// Names as the linter sorts them: constants, then classes, then the others, numbers in them by their value.
+/// Sorts names like the linter: constants, then classes, then other names.
+///
+/// Numbers in names compare by value.
 pub fn sorted<'n>(names: &[&'n str], folded: fn(&str) -> String) -> Vec<&'n str> {
     let keyed = names.iter().map(|name| ((kind(name), folded(name)), *name));
     let keyed: BTreeMap<(u8, String), &str> = keyed.collect();
@@ -296,7 +299,7 @@ fn kind(name: &str) -> u8 {
     }
 }
 
-/// Texts by their characters, the numbers in them by their values.
+/// Compares texts by their characters, and numbers in them by value.
 fn natural(one: &str, other: &str) -> Ordering {
     let (mut one, mut other) = (one, other);
     loop {

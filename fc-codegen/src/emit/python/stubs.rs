@@ -1,4 +1,4 @@
-//! `client.py`, `sync.py` and `robot.py`: the classes that a user names, each put together from the parts of all groups.
+//! `client.py`, `sync.py` and `robot.py`: the public classes, which combine the parts of all groups.
 
 use super::modules::{GroupPart, ModulePlan};
 use super::protocol;
@@ -9,7 +9,7 @@ use crate::package::docs::Docs;
 use crate::package::ranges::pass_through;
 use crate::package::source::Source;
 
-/// The head of a file: what it is, and what it imports of the standard library and the runtime.
+/// Creates the head of a file: its docstring, and its imports from the standard library and the runtime.
 fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
     let mut out = Source::new(&PYTHON);
     out.docstring(&Docs::said(&about));
@@ -25,7 +25,7 @@ fn head(about: [&'static str; 2], standard: &[(&str, &[&str])]) -> Source {
     out
 }
 
-/// The bases of a class: a part of each group, then its `own`.
+/// Returns the bases of a class: a part of each group, then `own`.
 fn bases_of(plan: &ModulePlan<'_, '_>, part: GroupPart, own: &[&str]) -> Vec<Code> {
     let parts = plan.parts(part).into_iter();
     parts.chain(own.iter().copied()).map(Code::from).collect()
@@ -46,7 +46,7 @@ fn class(
     });
 }
 
-/// What the protocol of a stub is.
+/// Writes the class variable with the protocol of a stub.
 fn speaks(out: &mut Source, context: &Context<'_>) {
     out.blank();
     out.line(format!(
@@ -55,7 +55,7 @@ fn speaks(out: &mut Source, context: &Context<'_>) {
     ));
 }
 
-/// `client.py`.
+/// Generates `client.py`.
 pub fn client(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let has_streams = !context.package.streams.is_empty();
     let mut out = head(
@@ -98,7 +98,7 @@ pub fn client(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     out.finish()
 }
 
-/// `sync.py`.
+/// Generates `sync.py`.
 pub fn sync(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [
@@ -121,7 +121,7 @@ pub fn sync(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     out.finish()
 }
 
-/// `robot.py`.
+/// Generates `robot.py`.
 pub fn robot(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let mut out = head(
         [

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::source::Source;
 use crate::package::docs::Docs;
 
-/// The file.
+/// Generates `blocking.rs`.
 pub fn blocking_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
 

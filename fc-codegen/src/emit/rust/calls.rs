@@ -1,5 +1,6 @@
-//! The methods of the stubs that carry the messages of one group, in the group's file: a new command changes no file
-//! of another group, and whoever reads about its messages finds how they are sent.
+//! Stub methods that carry the messages of one group, in the group's file.
+//!
+//! A new command changes no file of another group. Readers of a message find the method that sends it in the same file.
 
 use super::context::Context;
 use super::literal::literal;
@@ -10,8 +11,9 @@ use crate::package::items::{Call, Module};
 use crate::package::process;
 use fc_spec::model::Kind;
 
-/// The methods of the messages of a module. Whatever they take from elsewhere stands with its path, since each stub has
-/// a feature of its own.
+/// Writes the stub methods for the messages of a module.
+///
+/// Types of other modules appear with their path, because each stub has a separate feature.
 pub fn methods(out: &mut Source, context: &Context<'_>, module: &Module<'_>) {
     let commands = calls(context, module, Kind::Command);
     let reports = calls(context, module, Kind::Report);
@@ -30,14 +32,14 @@ pub fn methods(out: &mut Source, context: &Context<'_>, module: &Module<'_>) {
     });
 }
 
-/// Those of a kind whose requests the module holds.
+/// Returns the calls of a kind whose requests are in the module.
 fn calls<'p>(context: &'p Context<'_>, module: &'p Module<'_>, kind: Kind) -> Vec<Call<'p>> {
     let items = module.items.iter();
     let calls = items.filter_map(|item| context.package.opened_by(item));
     calls.filter(|call| call.operation.kind() == kind).collect()
 }
 
-/// An `impl` of a stub, if it has any method here.
+/// Writes an `impl` of a stub, unless it has no methods.
 fn stub(
     out: &mut Source,
     feature: &str,
@@ -68,7 +70,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     deprecation(out, command);
     let request = &command.request.ty.name;
     if process::is_followed(context, command.operation) {
-        // The call itself, which can be awaited or followed.
+        // Returns the call, which can be awaited or followed.
         let protocol = &context.package.name;
         out.list(
             &format!("pub fn {}<'a>(", command.method),

@@ -1,4 +1,4 @@
-//! `client.rs`: the app's stub, whose commands the files of the groups add, and one enum over all reports.
+//! `client.rs`: the app's stub, which the files of the groups extend, and one enum over all reports.
 
 use super::context::{Context, message};
 use super::source::Source;
@@ -8,7 +8,7 @@ use crate::package::items::Call;
 use crate::package::name::free;
 use fc_spec::model::Side;
 
-/// The file.
+/// Generates `client.rs`.
 pub fn client_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let reports = context.reports();

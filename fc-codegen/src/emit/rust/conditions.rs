@@ -1,4 +1,4 @@
-//! Under which values of the fields beside it a field is there, for the derive and as Rust spells it.
+//! Conditions of fields, as derive attributes and as Rust values in comments.
 
 use super::enums::enum_wire;
 use super::messages::constant;
@@ -6,7 +6,7 @@ use crate::package::conditions::Asked;
 use crate::package::expr::{Expr, Expressions};
 use fc_spec::model::{Type, Value};
 
-/// The attribute of a field that may be absent: `when(mode = 2 | 3)`.
+/// Returns the attribute of a conditional field: `when(mode = 2 | 3)`.
 pub fn attribute(expressions: &Expressions<'_, '_>, condition: &Asked<'_, '_>) -> String {
     let asked = condition.each(" | ", |other, wire| match &other.ty {
         Type::Named(_) => enum_wire(wire),
@@ -17,7 +17,7 @@ pub fn attribute(expressions: &Expressions<'_, '_>, condition: &Asked<'_, '_>) -
     format!("{}({})", condition.word, asked.join(", "))
 }
 
-/// A value as a comment names it.
+/// Returns a value as comments write it.
 pub fn spelled(value: &Expr<'_>) -> String {
     match value {
         Expr::Value(item, value) => format!("{}::{}", item.ty.name, value.name),

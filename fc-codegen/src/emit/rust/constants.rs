@@ -1,4 +1,4 @@
-//! Constants in Rust: what the tables hold and what the samples send.
+//! Constants in Rust: table rows and sample values.
 
 use super::literal::literal;
 use crate::package::digits::grouped;
@@ -7,30 +7,30 @@ use crate::package::items::Spelled;
 use crate::package::name::free;
 use fc_spec::model::Field;
 
-/// Columns that a value may take on one line.
+/// The maximum width of a value on one line, in columns.
 const WIDTH: usize = 72;
 
-/// Columns that a list may take on one line inside a struct that is written out.
+/// The maximum width of a list on one line inside a struct with several lines.
 const LIST_WIDTH: usize = 50;
 
-/// Columns that named fields may take on one line, as rustfmt has it.
+/// The maximum width of named fields on one line, as in rustfmt.
 const FIELDS_WIDTH: usize = 18;
 
-/// Where a constant stands, which decides how its structs are made.
+/// The crate of a constant, which decides the form of its structs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// In the package that has the types: with all fields.
+    /// In the package that defines the types: a literal with all fields.
     Inside,
-    /// In a program that uses it: by `new` and setters, as the structs may gain fields.
+    /// In a program that uses the package: `new` and setters, because the structs may gain fields.
     Outside,
 }
 
-/// A constant as Rust, laid out as rustfmt would from column `used` on.
+/// Returns a constant, laid out as rustfmt would from column `used`.
 pub fn spelled(expr: &Expr<'_>, place: Place, used: usize) -> String {
     Spelling::of(expr, place).laid_out(used)
 }
 
-/// A struct as Rust, laid out as rustfmt would from column `used` on.
+/// Returns a struct, laid out as rustfmt would from column `used`.
 pub fn spelled_record(record: &Record<'_>, place: Place, used: usize) -> String {
     Spelling::record(record, place).laid_out(used)
 }
@@ -38,17 +38,19 @@ pub fn spelled_record(record: &Record<'_>, place: Place, used: usize) -> String 
 /// Values with the names of their fields.
 type Fields = Vec<(String, Spelling)>;
 
-/// A constant in words, before it is laid out.
+/// A constant before layout.
 enum Spelling {
     /// One token or a short call.
     Atom(String),
-    /// Around another: `Some(`, `)`.
+    /// A prefix and a suffix around another constant: `Some(`, `)`.
     Around(String, Box<Spelling>, &'static str),
     /// `vec![…]`.
     List(Vec<Spelling>, Place),
     /// `Name { field: value }`.
     Literal(String, Fields),
-    /// `Name::new(a).with_b(b)`, with several required fields `Name::new(NameFields { a, c })`: those, and the optional ones.
+    /// Required fields, then optional fields: `Name::new(a).with_b(b)`.
+    ///
+    /// Several required fields give `Name::new(NameFields { a, c })`.
     Made(String, Fields, Fields),
 }
 
@@ -131,7 +133,7 @@ impl Spelling {
         }
     }
 
-    /// On one line; `None` for what never is.
+    /// Returns the constant on one line; `None` if it always takes several.
     fn flat(&self) -> Option<String> {
         let joined = |items: &mut dyn Iterator<Item = &Self>| -> Option<String> {
             let items: Option<Vec<String>> = items.map(Self::flat).collect();
@@ -159,7 +161,7 @@ impl Spelling {
         }
     }
 
-    /// On one line if that is short enough.
+    /// Returns the constant on one line if it is short enough, otherwise on several.
     fn laid_out(&self, used: usize) -> String {
         let flat = self.flat();
         if let Some(flat) = flat.filter(|flat| used + flat.len() <= WIDTH || self.is_atom()) {
@@ -197,7 +199,7 @@ impl Spelling {
     }
 }
 
-/// The argument of `new` on one line; `None` where rustfmt takes several.
+/// Returns the argument of `new` on one line; `None` if rustfmt takes several.
 fn given(name: &str, required: &Fields) -> Option<String> {
     match required.as_slice() {
         [] => Some(String::new()),
@@ -213,7 +215,7 @@ fn given(name: &str, required: &Fields) -> Option<String> {
     }
 }
 
-/// A struct on several lines, as rustfmt lays out a chain of calls.
+/// Lays out a struct on several lines, as rustfmt does for a chain of calls.
 fn made(name: &str, required: &Fields, optional: &Fields, used: usize) -> String {
     let mut out = format!("{name}::new(");
     let short = given(name, required).filter(|it| used + out.len() + it.len() < WIDTH);
@@ -247,7 +249,7 @@ fn made(name: &str, required: &Fields, optional: &Fields, used: usize) -> String
     out.trim_end().to_owned()
 }
 
-/// Every line one level deeper.
+/// Indents every line by one level.
 pub fn indented(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
@@ -260,7 +262,7 @@ pub fn indented(text: &str) -> String {
     out
 }
 
-/// Name of the field that keeps unknown keys.
+/// Returns the name of the field that keeps unknown keys.
 pub fn extra_name(fields: &[Spelled<'_, Field>]) -> String {
     free(&["extra", "extra_keys", "unknown_keys"], |name| {
         fields.iter().any(|field| field.name == name)

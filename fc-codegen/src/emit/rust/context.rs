@@ -1,4 +1,4 @@
-//! What the files of the crate ask beyond those of any package: Rust's types, and what they import.
+//! Rust types of fields and messages.
 
 use crate::package::items::Item;
 use fc_spec::model::{Field, Type};
@@ -6,7 +6,7 @@ use fc_spec::model::{Field, Type};
 pub use crate::package::context::{Context, page_of};
 
 impl Context<'_> {
-    /// The Rust type of a field without its optional mark: of ids their own, where they have one.
+    /// Returns the Rust type of a field without its `Option`. An id field has its id type, if one exists.
     pub fn field_type(&self, field: &Field) -> String {
         match self.package.id_of(field) {
             Some(id) => lists_of(&field.ty, &id.name),
@@ -14,7 +14,7 @@ impl Context<'_> {
         }
     }
 
-    /// The Rust type of a type of the spec.
+    /// Returns the Rust type of a type of the spec.
     pub fn rust_type(&self, ty: &Type) -> String {
         match ty {
             Type::Bool | Type::Int(_) | Type::Float(_) => ty.to_string(),
@@ -28,7 +28,7 @@ impl Context<'_> {
     }
 }
 
-/// A type with `item` in the place of what its lists are of.
+/// Replaces the innermost item type of a list with `item`.
 fn lists_of(ty: &Type, item: &str) -> String {
     match ty {
         Type::Array(inner) => format!("Vec<{}>", lists_of(inner, item)),
@@ -36,7 +36,7 @@ fn lists_of(ty: &Type, item: &str) -> String {
     }
 }
 
-/// Where the stubs find a message type, whatever it is called.
+/// Returns the path to a message type in the stubs. The path avoids clashes with other names.
 pub fn message(item: &Item<'_>) -> String {
     format!("messages::{}", item.ty.name)
 }

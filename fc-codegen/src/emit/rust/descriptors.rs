@@ -1,5 +1,6 @@
-//! `descriptors.rs`: every operation as data, for tools that work without its types, and macros that expand once for
-//! each.
+//! `descriptors.rs`: every operation as data, for tools that work without its types.
+//!
+//! The file also contains macros that expand once for each operation.
 
 use super::context::{Context, message, page_of};
 use super::literal::literal;
@@ -11,7 +12,7 @@ use fc_spec::model::{
     AcceptedIn, Body, Cadence, Direction, Kind, Model, Operation, StateSet, Value,
 };
 
-/// The four tables: name, kind, comment in Chinese and English.
+/// The four tables: name, kind, and the comment in Chinese and in English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
     ("OPERATIONS", None, "全部操作。", "Every operation."),
     (
@@ -34,7 +35,7 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
     ),
 ];
 
-/// The file.
+/// Generates `descriptors.rs`.
 pub fn descriptors_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();

@@ -1,4 +1,4 @@
-//! Enums, and their values as attributes have them.
+//! Enums, and the attributes of their values.
 
 use super::context::Context;
 use super::literal::{literal, number};
@@ -10,7 +10,7 @@ use crate::package::name::free;
 use crate::package::process::next_values;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
 
-/// An enum and its values.
+/// Writes an enum and its values.
 pub fn enumeration(
     out: &mut Source,
     context: &Context<'_>,
@@ -53,7 +53,7 @@ pub fn enumeration(
     });
 }
 
-/// What the derive has to be told of a value.
+/// Returns the derive attributes of a value.
 fn value_attributes(
     value: &Spelled<'_, EnumValue>,
     values: &[Spelled<'_, EnumValue>],
@@ -69,7 +69,7 @@ fn value_attributes(
     items
 }
 
-/// A value of an enum as an attribute has it.
+/// Returns an enum value in the syntax of attributes.
 pub fn enum_wire(wire: &Scalar) -> String {
     match wire {
         Scalar::Number(value) => number(value),

@@ -1,4 +1,4 @@
-//! `ids.rs`: a type for the ids of each entity, where the package has such.
+//! `ids.rs`: a type for the ids of each entity, if the package has id types.
 
 use super::context::Context;
 use super::source::Source;
@@ -6,7 +6,7 @@ use crate::package::about;
 use crate::package::docs::Docs;
 use fc_spec::model::Type;
 
-/// The file.
+/// Generates `ids.rs`.
 pub fn ids_file(context: &Context<'_>) -> String {
     let mut out = Source::rust();
     out.inner_docs(&Docs::said(&[

@@ -1,12 +1,12 @@
-//! Literals of Rust: texts and integers.
+//! Literals of Rust: strings and numbers.
 
 use crate::package::digits::grouped;
 use fc_spec::model::{Number, is_hidden};
 
-/// A text as a Rust string literal, raw where that spares escapes and shows the text as it is.
+/// Returns a string literal. The literal is raw if that avoids escapes.
 pub fn literal(text: &str) -> String {
     let needs_escape = |c: char| c.is_control() || is_hidden(c);
-    // First bytes of what is escaped and of some that is not.
+    // Lead bytes of all characters that need an escape, and of some that do not.
     let suspect = |byte| {
         matches!(
             byte,
@@ -40,7 +40,6 @@ pub fn literal(text: &str) -> String {
     out
 }
 
-/// A number literal.
 pub fn number(number: &Number) -> String {
     match number {
         Number::Int(value) => grouped(*value),

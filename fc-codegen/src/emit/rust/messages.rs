@@ -1,4 +1,4 @@
-//! The message types of one group: structs, enums and choices, with what the derives need.
+//! The message types of one group: structs, enums and choices, with their derives.
 
 use super::calls;
 use super::conditions;
@@ -18,7 +18,7 @@ use crate::package::marks::{Bound, FieldMarks};
 use fc_spec::model::{Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
-/// A module of message types.
+/// Generates a module of message types.
 pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
     let mut body = Source::rust();
     let mut used = Used::default();
@@ -47,7 +47,7 @@ pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
     out.finish()
 }
 
-/// One type as its module declares it.
+/// Returns one type as its module declares it.
 pub fn item(context: &Context<'_>, item: &Item<'_>) -> String {
     let mut out = Source::rust();
     declaration(&mut out, &mut Used::default(), context, item);
@@ -73,7 +73,7 @@ fn declaration<'m>(
     }
 }
 
-/// What a module has to import.
+/// The imports of a module.
 #[derive(Default)]
 struct Used<'m> {
     derives: BTreeSet<&'static str>,
@@ -144,7 +144,7 @@ fn structure<'m>(
     }
 
     let expressions = Expressions::new(&context.package);
-    // It may gain a key that nobody has to send.
+    // The struct may gain an optional key.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
         for field in fields {
@@ -179,7 +179,7 @@ fn structure<'m>(
     });
 }
 
-/// A scalar as a constant expression: a text stays a literal.
+/// Returns a scalar as a constant expression. A string stays a literal.
 pub fn constant(value: &Expr<'_>) -> String {
     match value {
         Expr::Text(text) => literal(text),
@@ -187,7 +187,7 @@ pub fn constant(value: &Expr<'_>) -> String {
     }
 }
 
-/// Derives that come from `fc_derive`.
+/// The derives that come from `fc_derive`.
 const OWN_DERIVES: &[&str] = &[
     "Command",
     "Defaults",
@@ -197,7 +197,7 @@ const OWN_DERIVES: &[&str] = &[
     "Report",
 ];
 
-/// The attribute that ties a request to its code.
+/// Writes the attribute that ties a request to its code.
 fn operation_attribute(out: &mut Source, context: &Context<'_>, operation: &Operation) {
     let mut items = vec![
         format!("code = {}", operation.code.spelling),
@@ -226,7 +226,7 @@ fn operation_attribute(out: &mut Source, context: &Context<'_>, operation: &Oper
     out.attribute("#[fc(", &items, ")]");
 }
 
-/// In which states a command is accepted, as its derive is told.
+/// Writes the derive attribute with the states in which a command is accepted.
 fn accepted_in<'m>(
     out: &mut Source,
     used: &mut Used<'m>,
@@ -255,7 +255,7 @@ fn accepted_in<'m>(
     }
 }
 
-/// What the derive has to be told of a field.
+/// Returns the derive attributes of a field.
 fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> Vec<String> {
     let mut items = Vec::new();
     if field.wire != field.name {
@@ -287,7 +287,7 @@ fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> V
     items
 }
 
-/// The errors that a command declares, as an enum beside its request.
+/// Writes the enum of the errors that a command declares, next to its request.
 fn errors(out: &mut Source, used: &mut Used<'_>, context: &Context<'_>, item: &Item<'_>) {
     let package = &context.package;
     let Some((command, name)) = package.declared_by(item) else {

@@ -1,7 +1,7 @@
 //! The generated crate: message structs with derives, both stubs, tables and descriptors.
 //!
-//! Text is laid out as it is written (`source`), the way rustfmt would, so generating takes no
-//! parser, no formatter and no installed tool; the tests hold it to both.
+//! `source` lays out the text the way rustfmt would. Generating therefore needs no parser, no formatter and no
+//! installed tool, and the tests check the layout.
 
 mod blocking;
 mod calls;
@@ -30,7 +30,7 @@ use context::Context;
 use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
-/// All sources of the generated crate.
+/// Generates all sources of the crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.rust(), &source::RUST, Some(targets));
@@ -71,7 +71,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         .collect()
 }
 
-/// The types of these names as the crate declares them, one behind the other, without what they import.
+/// Returns the types with these names as the crate declares them, in sequence and without imports.
 #[must_use]
 pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
     let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
@@ -81,7 +81,7 @@ pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
     items.join("\n")
 }
 
-/// A field as its struct declares it: `pub name: Option<String>`.
+/// Returns a field as its struct declares it: `pub name: Option<String>`.
 #[must_use]
 pub fn field(model: &Model, targets: &Targets, owner: &str, wire: &str) -> Option<String> {
     let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
@@ -100,15 +100,15 @@ pub fn field(model: &Model, targets: &Targets, owner: &str, wire: &str) -> Optio
 
 /// A file of the crate.
 struct File<'m> {
-    /// Below the crate's folder.
+    /// The path relative to the crate's folder.
     path: String,
-    /// What it comes from.
+    /// The source of the file in the spec.
     from: &'m str,
-    /// Makes all of it but the lines that say what it is.
+    /// Writes the file without its header.
     text: Box<dyn Fn() -> String + Sync + 'm>,
 }
 
-/// A file that comes from the spec as a whole.
+/// Creates a file whose source is the whole spec.
 fn file<'m>(path: &str, text: impl Fn() -> String + Sync + 'm) -> File<'m> {
     File {
         path: path.to_owned(),

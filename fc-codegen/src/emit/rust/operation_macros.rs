@@ -1,5 +1,6 @@
-//! Macros that hand every operation to a macro of the user's: the end of `descriptors.rs`, so that one file lists the
-//! operations.
+//! Macros that pass every operation to a macro of the user.
+//!
+//! They form the end of `descriptors.rs`, so that one file lists the operations.
 
 use super::context::Context;
 use super::source::Source;
@@ -11,12 +12,12 @@ struct Each {
     name: &'static str,
     zh: &'static str,
     en: &'static str,
-    /// What the user's macro is given for each, as it would match it.
+    /// The matcher for the arguments of the user's macro.
     pattern: &'static str,
     rows: Vec<String>,
 }
 
-/// All of them.
+/// Writes all macros.
 pub fn macros(out: &mut Source, context: &Context<'_>) {
     for each in all(context) {
         out.blank();

@@ -1,10 +1,10 @@
-//! What a command sets off and how far it has come, as the derives are told.
+//! Derive attributes for processes: the reports that a command sets off, and the state of a report.
 
 use super::context::Context;
 use crate::package::process::{set_off, state};
 use fc_spec::model::{Exchange, Operation, StructRef, TypeRef};
 
-/// Types beside its own that the attribute of an operation names.
+/// Returns the other types that the attribute of an operation names.
 pub fn types<'m>(context: &'m Context<'_>, operation: &'m Operation) -> Vec<&'m TypeRef> {
     let reports = set_off(context, operation);
     let mut types: Vec<&TypeRef> = reports.map(|(_, _, it)| &*it.request.ty).collect();
@@ -12,7 +12,7 @@ pub fn types<'m>(context: &'m Context<'_>, operation: &'m Operation) -> Vec<&'m 
     types
 }
 
-/// `sets_off(…)` of a command.
+/// Returns `sets_off(…)` of a command.
 pub fn sets_off(context: &Context<'_>, command: &Operation) -> Option<String> {
     let messages = command.messages()?;
     let reports: Vec<String> = set_off(context, command)
@@ -33,7 +33,7 @@ pub fn sets_off(context: &Context<'_>, command: &Operation) -> Option<String> {
     (!reports.is_empty()).then(|| format!("sets_off({})", reports.join(", ")))
 }
 
-/// `state(…)` and `failure(…)` of a report.
+/// Returns `state(…)` and `failure(…)` of a report.
 pub fn stage(context: &Context<'_>, report: &Operation) -> Vec<String> {
     let (Exchange::Report { failures, .. }, Some(messages)) = (&report.exchange, report.messages())
     else {
@@ -53,7 +53,7 @@ pub fn stage(context: &Context<'_>, report: &Operation) -> Vec<String> {
     items
 }
 
-/// The way to a field as the derives read it: names of fields, with `?` for those that are an `Option`.
+/// Returns the path to a field for the derives: the field names, with `?` after each `Option`.
 fn steps(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
     let steps = context.steps(body, keys).into_iter().map(|step| {
         let optional = if step.optional { "?" } else { "" };

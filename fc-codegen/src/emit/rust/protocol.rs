@@ -1,4 +1,4 @@
-//! `protocol.rs`: frame header, envelopes, result codes, and the protocol itself with its numbers.
+//! `protocol.rs`: frame header, envelopes, result codes, and the protocol with its numbers.
 
 use super::context::{Context, page_of};
 use super::literal::literal;
@@ -15,7 +15,7 @@ use fc_spec::model::{
     DigestAlgorithm, Direction, EnvelopeField, HeaderField, HeaderQuirk, HeaderType,
 };
 
-/// The file.
+/// Generates `protocol.rs`.
 pub fn protocol_file(context: &Context<'_>) -> String {
     let package = &context.package;
     let mut out = Source::rust();
@@ -145,7 +145,7 @@ fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
             for (name, value) in wire.limits {
                 out.line(format!("{name}: {},", grouped(value.into())));
             }
-            // Of the runtime, not of the protocol.
+            // The runtime sets these limits; the protocol does not.
             for name in ["inflate_ratio", "json_values", "json_list_bytes"] {
                 out.line(format!("{name}: Limits::{},", name.to_uppercase()));
             }
@@ -289,7 +289,7 @@ impl From<ResultCode> for Refusal {
     );
 }
 
-/// The codes of the streams, if there are any: their bytes have no type to hold the code.
+/// Writes the codes of the streams, if there are any. A stream of bytes has no type that could hold its code.
 fn streams(out: &mut Source, context: &Context<'_>) {
     let streams = &context.package.streams;
     if streams.is_empty() {
@@ -316,7 +316,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-/// Bytes as a slice: `&[0xFC, 0xAA]`.
+/// Returns bytes as a slice: `&[0xFC, 0xAA]`.
 fn bytes(bytes: &[u8]) -> String {
     let items: Vec<String> = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
     format!("&[{}]", items.join(", "))

@@ -1,5 +1,7 @@
-//! `robot.rs`: the robot's stub. A trait with one method per command, a robot that answers with the
-//! spec's examples, and typed pushing of reports.
+//! `robot.rs`: the robot's stub.
+//!
+//! The file contains a trait with one method per command, a robot that responds with the spec's examples, and a typed
+//! sender of reports.
 
 use super::context::{Context, message};
 use super::source::Source;
@@ -11,7 +13,7 @@ use crate::package::items::Call;
 use crate::package::ranges::{UNKNOWN, pass_through};
 use fc_spec::model::{CodeRange, Side};
 
-/// The file.
+/// Generates `robot.rs`.
 pub fn robot_file(context: &Context<'_>) -> String {
     let protocol = &context.package.name;
     let commands = context.commands();
@@ -58,7 +60,7 @@ fn imports(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[
     out.import("fc_runtime", &runtime);
 }
 
-/// Opens and closes the text of a method of the trait or of an implementation.
+/// Returns the start, the parameters and the end of a method's signature.
 pub fn signature(
     name: &str,
     context: &str,
@@ -141,7 +143,7 @@ fn robot(
     });
 }
 
-/// A method for requests without a type, which refuses them.
+/// Writes a method for requests without a type, which refuses them.
 fn raw(out: &mut Source, protocol: &str, name: &str) {
     let cx = format!("context: Context<{protocol}>");
     let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer", "Refusal");

@@ -1,11 +1,11 @@
-//! `lib.rs` and `messages/mod.rs`: what the crate is, its modules and what it shows at its root.
+//! `lib.rs`, `prelude.rs` and `messages/mod.rs`: the modules of the crate and its re-exports.
 
 use super::context::Context;
 use super::source::Source;
 use super::streams;
 use crate::package::docs::Docs;
 
-/// Lints that the spec's own words decide, each with its reason.
+/// Lints that names in the spec can trigger, each with the reason.
 const ALLOWED: &[(&str, &str)] = &[
     (
         "clippy::doc_markdown",
@@ -37,7 +37,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
 ];
 
-/// `lib.rs`.
+/// Generates `lib.rs`.
 pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = Source::rust();
@@ -116,7 +116,7 @@ pub use fc_runtime as runtime;",
     out.finish()
 }
 
-/// Re-exports the types of ids, whose module stands at `path`.
+/// Re-exports the id types, whose module is at `path`.
 fn every_id(out: &mut Source, path: &str, context: &Context<'_>) {
     let mut ids: Vec<&str> = context.package.ids.iter().map(|id| &*id.name).collect();
     ids.sort_unstable();
@@ -125,7 +125,7 @@ fn every_id(out: &mut Source, path: &str, context: &Context<'_>) {
     }
 }
 
-/// The items of the app's stub and those of the robot's, as a program of its own uses them.
+/// Returns the public items of the app's stub and of the robot's stub.
 fn stubs(context: &Context<'_>) -> (Vec<&'static str>, Vec<&'static str>) {
     let mut app = vec!["AnyReport", "Client", "Reports"];
     let mut robot = vec!["PartialRobot", "Reporter", "Robot", "RobotService"];
@@ -136,7 +136,7 @@ fn stubs(context: &Context<'_>) -> (Vec<&'static str>, Vec<&'static str>) {
     (app, robot)
 }
 
-/// Re-exports the types of all groups, whose modules stand at `path`.
+/// Re-exports the types of all groups, whose modules are at `path`.
 fn every_type(out: &mut Source, path: &str, context: &Context<'_>) {
     let modules = &context.package.modules;
     let types: Vec<String> = modules
@@ -150,7 +150,7 @@ fn every_type(out: &mut Source, path: &str, context: &Context<'_>) {
     }
 }
 
-/// What an app needs of the runtime.
+/// The types of the runtime that an app needs.
 const FOR_APPS: &[&str] = &[
     "Backoff",
     "CallError",
@@ -162,7 +162,7 @@ const FOR_APPS: &[&str] = &[
     "Loss",
 ];
 
-/// What a robot needs of it.
+/// The types of the runtime that a robot needs.
 const FOR_ROBOTS: &[&str] = &[
     "AckOutcome",
     "Acknowledgement",
@@ -175,7 +175,7 @@ const FOR_ROBOTS: &[&str] = &[
     "ServerHandle",
 ];
 
-/// What both need of it.
+/// The types of the runtime that both need.
 const FOR_BOTH: &[&str] = &[
     "BodyError",
     "Bytes64",
@@ -190,7 +190,7 @@ const FOR_BOTH: &[&str] = &[
     "Report",
 ];
 
-/// `prelude.rs`.
+/// Generates `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = Source::rust();
     let zh = format!("app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`");
@@ -208,7 +208,7 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
         "pub use crate::protocol::{{{}, ResultCode}};",
         context.package.name
     ));
-    // A type of the spec keeps its name here.
+    // A type of the spec takes precedence over a runtime type with the same name.
     let of_runtime = |out: &mut Source, names: &[&str]| {
         let names: Vec<&str> = names
             .iter()
@@ -232,7 +232,7 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     out.finish()
 }
 
-/// `messages/mod.rs`.
+/// Generates `messages/mod.rs`.
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
     let mut out = Source::rust();

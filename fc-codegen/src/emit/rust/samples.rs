@@ -1,5 +1,6 @@
-//! How each operation is called and answered, as the pages of the documentation show it. The same
-//! text is in a test of the generated crate, so no sample can rot.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! A test of the generated crate contains the same text, so no sample can become invalid.
 
 use super::constants::{Place, indented, spelled_record};
 use super::context::Context;
@@ -10,7 +11,7 @@ use crate::package::name::free;
 use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::target::Targets;
 
-/// How the pages show the package.
+/// The Rust samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "rust",
     file: "tests/samples.rs",
@@ -84,7 +85,7 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
     }
 }
 
-/// A name of the runtime; by its full path if a type of the spec has it.
+/// Returns a name of the runtime. The name has its full path if a type of the spec has the same name.
 fn runtime(context: &Context<'_>, name: &str) -> String {
     let path = if context.package.has_type(name) {
         "fc_runtime::"
@@ -99,7 +100,7 @@ fn assign(out: &mut Source, name: &str, value: &Record<'_>) {
     out.line(format!("let {name} = {value};"));
 }
 
-/// Writes what a stream carries, if more than a word, and returns the word for it.
+/// Assigns the content of a stream, unless it is bytes, and returns the expression for it.
 fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
     let Some(value) = value else {
         return format!("b{BYTES:?}");
@@ -108,7 +109,7 @@ fn assign_content(out: &mut Source, value: Option<&Record<'_>>) -> String {
     "&content".to_owned()
 }
 
-/// The test that compiles and runs every sample.
+/// Generates the test that compiles and runs every sample.
 #[must_use]
 pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
     let run = &SampleRun::build(context);
@@ -163,7 +164,7 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
     out.finish()
 }
 
-/// The result of every function.
+/// The result type of every function.
 const RESULT: &str = "Result<(), Box<dyn std::error::Error>>";
 
 fn call(step: &SampleStep<'_, '_>) -> String {
@@ -225,7 +226,7 @@ fn wait(out: &mut Source, run: &SampleRun<'_, '_>, verb: Verb) {
     }
 }
 
-/// Runs the steps that take without end next to those that give, until the latter have ended.
+/// Runs the endless receiving steps concurrently with the sending steps, until the sending steps end.
 fn select(
     out: &mut Source,
     run: &SampleRun<'_, '_>,

@@ -1,4 +1,4 @@
-//! What rustfmt does beyond any language: attributes, arrays, imports.
+//! Layout rules of rustfmt that only Rust needs: attributes, arrays and imports.
 
 use crate::package::docs::{Docs, columns_of, escape_links};
 use crate::package::source::join;
@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 pub use crate::package::source::Source;
 
-/// Rust as rustfmt lays it out.
+/// The style of rustfmt.
 pub static RUST: Style = Style {
     width: 100,
     indent: "    ",
@@ -17,7 +17,7 @@ pub static RUST: Style = Style {
     redacted: "Never shown by `Debug`.",
 };
 
-/// On what follows.
+/// A comment on the next item.
 const OUTER: Comment = Comment {
     open: "",
     mark: "///",
@@ -32,34 +32,35 @@ const OUTER: Comment = Comment {
     },
 };
 
-/// On what encloses it.
+/// A comment on the enclosing item.
 const INNER: Comment = Comment {
     mark: "//!",
     ..OUTER
 };
 
-/// Columns of several arguments of an attribute on one line, as in rustfmt.
+/// The maximum width of several attribute arguments on one line, as in rustfmt.
 const ATTRIBUTE_WIDTH: usize = 70;
 
-/// Columns of the items of an array on one line, as in rustfmt.
+/// The maximum width of array items on one line, as in rustfmt.
 const ARRAY_WIDTH: usize = 60;
 
-/// Columns of an item that does not need a line of its own in an array, as in rustfmt.
+/// The maximum width of an array item that can share a line, as in rustfmt.
 const SHORT_ITEM: usize = 10;
 
 impl Source {
-    /// A file of Rust.
+    /// Creates an empty Rust file.
     pub fn rust() -> Self {
         Self::new(&RUST)
     }
 
-    /// A documentation comment on what encloses it.
+    /// Writes a documentation comment on the enclosing item.
     pub fn inner_docs(&mut self, docs: &Docs<'_>) {
         self.comment(&INNER, docs);
     }
 
-    /// `open a, b close` for an array: on one line if it is short, else as many items to a line as fit, or a line for
-    /// each where one of them is long.
+    /// Writes `open a, b close` for an array, on one line if it is short.
+    ///
+    /// Otherwise it puts as many items on a line as fit, or one item per line if any item is long.
     pub fn array<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         if columns_of(&join(items)) <= ARRAY_WIDTH {
             self.list(open, items, close);
@@ -73,8 +74,9 @@ impl Source {
         }
     }
 
-    /// `open a, b close` for an attribute: on one line if it is short, else every argument on a line
-    /// of its own, the last without a comma.
+    /// Writes `open a, b close` for an attribute, on one line if it is short.
+    ///
+    /// Otherwise every argument has a separate line, and the last has no comma.
     pub fn attribute<S: AsRef<str>>(&mut self, open: &str, arguments: &[S], close: &str) {
         let joined = join(arguments);
         let fits = match arguments {
@@ -94,8 +96,9 @@ impl Source {
         }
     }
 
-    /// `open a, b close` for words in the parentheses of an attribute: on one line if they are short, else as many to a
-    /// line as fit.
+    /// Writes `open a, b close` for words in the parentheses of an attribute.
+    ///
+    /// Short words share one line. Otherwise it puts as many words on a line as fit.
     pub fn attribute_words<S: AsRef<str>>(&mut self, open: &str, words: &[S], close: &str) {
         let joined = join(words);
         if columns_of(&joined) <= ATTRIBUTE_WIDTH {
@@ -105,7 +108,7 @@ impl Source {
         }
     }
 
-    /// `use path::{a, b};`, sorted, as many names to a line as fit.
+    /// Writes `use path::{a, b};`, sorted, with as many names to a line as fit.
     pub fn import<S: AsRef<str>>(&mut self, path: &str, names: &[S]) {
         let mut names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         names.sort_unstable();
@@ -117,7 +120,7 @@ impl Source {
         }
     }
 
-    /// Like [`list`](Self::list), but as many items to a line as fit.
+    /// Writes a list like [`list`](Self::list), but with as many items to a line as fit.
     pub fn filled<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
         // rustfmt keeps two columns free here.

@@ -1,25 +1,25 @@
-//! The streams in the stubs: an app subscribes to those of the robot and sends its own; a robot sends its own.
+//! The streams in the stubs: an app subscribes to the robot's streams, and both sides send streams.
 
 use super::context::Context;
 use super::source::Source;
 use crate::package::facts;
 use fc_spec::model::{Operation, Side};
 
-/// Columns of a chain of calls on one line, as in rustfmt.
+/// The maximum width of a chain of calls on one line, as in rustfmt.
 const CHAIN_WIDTH: usize = 60;
 
-/// Whether the stubs have any.
+/// Returns `true` if the stubs have any streams.
 pub fn are_any(context: &Context<'_>) -> bool {
     !context.package.streams.is_empty()
 }
 
-/// Whether any that one of these sends carries a message type.
+/// Returns `true` if any stream from one of these senders carries a message type.
 pub fn has_type(context: &Context<'_>, senders: &[Side]) -> bool {
     let mut sent = streams(context).filter(|stream| senders.contains(&stream.sender));
     sent.any(|stream| context.content(stream).is_some())
 }
 
-/// What the app's stub imports for them.
+/// Returns the runtime types that streams in the app's stub need.
 pub fn imports_of_app(context: &Context<'_>) -> Vec<&'static str> {
     let mut names = Vec::new();
     for stream in streams(context) {
@@ -33,7 +33,7 @@ pub fn imports_of_app(context: &Context<'_>) -> Vec<&'static str> {
     names
 }
 
-/// What the robot's stub imports for them.
+/// Returns the runtime types that streams in the robot's stub need.
 pub fn imports_of_robot(context: &Context<'_>) -> Vec<&'static str> {
     let mut own = streams(context).filter(|stream| stream.sender == Side::Robot);
     match own.next() {
@@ -42,7 +42,7 @@ pub fn imports_of_robot(context: &Context<'_>) -> Vec<&'static str> {
     }
 }
 
-/// `Streams`, in the app's stub.
+/// Writes `Streams`, in the app's stub.
 pub fn app(out: &mut Source, context: &Context<'_>, protocol: &str) {
     out.line(format!(
         "\
@@ -97,7 +97,7 @@ pub fn data(&self) -> &DataConnection<{protocol}> {{
     });
 }
 
-/// `Streamer`, in the robot's stub.
+/// Writes `Streamer`, in the robot's stub.
 pub fn robot(out: &mut Source, context: &Context<'_>, protocol: &str) {
     out.line(format!(
         "\
@@ -157,17 +157,17 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
     });
 }
 
-/// Those that have a code.
+/// Returns the streams that have a code.
 fn streams<'c>(context: &'c Context<'_>) -> impl Iterator<Item = &'c Operation> {
     context.package.streams.iter().map(|stream| stream.of)
 }
 
-/// The type of its content; `None` for raw bytes.
+/// Returns the type of a stream's content; `None` for raw bytes.
 fn content(context: &Context<'_>, stream: &Operation) -> Option<String> {
     Some(format!("messages::{}", context.content(stream)?))
 }
 
-/// The method of the runtime that sends it, and the parameter with its content.
+/// Returns the sending method of the runtime, and the parameter with the content.
 fn sent<'n>(
     context: &Context<'_>,
     stream: &Operation,

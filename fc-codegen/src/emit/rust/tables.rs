@@ -1,4 +1,4 @@
-//! `tables.rs`: the spec's tables of constants, each a function that answers its rows as typed values.
+//! `tables.rs`: the spec's tables of constants. Each is a function that returns its rows as typed values.
 
 use super::constants::{Place, spelled};
 use super::context::Context;
@@ -10,7 +10,7 @@ use crate::package::items::Spelled;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
 
-/// The file.
+/// Generates `tables.rs`.
 pub fn tables_file(context: &Context<'_>) -> String {
     let mut rows = Source::rust();
     let mut used = Used::default();
@@ -30,7 +30,7 @@ pub fn tables_file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-/// What the file has to import.
+/// The imports of the file.
 #[derive(Default)]
 struct Used {
     ids: BTreeSet<String>,
@@ -39,7 +39,7 @@ struct Used {
 }
 
 impl Used {
-    /// What a constant names.
+    /// Adds the types that a constant names.
     fn all_in(&mut self, expr: &Expr<'_>) {
         match expr {
             Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) => {}

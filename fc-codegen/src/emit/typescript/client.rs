@@ -1,4 +1,4 @@
-//! `client.ts`: the app's side. Its methods are declared group by group.
+//! `client.ts`: the app's side, whose methods the groups declare.
 
 use super::context::{Context, own};
 use super::group::{Group, What, merged, parts};
@@ -100,14 +100,14 @@ fn app_streams(out: &mut Source, parts: &[String]) {
     });
 }
 
-/// The members that keep what a class stands on; its methods, which are declared elsewhere, find it there.
+/// Writes the constructor of a class, and the protected member that its methods use. The groups declare the methods.
 pub fn constructor(out: &mut Source, [field, ty]: [&str; 2], about: &str, made: &str) {
     out.line(format!(
         "{about}\nprotected readonly {field}: {ty}\n\n{made}\nconstructor({field}: {ty}) {{\n  this.{field} = {field}\n}}"
     ));
 }
 
-/// Types of the runtime that a group's part of this side names.
+/// Returns the runtime types that a group's part of the app's side names.
 pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'static str> {
     let follows = |call: &Call<'_>| is_followed(context, call.operation);
     let mut names = Vec::new();
@@ -124,7 +124,7 @@ pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'stat
     names
 }
 
-/// What a group adds to this side.
+/// Writes a group's part of the app's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let calls = [
         "calls",
@@ -190,7 +190,7 @@ pub fn method(out: &mut Source, name: &str, parameters: &[String], result: &str)
     out.list(&format!("{name}("), parameters, &format!("): {result}"));
 }
 
-/// The comment on the method of a stream.
+/// Returns the comment on the method of a stream.
 pub fn stream_docs<'m>(context: &Context<'_>, stream: &'m Operation) -> Docs<'m> {
     let mut docs = facts::operation_docs(stream);
     facts::operation_end(context.style, &mut docs, stream);

@@ -1,4 +1,4 @@
-//! Constants of the spec in TypeScript: rows of tables, samples, what a field takes.
+//! Constants of the spec in TypeScript: table rows, samples and constraints.
 
 use super::context::{Context, is_large, repr_is_large};
 use super::layout::Layout;
@@ -8,7 +8,7 @@ use crate::package::items::{Item, Shape};
 use fc_spec::model::{EnumRepr, Number, Scalar};
 use std::collections::BTreeSet;
 
-/// An integer of a type that may be a `bigint`.
+/// Returns an integer; `large` makes it a `bigint`.
 pub fn integer(value: i128, large: bool) -> Layout {
     Layout::Number(if large {
         format!("{value}n")
@@ -17,7 +17,7 @@ pub fn integer(value: i128, large: bool) -> Layout {
     })
 }
 
-/// A number of a constraint.
+/// Returns the number of a constraint.
 pub fn number(number: &Number, large: bool) -> Layout {
     match number {
         Number::Int(value) => integer(*value, large),
@@ -25,7 +25,7 @@ pub fn number(number: &Number, large: bool) -> Layout {
     }
 }
 
-/// What an enum's value is on the wire.
+/// Returns an enum value in its wire form.
 pub fn wire(wire: &Scalar, repr: EnumRepr) -> Layout {
     match wire {
         Scalar::Number(value) => number(value, repr_is_large(repr)),
@@ -34,22 +34,24 @@ pub fn wire(wire: &Scalar, repr: EnumRepr) -> Layout {
     }
 }
 
-/// A constant of a file that imports all messages as one; `large` says that its integers are `bigint`.
+/// Returns a constant for a file that imports all messages as one module.
+///
+/// `large` makes its integers `bigint`.
 pub fn constant(context: &Context<'_>, expr: &Expr<'_>, large: bool) -> Layout {
     Constants::new(context, "messages.").value(expr, large)
 }
 
-/// Constants of the spec, and the enums that they name.
+/// Lays out constants, and collects the enums that they name.
 pub struct Constants<'c, 'm> {
     context: &'c Context<'m>,
-    /// What stands before the name of an enum.
+    /// The text before the name of an enum.
     prefix: &'static str,
-    /// The enums that have been named.
+    /// The enums named so far.
     pub enums: BTreeSet<String>,
 }
 
 impl<'c, 'm> Constants<'c, 'm> {
-    /// Those of a file that has `prefix` before the name of an enum.
+    /// Creates an instance for a file that puts `prefix` before the name of an enum.
     pub fn new(context: &'c Context<'m>, prefix: &'static str) -> Self {
         Self {
             context,
@@ -58,7 +60,7 @@ impl<'c, 'm> Constants<'c, 'm> {
         }
     }
 
-    /// A constant; `large` says that its integers are `bigint`.
+    /// Returns a constant; `large` makes its integers `bigint`.
     pub fn value(&mut self, expr: &Expr<'_>, large: bool) -> Layout {
         match expr {
             Expr::Bool(value) => Layout::word(value.to_string()),
@@ -95,7 +97,7 @@ impl<'c, 'm> Constants<'c, 'm> {
         }
     }
 
-    /// A struct with a constant in each of its fields; what is absent is left out.
+    /// Returns a struct with a constant in each field. Absent fields are omitted.
     pub fn record(&mut self, record: &Record<'_>) -> Layout {
         let members = record.members.iter().filter_map(|(field, value)| {
             let value = self.value(value.as_ref()?, is_large(self.context, field));

@@ -1,4 +1,4 @@
-//! What the files of the package ask beyond those of any: the types of TypeScript, and what is imported from where.
+//! TypeScript types of fields and messages, and the imports of the package's files.
 
 use crate::package::items::{Item, Shape};
 use crate::package::language::{Role, TYPESCRIPT};
@@ -7,15 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 pub use crate::package::context::{Context, page_of};
 
-/// What a `number` holds exactly.
+/// The largest integer up to which a `number` is exact.
 const SAFE: i128 = (1 << 53) - 1;
 
-/// The type of a field without its optional mark.
+/// Returns the type of a field without its optional mark.
 pub fn field_type(context: &Context<'_>, field: &Field) -> String {
     type_of(context, &field.ty, is_large(context, field))
 }
 
-/// The type of a type of the spec; `large` says that its integers are `bigint`.
+/// Returns the type of a type of the spec; `large` makes its integers `bigint`.
 pub fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
     match ty {
         Type::Bool => "boolean".to_owned(),
@@ -29,7 +29,7 @@ pub fn type_of(context: &Context<'_>, ty: &Type, large: bool) -> String {
     }
 }
 
-/// Whether the integers of a field are `bigint`.
+/// Returns `true` if the integers of a field are `bigint`.
 pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
     match field.ty.item() {
         Type::Named(named) => {
@@ -40,7 +40,7 @@ pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
     }
 }
 
-/// Those of these types that are not in the module of this id, by the names of their modules.
+/// Returns the types that are not in the module `home`, grouped by the name of their module.
 pub fn imports<'a>(
     context: &'a Context<'_>,
     home: &str,
@@ -57,7 +57,9 @@ pub fn imports<'a>(
     imports
 }
 
-/// A type of the runtime, as the files that have types of the spec call it.
+/// Returns the local name of a runtime type in files that have types of the spec.
+///
+/// The name ends in `$` if a type of the spec has the same name.
 pub fn own(context: &Context<'_>, name: &str) -> String {
     let mark = if context.package.has_type(name) {
         "$"
@@ -67,13 +69,13 @@ pub fn own(context: &Context<'_>, name: &str) -> String {
     [name, mark].concat()
 }
 
-/// A name that no check has to find free.
+/// Spells a name that needs no check for clashes.
 pub fn spelled(role: Role, words: &str) -> String {
     let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(role, words);
     name.into_owned()
 }
 
-/// Such a type as it is imported.
+/// Returns a runtime type as an import names it.
 pub fn imported(context: &Context<'_>, name: &str) -> String {
     let local = own(context, name);
     if local == name {
@@ -83,7 +85,7 @@ pub fn imported(context: &Context<'_>, name: &str) -> String {
     }
 }
 
-/// The types that an item is made of.
+/// Returns the types that a message type contains.
 pub fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
     match &item.shape {
         Shape::Record(_, fields) => fields
@@ -95,7 +97,7 @@ pub fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
     }
 }
 
-/// Whether it is an integer that a `number` may not hold exactly.
+/// Returns `true` for integers that a `number` may not hold exactly.
 pub fn is_64_bit(ty: &Type) -> bool {
     matches!(
         ty,
@@ -103,12 +105,12 @@ pub fn is_64_bit(ty: &Type) -> bool {
     )
 }
 
-/// Whether values of an enum are `bigint`.
+/// Returns `true` if the values of an enum are `bigint`.
 pub fn repr_is_large(repr: EnumRepr) -> bool {
     matches!(repr, EnumRepr::Int(IntKind::I64 | IntKind::U64))
 }
 
-/// Whether the range of a 64-bit integer fits a `number`.
+/// Returns `true` if the range of a 64-bit integer fits a `number`.
 pub fn is_safe(field: &Field) -> bool {
     let fits = |number: &Option<Number>, or: i128| match number {
         Some(Number::Int(value)) => value.abs() <= SAFE,

@@ -1,5 +1,6 @@
-//! `protocol.ts`: the protocol with its texts and the examples of its messages, for tools that show any frame. Its
-//! shape is declared, by hand, in `stubs/typescript/src/protocol.ts`. Apps load none of it.
+//! `protocol.ts`: the protocol with its texts and the examples of its messages, for tools that show any frame.
+//!
+//! The handwritten file `stubs/typescript/src/protocol.ts` declares its shape. Apps load none of it.
 
 use super::context::Context;
 use super::layout::Layout;
@@ -104,7 +105,7 @@ fn protocol(context: &Context<'_>, samples: &Samples<'_>) -> Layout {
     ])
 }
 
-/// An object that ends with its text in both languages.
+/// Returns an object that ends with its text in both languages.
 fn described(text: &Text, members: impl IntoIterator<Item = (&'static str, Layout)>) -> Layout {
     Layout::object(members.into_iter().chain(languages(text)))
 }

@@ -1,5 +1,6 @@
-//! What the package has of a group of the spec: a folder with a file for each kind of thing. A command, a report or a
-//! stream is in the files of its group alone; the files that all groups share name groups.
+//! A group as a folder of the package, with one file for each kind of content.
+//!
+//! A command, a report or a stream appears only in the files of its group. The files above the groups list only groups.
 
 use super::context::{Context, own, spelled};
 use super::root;
@@ -11,12 +12,12 @@ use fc_spec::model::{Direction, Field, TypeRef};
 
 pub use crate::package::group::Group;
 
-/// What a group may have.
+/// The kinds of content that a group may have.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum What {
     /// Commands that have a code.
     Commands,
-    /// Types of which a field may be absent and means something then.
+    /// Types with an optional field whose absence has a meaning.
     Defaults,
     /// Anything that a program names.
     Messages,
@@ -49,7 +50,7 @@ impl<'p, 'm> Group<'p, 'm> {
         }
     }
 
-    /// What a type of the package is called that has a part of the stubs: `IdentityCalls` of `calls`.
+    /// Returns the name of the type for a part of the stubs: `IdentityCalls` for `calls`.
     pub fn part(&self, context: &Context<'_>, word: &str) -> String {
         match TYPESCRIPT.spelling(Role::Type, &format!("{}_{word}", self.id)) {
             Ok(name) if !root::has(&name) => own(context, &name),
@@ -57,12 +58,12 @@ impl<'p, 'm> Group<'p, 'm> {
         }
     }
 
-    /// What a file calls what it imports of it: `identityCommands` of `commands`.
+    /// Returns the local name of an import from the group: `identityCommands` for `commands`.
     pub fn variable(&self, word: &str) -> String {
         spelled(Role::Method, &format!("{}_{word}", self.id))
     }
 
-    /// Its part of something that a user names: an interface with a member for each of these, if there are any.
+    /// Writes the group's part of a class as an interface with these members. Without members it writes no interface.
     pub fn interface<T>(
         &self,
         out: &mut Source,
@@ -85,7 +86,7 @@ impl<'p, 'm> Group<'p, 'm> {
         });
     }
 
-    /// The types that its operations name.
+    /// Returns the types that the operations of the group name.
     pub fn bodies(&self, context: &'p Context<'m>) -> Vec<&'p TypeRef> {
         let calls = self.commands.iter().chain(&self.reports);
         let calls = calls.flat_map(|call| {
@@ -100,12 +101,12 @@ impl<'p, 'm> Group<'p, 'm> {
     }
 }
 
-/// Whether the absence of a field means something.
+/// Returns `true` if the absence of a field has a meaning.
 pub fn has_default(field: &Spelled<'_, Field>) -> bool {
     field.details().default.is_some()
 }
 
-/// The files of one kind of all groups that have one, as one module.
+/// Generates a module that re-exports the files of one kind from all groups.
 pub fn index(about: [&str; 2], groups: &[Group<'_, '_>], file: &str, what: What) -> String {
     let mut out = head(about);
     let mut names: Vec<&str> = groups
@@ -123,7 +124,7 @@ pub fn index(about: [&str; 2], groups: &[Group<'_, '_>], file: &str, what: What)
     out.finish()
 }
 
-/// What stands behind the name of an interface that has the parts of groups, with those groups that have it.
+/// Returns the names of the groups' interfaces for one part. Groups without this part are omitted.
 pub fn parts(
     context: &Context<'_>,
     groups: &[Group<'_, '_>],
@@ -135,7 +136,7 @@ pub fn parts(
     parts.collect()
 }
 
-/// The beginning of an interface that extends these, up to its brace.
+/// Returns the start of an interface that extends `parts`, up to its brace.
 pub fn extending(out: &Source, name: &str, parts: &[String]) -> String {
     let open = format!("export interface {name}");
     if parts.is_empty() {
@@ -148,7 +149,7 @@ pub fn extending(out: &Source, name: &str, parts: &[String]) -> String {
     format!("{open}\n  extends {}", parts.join(",\n    "))
 }
 
-/// An interface that gives the class of the same name the methods of these.
+/// Writes an interface that gives the class with the same name the methods of `parts`.
 pub fn merged(out: &mut Source, name: &str, about: &str, parts: &[String]) {
     out.blank();
     out.line(about);

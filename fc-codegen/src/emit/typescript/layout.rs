@@ -1,4 +1,4 @@
-//! Values as Biome lays them out: on one line where they fit and are no table.
+//! Values in the layout of Biome: on one line if they fit, except tables.
 
 use super::source::literal;
 use crate::package::source::{Source, join};
@@ -6,18 +6,18 @@ use crate::package::source::{Source, join};
 /// A value before it is laid out.
 #[derive(Clone, Debug)]
 pub enum Layout {
-    /// What stands on one line however long it is.
+    /// Text that stays on one line at any length.
     Atom(String),
     Number(String),
-    /// A text, which may begin a line of its own.
+    /// A string literal, which may move to the next line.
     Text(String),
     /// `{ key: value }`.
     Object(Vec<(String, Layout)>),
-    /// The same with each key on a line of its own.
+    /// An object with each key on a separate line.
     Lines(Vec<(String, Layout)>),
     /// `[value]`.
     List(Vec<Layout>),
-    /// Around another: `new Uint8Array(`, `)`.
+    /// A prefix and a suffix around another value: `new Uint8Array(`, `)`.
     Around(&'static str, Box<Layout>, &'static str),
 }
 
@@ -26,7 +26,7 @@ impl Layout {
         Self::Text(literal(text))
     }
 
-    /// A text, or `null`.
+    /// Returns a string literal, or `null`.
     pub fn text_or_null(text: Option<&str>) -> Self {
         text.map_or_else(|| Self::word("null"), Self::text)
     }
@@ -44,23 +44,23 @@ impl Layout {
         Self::Object(members.map(|(key, value)| (key.into(), value)).collect())
     }
 
-    /// An object with each key on a line of its own.
+    /// Returns an object with each key on a separate line.
     pub fn lines<K: Into<String>>(members: impl IntoIterator<Item = (K, Self)>) -> Self {
         let members = members.into_iter();
         Self::Lines(members.map(|(key, value)| (key.into(), value)).collect())
     }
 
-    /// A word of the language, or a name.
+    /// Returns a word of the language, or a name.
     pub fn word(word: impl Into<String>) -> Self {
         Self::Atom(word.into())
     }
 
-    /// A name in a module, or in a constant of one.
+    /// Returns a name in a module, or in a constant of a module.
     pub fn path<const N: usize>(names: [&str; N]) -> Self {
         Self::Atom(names.join("."))
     }
 
-    /// `true`, for a member that is left out where it is `false`.
+    /// Returns `true` for a member that is omitted if it is `false`.
     pub fn flag(is: bool) -> Option<Self> {
         is.then(|| Self::word("true"))
     }
@@ -69,7 +69,7 @@ impl Layout {
         Self::List(texts.iter().map(|text| Self::text(text.as_ref())).collect())
     }
 
-    /// How many parts it has, if it is an object, or else a list.
+    /// Returns the number of members of an object, and the number of items of a list.
     fn parts(&self) -> (usize, usize) {
         match self {
             Self::Object(members) | Self::Lines(members) => (members.len(), 0),
@@ -78,7 +78,9 @@ impl Layout {
         }
     }
 
-    /// Whether it is never on one line: lists of several objects, or of several lists, are tables.
+    /// Returns `true` if the value never fits one line.
+    ///
+    /// Lists of several objects, or of several lists, are tables.
     fn breaks(&self) -> bool {
         match self {
             Self::Atom(_) | Self::Number(_) | Self::Text(_) => false,
@@ -94,7 +96,7 @@ impl Layout {
         }
     }
 
-    /// On one line.
+    /// Returns the value on one line.
     pub fn flat(&self) -> String {
         match self {
             Self::Atom(text) | Self::Number(text) | Self::Text(text) => text.clone(),
@@ -114,7 +116,7 @@ impl Layout {
         }
     }
 
-    /// Writes it between `head` and `tail`.
+    /// Writes the value between `head` and `tail`.
     pub fn write(&self, out: &mut Source, head: &str, tail: &str) {
         if !self.breaks() {
             let flat = self.flat();
@@ -125,7 +127,7 @@ impl Layout {
         }
         match self {
             Self::Atom(_) | Self::Number(_) => {}
-            // At the start of a line it has no better place.
+            // At the start of a line, a break gives the text no more room.
             Self::Text(text) if head.is_empty() => out.line([text, tail].concat()),
             Self::Text(text) => {
                 out.enclose(head.trim_end(), "", |out| out.line([text, tail].concat()));
@@ -156,7 +158,7 @@ impl Layout {
     }
 }
 
-/// The members of an object, of which some may be absent.
+/// The members of an object, without the absent ones.
 #[derive(Clone, Debug, Default)]
 pub struct Members(Vec<(String, Layout)>);
 
@@ -171,18 +173,18 @@ impl Members {
         Layout::Object(self.0)
     }
 
-    /// As an object; `None` without members.
+    /// Returns an object; `None` without members.
     pub fn some_object(self) -> Option<Layout> {
         (!self.0.is_empty()).then(|| self.object())
     }
 
-    /// As an object with each key on a line of its own.
+    /// Returns an object with each key on a separate line.
     pub fn lines(self) -> Layout {
         Layout::Lines(self.0)
     }
 }
 
-/// Numbers with commas, as many to a line as fit.
+/// Writes numbers with commas, as many to a line as fit.
 fn fill(out: &mut Source, items: &[Layout]) {
     let mut line = String::new();
     for item in items {

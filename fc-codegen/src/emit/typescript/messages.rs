@@ -1,5 +1,7 @@
-//! The message types of one group: interfaces, enums with the constants of their values, choices; and its methods on
-//! both sides, as interfaces. Nothing of it needs the schemas: these have the constants of enums at once when loaded.
+//! The message types of one group, and its methods on both sides as interfaces.
+//!
+//! The types are interfaces, choices, and enums with constants for their values. The file does not import the schemas,
+//! because the schemas read the constants of enums when they load.
 
 use super::constants::wire;
 use super::context::{Context, field_type, imported, imports, own, page_of, parts, repr_is_large};
@@ -22,7 +24,7 @@ pub const ABOUT: [&str; 2] = [
     "The messages of each group, and its methods on the side of the app and of the robot.",
 ];
 
-/// `messages.ts` of a group: its message types, and what it adds to the stubs.
+/// Generates `messages.ts` of a group: its message types, and its parts of the stubs.
 pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = source::file();
     let mut docs = Docs::default();
@@ -70,7 +72,7 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     out.finish()
 }
 
-/// Marks what is withdrawn for editors and compilers; the last of a comment.
+/// Adds the deprecation for editors and compilers. It must be the last part of a comment.
 pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
     if let Some(deprecation) = deprecation {
         let note = facts::withdrawn_note(deprecation);
@@ -78,7 +80,7 @@ pub fn deprecated(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
     }
 }
 
-/// Ends the comment on an operation: links, and the mark of what is withdrawn.
+/// Ends the comment on an operation with its links and its deprecation.
 pub fn end(docs: &mut Docs<'_>, context: &Context<'_>, operation: &Operation) {
     docs.paragraph(context.links(&operation.location, &page_of(operation)));
     deprecated(docs, operation.deprecated.as_ref());
@@ -119,7 +121,7 @@ fn structure(
     });
 }
 
-/// A value as a comment names it.
+/// Returns a value as comments write it.
 fn spelled(value: &Expr<'_>) -> String {
     match value {
         Expr::Value(item, value) => format!("{}.{}", item.ty.name, value.name),
@@ -169,7 +171,7 @@ fn enumeration(
     });
 }
 
-/// `export type Name = A | B`, on one line if it fits.
+/// Writes `export type Name = A | B`, on one line if it fits.
 pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
     let head = format!("export type {name} =");
     let flat = alternatives.join(" | ");
@@ -183,7 +185,7 @@ pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
     });
 }
 
-/// The errors that a command declares, by their names, beside its request.
+/// Writes the union of the errors that a command declares, next to its request.
 fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let package = &context.package;
     let Some(name) = package.error_type(command) else {

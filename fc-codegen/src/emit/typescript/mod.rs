@@ -1,7 +1,7 @@
-//! The generated part of the TypeScript package: types with their schemas, operations, tables, both stubs; and the
-//! texts and examples of the protocol, for tools that show any frame.
+//! The generated part of the TypeScript package: types with schemas, operations, tables and both stubs.
 //!
-//! Text is laid out as Biome would; the tests hold it to that.
+//! It also contains the texts and examples of the protocol, for tools that show any frame. The text has the layout of
+//! Biome, and the tests check this.
 
 mod client;
 mod constants;
@@ -29,16 +29,16 @@ use fc_spec::model::Model;
 use group::{Group, What};
 use source::TYPESCRIPT;
 
-/// What a group has a file of, which the file of the same name above the groups lists.
+/// A kind of file that groups have. A file with the same name above the groups lists them.
 struct Kind {
     file: &'static str,
-    /// What the list says of itself.
+    /// The description of the list.
     about: [&'static str; 2],
     what: What,
     text: fn(&Context<'_>, &Samples<'_>, &Group<'_, '_>) -> String,
 }
 
-/// A file each, as names of messages, of schemas and of operations are the same, and modules are what keeps them apart.
+/// The kinds of files. Messages, schemas and operations share names, so they need separate modules.
 static KINDS: [Kind; 6] = [
     Kind {
         file: "commands",
@@ -78,7 +78,7 @@ static KINDS: [Kind; 6] = [
     },
 ];
 
-/// All files of the generated part.
+/// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, Some(targets));

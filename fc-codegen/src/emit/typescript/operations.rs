@@ -1,4 +1,6 @@
-//! `commands.ts`, `reports.ts` and `streams.ts` of a group: a constant for each operation with all that the runtime has to know of it.
+//! `commands.ts`, `reports.ts` and `streams.ts` of a group: a constant for each operation.
+//!
+//! The constants contain all facts that the runtime needs.
 
 use super::constants::constant;
 use super::context::{Context, page_of, spelled};
@@ -42,16 +44,18 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
     out.finish()
 }
 
-/// What the group has for the lists of the package, in the order of the spec; `export *` leaves it out.
+/// Writes the group's entry for the lists of the package, in the order of the spec.
+///
+/// The entry is a default export, which `export *` skips.
 fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
     out.blank();
     out.line(about);
-    // Each on a line of its own, so that one more changes no line of another.
+    // Each member has a separate line, so that a new member changes no other line.
     let close = format!("}} as Readonly<Record<string, {ty}>>");
     out.lines("export default {", members, &close);
 }
 
-/// The type of a command's constant in the runtime.
+/// Returns the runtime type of a command's constant.
 fn command_type(context: &Context<'_>, command: &Operation) -> &'static str {
     if is_followed(context, command) {
         "FollowedCommand"
@@ -104,7 +108,7 @@ fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call:
     write(out, context, operation, [call.method, ty], &types, members);
 }
 
-/// `export const name: Type<A, B> = { … }` and its comment.
+/// Writes `export const name: Type<A, B> = { … }` and its comment.
 fn write(
     out: &mut Source,
     context: &Context<'_>,
@@ -120,7 +124,7 @@ fn write(
     typed(out, name, ty, types, &members.lines());
 }
 
-/// `export const name: Type<A, B> = value`.
+/// Writes `export const name: Type<A, B> = value`.
 pub fn typed(out: &mut Source, name: &str, ty: &str, types: &[String], value: &Layout) {
     let head = format!("export const {name}: {ty}<{}> = ", join(types));
     if out.has_room([&head, "{"]) {
@@ -133,19 +137,19 @@ pub fn typed(out: &mut Source, name: &str, ty: &str, types: &[String], value: &L
     value.write(out, "> = ", "");
 }
 
-/// How an acknowledgement is awaited.
+/// Returns the timeout and the retries of an acknowledgement.
 pub fn ack_policy(ack: Ack) -> Layout {
     let (timeout, retries) = (Layout::number(ack.timeout_ms), Layout::number(ack.retries));
     Layout::object([("timeout", timeout), ("retries", retries)])
 }
 
-/// The command code; `null` while none is assigned.
+/// Returns the command code; `null` if none is assigned.
 pub fn code(operation: &Operation) -> Layout {
     let code = operation.code.value.map(|_| &operation.code.spelling);
     Layout::word(code.map_or_else(|| "null".to_owned(), |it| it.to_lowercase()))
 }
 
-/// A text in both languages.
+/// Returns a text in both languages.
 pub fn languages(text: &Text) -> [(&'static str, Layout); 2] {
     [
         ("zh", Layout::text(&text.zh)),
@@ -153,7 +157,7 @@ pub fn languages(text: &Text) -> [(&'static str, Layout); 2] {
     ]
 }
 
-/// The members of every operation; `case` is the name of a report among those of `reports()`.
+/// Returns the members of every operation. `case` is the name of a report among those of `reports()`.
 fn facts_of(operation: &Operation, case: Option<&str>) -> Members {
     Members::default()
         .with("is", Layout::text(operation.kind().name()))
@@ -167,7 +171,7 @@ fn facts_of(operation: &Operation, case: Option<&str>) -> Members {
         .with("spec", Layout::text(&operation.location.file))
 }
 
-/// A function that gives the spec's example of a body.
+/// Returns a function that returns the spec's example of a body.
 fn example(
     context: &Context<'_>,
     samples: &Samples<'_>,
@@ -183,7 +187,7 @@ fn example(
     Layout::Around("() => (", Box::new(value), ")")
 }
 
-/// The conditions under which a command is accepted.
+/// Returns the conditions under which a command is accepted.
 fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
     let sets = accepted.state_sets().iter().map(|set| {
         let item = context.package.item(&set.ty);
@@ -211,7 +215,7 @@ fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
         .object()
 }
 
-/// What ties a report to a call, as functions that take both values.
+/// Returns the ties between a report and a call, as functions that select both values.
 fn ties(
     context: &Context<'_>,
     set_off: &SetOff,
@@ -235,7 +239,7 @@ fn ties(
     Layout::list(ties)
 }
 
-/// The way to a field: `.data?.state`.
+/// Returns the path to a field: `.data?.state`.
 fn path(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
     let mut out = String::new();
     let mut dot = ".";
@@ -281,7 +285,7 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '
     out.finish()
 }
 
-/// Adds the acknowledgement of a report, and the keys that tell how far a process has come.
+/// Adds the acknowledgement of a report, and the keys that show the progress of a process.
 fn process(members: Members, context: &Context<'_>, exchange: &Exchange) -> Members {
     let Exchange::Report {
         ack,
@@ -375,7 +379,7 @@ pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) ->
     out.finish()
 }
 
-/// The type of what a stream's frames carry, in a file that has `prefix` before the name of a message.
+/// Returns the content type of a stream. `prefix` precedes the name of a message.
 pub fn carried(context: &Context<'_>, stream: &Operation, prefix: &str) -> String {
     let body = stream.body(Direction::Request);
     body.map_or_else(

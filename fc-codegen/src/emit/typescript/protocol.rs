@@ -1,4 +1,4 @@
-//! `operations.ts`: the protocol with all of its operations, group by group, and what the methods of a robot are called.
+//! `operations.ts`: the protocol with the operations of all groups, and the method names of a robot.
 
 use super::context::{Context, spelled};
 use super::group::{Group, What};
@@ -86,7 +86,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     out.finish()
 }
 
-/// `head { ...one, ...other }`, with each on a line of its own.
+/// Writes `head { ...one, ...other }`, with each member on a separate line.
 fn spread(out: &mut Source, head: &str, members: &[String]) {
     if members.is_empty() {
         return out.line([head, "{}"].concat());
@@ -94,11 +94,11 @@ fn spread(out: &mut Source, head: &str, members: &[String]) {
     out.lines(&[head, "{"].concat(), members, "}");
 }
 
-/// Names of the runtime that stand beside the protocol's own in the stubs.
+/// Names of the runtime that the stubs use together with the protocol's name.
 const BESIDE: &str = "Acknowledgement Answer Audience CallOptions ClientConfig Connection Context DataConnection \
     FollowableCall Platform RawRequest Reported Server ServerConfig ServerPlatform Subscription UnknownReport";
 
-/// What the stubs call the protocol, and how they import it.
+/// Returns the local name of the protocol in the stubs, and its import.
 pub fn imported(context: &Context<'_>) -> (String, String) {
     let name = context.package.name.to_string();
     if BESIDE.split_whitespace().any(|taken| taken == name) {
@@ -110,7 +110,7 @@ pub fn imported(context: &Context<'_>) -> (String, String) {
     }
 }
 
-/// The ranges of codes that are handed on as they come, each with its method.
+/// Returns the pass-through ranges, each with its method.
 pub fn ranges<'m>(context: &Context<'m>) -> Vec<(String, &'m CodeRange)> {
     let ranges = ranges::pass_through(context).into_iter();
     ranges

@@ -1,4 +1,4 @@
-//! `robot.ts`: the robot's side. Its methods are declared group by group.
+//! `robot.ts`: the robot's side, whose methods the groups declare.
 
 use super::client::{constructor, method, stream_docs};
 use super::context::{Context, own};
@@ -134,7 +134,7 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
     });
 }
 
-/// A method for requests without a type: a range that the spec gains breaks no robot.
+/// Writes an optional method for requests without a type. A new range in the spec therefore breaks no robot.
 fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
     docs.paragraph("报文是 JSON 文本。不实现此方法时，按未知指令拒绝。");
     docs.paragraph(
@@ -184,7 +184,7 @@ constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion
     });
 }
 
-/// A class whose methods send something to the apps of a server.
+/// Writes a class whose methods send something to the apps of a server.
 fn pushing(out: &mut Source, name: &str, parts: &[String], about: &str, add: &str, made: &str) {
     let methods = "/** 每组的方法。The methods of each group. */";
     merged(out, name, methods, parts);
@@ -197,7 +197,7 @@ fn pushing(out: &mut Source, name: &str, parts: &[String], about: &str, add: &st
     });
 }
 
-/// Whether a command sets something in motion, as far as anybody knows.
+/// Returns `true` unless the spec states that the command moves nothing.
 fn may_move(command: &Call<'_>) -> bool {
     !matches!(
         command.operation.effect(),
@@ -205,7 +205,7 @@ fn may_move(command: &Call<'_>) -> bool {
     )
 }
 
-/// Types of the runtime that a group's part of this side names.
+/// Returns the runtime types that a group's part of the robot's side names.
 pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
     let mut names = Vec::new();
     if group.has(What::Commands) {
@@ -217,7 +217,7 @@ pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
     names
 }
 
-/// What a group adds to this side.
+/// Writes a group's part of the robot's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let handlers = [
         Side::Robot.name(),
@@ -299,7 +299,7 @@ fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     method(out, command.method, &parameters(context, command), &result);
 }
 
-/// What a method of a robot takes.
+/// Returns the parameters of a robot's method.
 fn parameters(context: &Context<'_>, command: &Call<'_>) -> [String; 2] {
     let request = format!("request: {}", command.request.ty.name);
     [request, format!("context: {}", own(context, "Context"))]

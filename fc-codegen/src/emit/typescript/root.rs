@@ -5,13 +5,13 @@ use super::source::{file as empty, named};
 use crate::package::docs::Docs;
 use fc_spec::model::Side;
 
-/// What apps and robots need of the runtime.
+/// The values of the runtime that apps and robots need.
 const RUNTIME: &str = "\
     AppStreams BodyError CallError ConditionError ConnectError DataConnection DataError FollowError \
     Following PushError Refusal Reports Server Subscription TransportError acceptedIn checked \
     defaultBackoff isError isFinal isInOrder isKnown lossText mayFollow nameOf redacted withDefaults";
 
-/// Types that they need of it.
+/// The types of the runtime that apps and robots need.
 const RUNTIME_TYPES: &str = "\
     AckOutcome Acknowledgement Answer AppStream Audience Backoff CallErrorKind CallOptions ClientConfig \
     ClientCounters Clock ConnectionId ConnectionState Context DataErrorKind Effect Extra ExtraKey \
@@ -19,7 +19,7 @@ const RUNTIME_TYPES: &str = "\
     PushErrorKind RawRequest RawResponse ServerConfig ServerCounters ServerPlatform StreamFrame \
     StreamItem Transport UnknownReport";
 
-/// Whether the root has something of the runtime that is called that.
+/// Returns `true` if the root exports a runtime item with this name.
 pub fn has(name: &str) -> bool {
     let names = [RUNTIME, RUNTIME_TYPES].into_iter();
     names
@@ -40,7 +40,7 @@ pub fn file(context: &Context<'_>) -> String {
     docs.raw("@module");
     out.docs(&docs);
     out.blank();
-    // A type of the spec keeps its name here.
+    // A type of the spec takes precedence over a runtime item with the same name.
     let free = |names: &'static str| -> Vec<&'static str> {
         let names = names.split_whitespace();
         names

@@ -1,5 +1,6 @@
-//! How each operation is called and answered, as the pages of the documentation show it. The same text stands in
-//! `samples.ts`, which is compiled with the package and run by a test of it.
+//! Samples that call and answer each operation, for the documentation's pages.
+//!
+//! `samples.ts` contains the same text. It is compiled with the package, and a test runs it.
 
 use super::constants::Constants;
 use super::context::{Context, imported, own, spelled};
@@ -11,13 +12,13 @@ use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, 
 use crate::package::style::Style;
 use std::collections::BTreeSet;
 
-/// TypeScript as it stands on a page.
+/// The style of TypeScript on a page.
 static ON_PAGES: Style = Style {
     width: PAGE_WIDTH,
     ..TYPESCRIPT
 };
 
-/// How the pages show the package.
+/// The TypeScript samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "ts",
     file: "samples.ts",
@@ -26,7 +27,7 @@ pub const SHOWN: Shown = Shown {
     write: |out, context, sample| write(out, context, &mut Names::new(context), sample),
 };
 
-/// The types of messages that samples name, and the constants in them.
+/// The message types that samples name, and the constants in them.
 struct Names<'p, 'm> {
     types: BTreeSet<String>,
     constants: Constants<'p, 'm>,
@@ -101,7 +102,7 @@ impl<'p, 'm> Names<'p, 'm> {
         }
     }
 
-    /// `const content = …`.
+    /// Writes `const content = …`.
     fn assign_content(&mut self, out: &mut Source, value: Option<&Record<'_>>) {
         match value {
             Some(value) => self.assign(out, "content", value),
@@ -111,7 +112,7 @@ impl<'p, 'm> Names<'p, 'm> {
         }
     }
 
-    /// `const name: Type = { … }`.
+    /// Writes `const name: Type = { … }`.
     fn assign(&mut self, out: &mut Source, name: &str, record: &Record<'_>) {
         let ty = &record.item.ty.name;
         let value = self.constants.record(record);
@@ -120,7 +121,7 @@ impl<'p, 'm> Names<'p, 'm> {
     }
 }
 
-/// `samples.ts`: all samples, and a function that runs them.
+/// Generates `samples.ts`: all samples, and a function that runs them.
 pub fn file(context: &Context<'_>) -> String {
     let run = &SampleRun::build(context);
     let taken = |name: &str| context.package.has_type(name);
@@ -183,7 +184,7 @@ fn call(step: &SampleStep<'_, '_>) -> String {
     format!("{}({})", function_name(step), step.parameter()[0])
 }
 
-/// The function that runs all samples.
+/// Writes the function that runs all samples.
 fn run_all(out: &mut Source, context: &Context<'_>, robot: &str, run: &SampleRun<'_, '_>) {
     let data = if run.has_streams() {
         ", dataPort: server.dataPort"

@@ -1,4 +1,4 @@
-//! What the runtime has to know of the types of one group: a constant for each, held to the type by the compiler.
+//! Schemas of one group's types: a constant for each, which the compiler checks against the type.
 
 use super::constants::{constant, number};
 use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
@@ -38,7 +38,7 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     out.finish()
 }
 
-/// What the runtime calls its schema.
+/// Returns the runtime's name for the kind of schema.
 fn kind(item: &Item<'_>) -> &'static str {
     match item.shape {
         Shape::Record(..) => "Struct",
@@ -81,7 +81,7 @@ fn repr(repr: EnumRepr) -> &'static str {
     }
 }
 
-/// The rules for an enum's values as states, if the spec has any.
+/// Returns the rules for an enum's values as states, if the spec has any.
 fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Option<Layout> {
     let name = |value: &Spelled<'_, EnumValue>| Layout::path(["messages", ty, &value.name]);
     let some = |list: Vec<Layout>| (!list.is_empty()).then_some(Layout::List(list));
@@ -154,7 +154,7 @@ fn field(
     members.object()
 }
 
-/// What a type is in a schema.
+/// Returns a type as a schema describes it.
 pub fn type_schema(context: &Context<'_>, ty: &Type) -> Layout {
     match ty {
         Type::Array(item) => Layout::object([("list", type_schema(context, item))]),

@@ -1,4 +1,4 @@
-//! TypeScript as Biome lays it out: comments, literals, values that break where they are too long for a line.
+//! Source text in the layout of Biome: comments, literals and declarations.
 
 use crate::package::docs::{Docs, escape_links};
 use crate::package::source::join;
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 pub use crate::package::source::Source;
 
-/// TypeScript as this package is written.
+/// The style of the package.
 pub static TYPESCRIPT: Style = Style {
     width: 120,
     indent: "  ",
@@ -27,7 +27,7 @@ pub static TYPESCRIPT: Style = Style {
     redacted: "Left out by `redacted`.",
 };
 
-/// Prose in which nothing ends the comment, links or is a tag by accident.
+/// Escapes prose that could end the comment, or read as a link or a tag.
 fn prose(line: &str) -> Cow<'_, str> {
     let line = escape_links(line);
     if !line.contains(['@', '*', '{']) {
@@ -50,7 +50,7 @@ fn prose(line: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Code that does not end the comment.
+/// Escapes code that would end the comment.
 fn in_comment(line: &str) -> Cow<'_, str> {
     if line.contains("*/") {
         Cow::Owned(line.replace("*/", "*\\/"))
@@ -59,13 +59,13 @@ fn in_comment(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// The text of a block tag, on its one line.
+/// Returns the text of a block tag on one line.
 pub fn tag_text(text: &str) -> String {
     let lines = text.lines().map(|line| prose(line.trim()));
     lines.collect::<Vec<_>>().join(" ")
 }
 
-/// A text as a literal, in those quotes that spare escapes.
+/// Returns a string literal in the quotes that need fewer escapes.
 pub fn literal(text: &str) -> String {
     let count = |quote| text.matches(quote).count();
     let quote = if count('\'') > count('"') { '"' } else { '\'' };
@@ -93,7 +93,7 @@ pub fn float(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// `export type Name =` with each alternative and its comment on lines of their own. One alone has no bar.
+/// Writes `export type Name =`, with each alternative and its comment on separate lines. A single one has no bar.
 pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
     let bar = if all.len() > 1 { "| " } else { "" };
     out.enclose(&format!("export type {name} ="), "", |out| {
@@ -104,12 +104,12 @@ pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
     });
 }
 
-/// A file of TypeScript.
+/// Creates an empty TypeScript file.
 pub fn file() -> Source {
     Source::new(&TYPESCRIPT)
 }
 
-/// The beginning of a file that comes from the spec as a whole.
+/// Creates the head of a file whose source is the whole spec.
 pub fn head([zh, en]: [&str; 2]) -> Source {
     let mut out = file();
     let mut docs = Docs::default();
@@ -121,7 +121,7 @@ pub fn head([zh, en]: [&str; 2]) -> Source {
     out
 }
 
-/// A file that has nothing to export is a module all the same.
+/// Ends a file without exports, which must still be a module.
 pub fn nothing(mut out: Source) -> String {
     out.line("export {}");
     out.finish()
@@ -135,7 +135,7 @@ pub fn property(name: &str, ty: &str, is_optional: bool) -> String {
     }
 }
 
-/// `word { a, b } from 'path'`, sorted.
+/// Writes `word { a, b } from 'path'`, sorted.
 pub fn named<S: AsRef<str>>(
     out: &mut Source,
     word: &str,
@@ -147,7 +147,7 @@ pub fn named<S: AsRef<str>>(
     let line = format!("{word} {{ {} }} from '{path}'", join(&names));
     match names.as_slice() {
         [] => {}
-        // One alone is not broken.
+        // A single name is not broken.
         [_] => out.line(line),
         _ if out.has_room([&line]) => out.line(line),
         names => out.lines(&format!("{word} {{"), names, &format!("}} from '{path}'")),

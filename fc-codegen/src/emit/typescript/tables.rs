@@ -1,4 +1,4 @@
-//! `tables.ts` and `defaults.ts`: the tables of the spec, and what the absence of fields means, as typed constants.
+//! `tables.ts` and `defaults.ts`: the tables of the spec and the defaults of fields, as typed constants.
 
 use super::constants::constant;
 use super::context::{Context, imported, is_large, own};
@@ -47,7 +47,9 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-/// `defaults.ts` of a group: a constant for each struct of which a field may be absent and means something then.
+/// Generates `defaults.ts` of a group: a constant for each struct with defaults.
+///
+/// A default is the meaning of an absent field.
 pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let mut out = head(DEFAULTS);
     named(

@@ -1,4 +1,4 @@
-//! `wire.ts`: the envelopes, the result codes, and the numbers of the protocol beneath its messages.
+//! `wire.ts`: the envelopes, the result codes, and the numbers below the messages.
 
 use super::context::{Context, is_64_bit, type_of};
 use super::layout::{Layout, Members};
@@ -15,7 +15,7 @@ use fc_spec::model::{
     DigestAlgorithm, EnvelopeField, EnvelopeRole, HeaderField, HeaderQuirk, HeaderRole, HeaderType,
 };
 
-/// What the runtime bounds where no protocol says anything of it.
+/// Limits of the runtime that the spec does not set.
 const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 << 20)];
 
 pub fn file(context: &Context<'_>) -> String {
@@ -172,7 +172,7 @@ fn limits(wire: &WireFacts<'_, '_>) -> Layout {
     )
 }
 
-/// An envelope, and which of its fields is for what.
+/// Returns an envelope, with the role of each of its fields.
 fn roles(name: &str, fields: &[Spelled<'_, EnvelopeField>]) -> Layout {
     let roles = fields.iter().map(|field| {
         let role = match field.role {
@@ -223,7 +223,7 @@ fn frame(context: &Context<'_>) -> Layout {
     ])
 }
 
-/// The numbers of a header field.
+/// Returns the numbers of a header field.
 pub fn header(field: &HeaderField) -> [(&'static str, Layout); 7] {
     let ty = match field.ty {
         HeaderType::Bytes(_) => "bytes",

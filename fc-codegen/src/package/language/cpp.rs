@@ -2,8 +2,10 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Keywords of C++17 and those of C++20 that a newer compiler refuses; macros of GCC (`linux`), of the C library and of POSIX;
-/// the types of the package.
+/// C++.
+///
+/// The reserved words include the keywords of C++17, and those of C++20, which newer compilers refuse. They also
+/// include macros of GCC (`linux`), of the C library and of POSIX. The types are those of the package.
 pub static CPP: Language = Language {
     name: "cpp",
     title: "C++",

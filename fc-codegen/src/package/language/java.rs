@@ -2,8 +2,10 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Keywords and literals (JLS 3.9, contextual ones that a type cannot have included); the types of `java.lang` that a
-/// stub meets.
+/// Java.
+///
+/// The keywords include literals (JLS 3.9) and contextual keywords that a type cannot use. The types are those of
+/// `java.lang` that a stub uses.
 pub static JAVA: Language = Language {
     name: "java",
     title: "Java",

@@ -2,8 +2,11 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Hard keywords; the types that every file imports (`kotlin`, `kotlin.collections`, `java.lang`), those of the runtime that
-/// the package uses, and those of its own; members of every message, of `Client` and of `Robot`.
+/// Kotlin.
+///
+/// The keywords are the hard ones. The types are those that every file imports (`kotlin`, `kotlin.collections`,
+/// `java.lang`), those of the runtime in use, and those of the package. The members are those of every message, of
+/// `Client` and of `Robot`.
 pub static KOTLIN: Language = Language {
     name: "kotlin",
     title: "Kotlin",

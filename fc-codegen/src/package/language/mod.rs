@@ -1,6 +1,6 @@
-//! What a programming language makes of names: how it cases them, which it keeps to itself, how it escapes those.
+//! Naming rules of each language: case, reserved words and escapes.
 //!
-//! The shape of a file is the business of the emitter; here is only what a spec can collide with.
+//! The emitters decide the layout of files. This module covers only the names that a spec can collide with.
 
 mod cpp;
 mod java;
@@ -20,14 +20,14 @@ pub use python::{PYTHON, PYTHON_WITH_IDS};
 pub use rust::{RUST, RUST_WITH_IDS};
 pub use typescript::TYPESCRIPT;
 
-/// What a name is the name of.
+/// The kind of element that a name denotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// A struct, enum or one-of, and the protocol itself.
     Type,
     /// A field of a struct.
     Field,
-    /// A value of an enum, a variant of a one-of.
+    /// A value of an enum, or a variant of a one-of.
     Value,
     /// A command, report or stream, as a method of the stubs.
     Method,
@@ -37,7 +37,7 @@ pub enum Role {
     Function,
 }
 
-/// How the words of a name are joined.
+/// The way to join the words of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Case {
     /// `get_station`.
@@ -51,7 +51,7 @@ pub enum Case {
 }
 
 impl Case {
-    /// A name of the spec, `snake_case` or `PascalCase`, in this case. What is `PascalCase` already stays so.
+    /// Converts a spec name, `snake_case` or `PascalCase`, to this case. Pascal keeps a `PascalCase` name.
     #[must_use]
     pub fn apply(self, name: &str) -> Cow<'_, str> {
         match self {
@@ -68,7 +68,7 @@ fn is_pascal(name: &str) -> bool {
     name.starts_with(|first: char| first.is_ascii_uppercase()) && !name.contains('_')
 }
 
-/// The words of a name as one, each but perhaps the first with a capital.
+/// Joins the words of a name. Each word starts with a capital; the first only if `first` is set.
 fn joined(name: &str, first: bool) -> String {
     let mut out = String::with_capacity(name.len());
     for (index, word) in name.split('_').enumerate() {
@@ -83,10 +83,10 @@ fn joined(name: &str, first: bool) -> String {
     out
 }
 
-/// Words that something keeps to itself.
+/// A set of reserved words.
 #[derive(Debug)]
 struct Words {
-    /// As they are written down: between white space.
+    /// The words, separated by white space.
     text: &'static str,
     set: OnceLock<HashSet<&'static str>>,
 }
@@ -105,50 +105,50 @@ impl Words {
     }
 }
 
-/// A language that names of a spec have to be spelled in.
+/// A target language, with its rules for names.
 #[derive(Debug)]
 pub struct Language {
-    /// Its name in `fc.yaml`.
+    /// The name in `fc.yaml`.
     pub name: &'static str,
-    /// Its name for people.
+    /// The display name.
     pub title: &'static str,
-    /// How its names are cased.
+    /// The case of each role.
     case: fn(Role) -> Case,
-    /// Words that are no names.
+    /// Words that cannot be names.
     keywords: Words,
-    /// Types that every program has, and those of the package itself. They have no other spelling.
+    /// Types that every program has, and those of the package. They have no escaped form.
     types: Words,
-    /// Members that every object has beside its fields. A field of such a name gets a `_`.
+    /// Members that every object has in addition to its fields. A field with such a name gets a `_`.
     fields: Words,
-    /// Methods that the stubs have anyway. One of such a name gets a `_`.
+    /// Methods that every stub has. A method with such a name gets a `_`.
     methods: Words,
-    /// A keyword as a name of a role; `None` where there is no way.
+    /// Escapes a keyword for a role; `None` if no escaped form exists.
     escape: fn(Role, &str) -> Option<String>,
-    /// The types that each group has for itself, by the words that follow the group's.
+    /// Suffixes of the types that each group has, in words.
     pub group_types: &'static [&'static str],
-    /// Whether each type has a file of its name.
+    /// `true` if each type has a file with its name.
     pub has_file_per_type: bool,
-    /// Whether the ids of each entity have a type of their own.
+    /// `true` if the ids of each entity have a type.
     pub has_id_types: bool,
-    /// Whether several required fields of a struct have a type of their own, which ends in `Fields`.
+    /// `true` if several required fields of a struct get a type whose name ends in `Fields`.
     pub has_field_types: bool,
 }
 
 impl Language {
-    /// All of them.
+    /// All languages.
     pub const ALL: [&'static Self; 6] = [&RUST, &TYPESCRIPT, &KOTLIN, &JAVA, &CPP, &PYTHON];
 
-    /// The one of this name in `fc.yaml`.
+    /// Returns the language with this name in `fc.yaml`.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         Self::ALL.into_iter().find(|language| language.name == name)
     }
 
-    /// A name of the spec in this language; one that the language keeps to itself is escaped.
+    /// Returns a name of the spec in this language. Reserved words are escaped.
     ///
     /// # Errors
     ///
-    /// The name as it would be, where there is no way to have it.
+    /// Returns the unescaped name if no escaped form exists.
     pub fn spelling<'n>(&self, role: Role, name: &'n str) -> Result<Cow<'n, str>, Cow<'n, str>> {
         let cased = (self.case)(role).apply(name);
         if role == Role::Type && self.types.contains(&cased) {

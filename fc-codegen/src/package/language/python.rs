@@ -2,15 +2,17 @@
 
 use super::{Case, Language, Role, Words};
 
-/// With the ids of all entities as plain integers and texts.
+/// Python with plain integers and strings as ids.
 pub static PYTHON: Language = python(false);
 
-/// With a type for the ids of each entity: `newtypes: true` in `fc.yaml`.
+/// Python with an id type for each entity: `newtypes: true` in `fc.yaml`.
 pub static PYTHON_WITH_IDS: Language = python(true);
 
-/// Keywords, soft ones not included; the names of built-in types that annotations of fields, parameters and results use,
-/// and with them the runtime's, since a field or method of that name would stand in their way; the built-in types and
-/// exceptions whose names look like those of a type, and those of the generated package.
+/// Builds the rules of Python.
+///
+/// The keywords exclude soft ones. They include built-in types and types of the runtime that annotations use, because a
+/// field or method with that name would hide them. The types are built-in types and exceptions that look like type
+/// names, and those of the generated package.
 const fn python(has_id_types: bool) -> Language {
     Language {
         name: "python",

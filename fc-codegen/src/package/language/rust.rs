@@ -2,14 +2,16 @@
 
 use super::{Case, Language, Role, Words};
 
-/// With the ids of all entities as plain integers and texts.
+/// Rust with plain integers and strings as ids.
 pub static RUST: Language = rust(false);
 
-/// With a type for the ids of each entity: `newtypes: true` in `fc.yaml`.
+/// Rust with an id type for each entity: `newtypes: true` in `fc.yaml`.
 pub static RUST_WITH_IDS: Language = rust(true);
 
-/// Keywords of every edition up to 2024, strict and reserved; the prelude; the items of the generated crate and
-/// the types of the runtime that are in its messages.
+/// Builds the rules of Rust.
+///
+/// The keywords are the strict and reserved ones of every edition up to 2024. The types are those of the prelude, of
+/// the generated crate, and of the runtime in its messages.
 const fn rust(has_id_types: bool) -> Language {
     Language {
         name: "rust",
@@ -37,9 +39,9 @@ const fn rust(has_id_types: bool) -> Language {
             states to_owned try_from try_into unknown",
         ),
         escape: |role, word| match (role, word) {
-            // Paths begin with them, or the file is there already.
+            // These words begin paths, or the file already exists.
             (Role::Module, "crate" | "mod" | "self" | "super") => None,
-            // No name even as `r#self`.
+            // These words are no names even as `r#self`.
             (_, "crate" | "self" | "super" | "Self") => Some(format!("{word}_")),
             _ => Some(format!("r#{word}")),
         },

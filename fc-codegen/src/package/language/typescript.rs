@@ -2,8 +2,11 @@
 
 use super::{Case, Language, Role, Words};
 
-/// Reserved words, what the files of constants import, and the file that every folder has; fields may be called by any
-/// of them; the types of the language, of its library and of the package's root; what every object has.
+/// TypeScript.
+///
+/// The keywords include the imports of the files of constants, and the file that every folder has. Fields may use any
+/// of these words. The types are those of the language, of its library and of the package's root. The members are those
+/// that every object has.
 pub static TYPESCRIPT: Language = Language {
     name: "typescript",
     title: "TypeScript",
@@ -39,7 +42,7 @@ pub static TYPESCRIPT: Language = Language {
         (Role::Field | Role::Value, "constructor") | (Role::Module, "index") => {
             Some(format!("{word}_"))
         }
-        // Keys of objects and names of files are free.
+        // Keys of objects and names of files may be keywords.
         (Role::Field | Role::Value | Role::Module, word) => Some(word.to_owned()),
         (_, word) => Some(format!("{word}_")),
     },
