@@ -1,4 +1,4 @@
-//! All that stands in the way of making products of a spec: its own faults, and names that a language cannot have.
+//! Checks a spec for errors, and for names that a target language cannot use.
 
 use crate::package::items::clashes;
 use crate::package::language::Language;
@@ -11,16 +11,16 @@ use fc_spec::source::Sources;
 /// A spec that has been checked.
 #[derive(Debug)]
 pub struct Checked {
-    /// What it means, or what could be read of it if there is an error in it.
+    /// The model, or its readable part if the spec has an error.
     pub read: Result<Model, Box<Partial>>,
-    /// Whether all of its files could be read as YAML.
+    /// `true` if all files could be read as YAML.
     pub is_whole: bool,
-    /// Whether its names are free in all languages that were asked for.
+    /// `true` if all required languages can use the names.
     pub is_spellable: bool,
 }
 
 impl Checked {
-    /// The model; `None` if there is any error.
+    /// Returns the model; `None` if there is any error.
     #[must_use]
     pub fn model(self) -> Option<Model> {
         self.read.ok().filter(|_| self.is_spellable)
@@ -30,18 +30,18 @@ impl Checked {
 /// The requirements that a project has on its spec.
 #[derive(Clone, Debug)]
 pub struct Requirements {
-    /// Languages in which each text is required.
+    /// The languages that each text must have.
     pub texts: Languages,
-    /// Programming languages in which each name has to be free.
+    /// The programming languages that must be able to use each name.
     pub names: Vec<&'static Language>,
 }
 
-/// Reads a spec and adds its faults to those of reading its files, all in the order of their places.
+/// Checks a spec, and adds its errors to those from reading its files, sorted by position.
 pub fn check(sources: &Sources, requirements: &Requirements, faults: &mut Faults) -> Checked {
     check_trees(&Trees::new(sources), requirements, faults)
 }
 
-/// The same of files that have been parsed.
+/// Checks a spec whose files are already parsed.
 pub fn check_trees(trees: &Trees, requirements: &Requirements, faults: &mut Faults) -> Checked {
     let loaded = trees.load(requirements.texts, faults);
     let is_whole = loaded.whole;

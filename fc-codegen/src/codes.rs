@@ -1,4 +1,4 @@
-//! Who has which code, and which are free: for people, and as JSON.
+//! The assigned and the free codes of a spec, for people and as JSON.
 
 use crate::emit::markdown::{Lang, Word as _};
 use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode, Text};
@@ -9,13 +9,13 @@ use std::fmt::Write as _;
 /// The codes of a spec, by range.
 #[derive(Debug, Serialize)]
 pub struct CodeMap<'m> {
-    /// Code that the next command gets, such as `0x0A11`.
+    /// The code that the next command gets, such as `0x0A11`.
     next_command: Option<String>,
-    /// Code that the next report gets.
+    /// The code that the next report gets.
     next_report: Option<String>,
-    /// In the order of their codes.
+    /// The ranges, in the order of their codes.
     ranges: Vec<Range<'m>>,
-    /// Names of the operations that have no code yet.
+    /// The names of the operations without a code.
     without: Vec<&'m str>,
 }
 
@@ -23,12 +23,12 @@ pub struct CodeMap<'m> {
 struct Range<'m> {
     #[serde(flatten)]
     of: &'m CodeRange,
-    /// How many codes of it nobody has or has had.
+    /// The number of codes that were never assigned.
     free: usize,
     taken: Vec<Entry<'m>>,
 }
 
-/// A code that is in use or was.
+/// A code that is assigned or retired.
 #[derive(Debug, Serialize)]
 struct Entry<'m> {
     #[serde(skip)]
@@ -77,7 +77,7 @@ impl<'m> From<&'m RetiredCode> for Holder<'m> {
 }
 
 impl<'m> CodeMap<'m> {
-    /// Of a checked model: every code stands in one of its ranges.
+    /// Creates the map of a checked model, in which every code is in a range.
     #[must_use]
     pub fn new(model: &'m Model) -> Self {
         let used = model.operations.iter().filter_map(|operation| {
@@ -118,14 +118,14 @@ impl<'m> CodeMap<'m> {
         }
     }
 
-    /// As one JSON document, in both languages.
+    /// Returns the map as one JSON document, in both languages.
     #[must_use]
     pub fn json(&self) -> String {
-        // Nothing of it has keys that are no texts, which is all that can fail.
+        // Serializing fails only for keys that are not strings, and the map has none.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// For a terminal: what comes next, then range by range who has what.
+    /// Returns the map for a terminal: the next codes, then the holders of codes by range.
     #[must_use]
     pub fn text(&self, lang: Lang) -> String {
         let mut text = String::new();
@@ -134,7 +134,7 @@ impl<'m> CodeMap<'m> {
             (&self.next_report, "下一个上报", "next report "),
         ] {
             if let Some(next) = next {
-                // Writing to a String cannot fail.
+                // Writing to a `String` cannot fail.
                 let _ = writeln!(text, "{}  {next}", lang.pick(zh, en));
             }
         }
@@ -152,7 +152,7 @@ impl<'m> CodeMap<'m> {
         text
     }
 
-    /// What is to be said of one code, as a line for each that has it.
+    /// Returns the state of one code. Each holder has one line.
     #[must_use]
     pub fn standing(&self, code: u16, lang: Lang) -> String {
         let mut ranges = self.ranges.iter().filter(|range| range.of.has(code));
@@ -220,7 +220,7 @@ impl Entry<'_> {
         }
     }
 
-    /// The name fills `width` columns.
+    /// Returns the line of an entry. The name is padded to `width` columns.
     fn line(&self, lang: Lang, width: usize) -> String {
         let code = self.spelling;
         match &self.holder {
@@ -261,7 +261,7 @@ pub(crate) fn purpose(range: &CodeRange, lang: Lang) -> String {
     .to_owned()
 }
 
-/// As a spec writes a code: `0x0A11`.
+/// Returns a code as a spec writes it: `0x0A11`.
 fn spelled(code: u16) -> String {
     format!("0x{code:04X}")
 }

@@ -1,9 +1,8 @@
-//! From the model of a protocol to Rust, Markdown and test vectors.
+//! Generates packages, Markdown and test vectors from the model of a protocol.
 //!
-//! A model becomes artifacts ([`emit`]), with the content of all packages ([`package`]), and with values and frames
-//! made up for it by `fc-reflect`; one function ([`output`]) touches the disk. [`inspect`] shows the model itself,
-//! [`questions`] what its owner has still to say, [`codes`] who has which code; [`check`] finds all that stands in the
-//! way of making anything of a spec.
+//! [`emit`] turns a model into artifacts. [`package`] contains the content that all packages share, and `fc-reflect`
+//! invents values and frames. Only [`output`] writes to the disk. [`inspect`] dumps the model, [`questions`] lists the
+//! questions for its owner, and [`codes`] lists its codes. [`check`] finds all errors that prevent generating.
 
 pub mod check;
 pub mod codes;
@@ -19,7 +18,7 @@ mod yaml_error;
 
 use fc_reflect::sample;
 
-/// Its examples compile.
+/// Compiles the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! Targets that other programs make.
+//! Targets that other programs generate.
 
 use crate::package::language as languages;
 use crate::product::Artifact;
@@ -7,45 +7,46 @@ use serde::Deserialize;
 use serde_yaml::Value as Options;
 use std::time::Duration;
 
-/// A target that another program makes.
+/// A target that another program generates.
 ///
-/// The program gets the dump of the model on standard input, with the target's `options` as one more key, and
-/// answers on standard output with a JSON list of `{ "path", "contents" }`, the paths from the target's `out`.
+/// The program reads the dump of the model from standard input. The dump has the target's `options` as an additional
+/// key. The program writes a JSON list of `{ "path", "contents" }` to standard output. The paths are relative to the
+/// target's `out`.
 #[derive(Clone, Debug)]
 pub struct Plugin {
-    /// Name of the target.
+    /// The name of the target.
     pub name: String,
-    /// The program: a path from the root where it has a `/`, or else one that the system finds.
+    /// The program. A name with a `/` is a path from the root; any other name is looked up by the system.
     pub program: String,
-    /// Directory of its files, from the root.
+    /// The directory of the files, relative to the root.
     pub out: String,
-    /// The programming language in which its names have to be free, if it says one.
+    /// The programming language that must be able to use the names of the spec, if the target declares one.
     pub names: Option<&'static languages::Language>,
-    /// Whose part of the protocol it gets; all of it where nobody is named.
+    /// The audience whose part of the protocol the program gets; `None` for the whole protocol.
     pub audience: Option<String>,
-    /// Longest run of the program.
+    /// The maximum run time of the program.
     pub timeout: Duration,
-    /// Largest output of the program, in bytes.
+    /// The maximum output of the program, in bytes.
     pub output_bytes: u64,
-    /// Whatever it needs to know.
+    /// The options that are passed to the program.
     pub options: Options,
 }
 
-/// A number in `fc.yaml` with its default and its largest value; the smallest is 1.
+/// A number in `fc.yaml`, with its default and its maximum. The minimum is 1.
 pub(crate) struct Bound {
     pub(crate) key: &'static str,
     default: u64,
     most: u64,
 }
 
-/// Longest run of a plugin: a minute, or up to an hour.
+/// The maximum run time of a plugin: one minute by default, at most one hour.
 pub(crate) const TIMEOUT_MS: Bound = Bound {
     key: "timeout_ms",
     default: 60_000,
     most: 3_600_000,
 };
 
-/// Largest output of a plugin: 64 MiB, or up to 1 GiB.
+/// The maximum output of a plugin: 64 MiB by default, at most 1 GiB.
 pub(crate) const OUTPUT_BYTES: Bound = Bound {
     key: "output_bytes",
     default: 64 << 20,
@@ -66,7 +67,7 @@ impl Bound {
     }
 }
 
-/// What a plugin answers with: a file.
+/// A file in the output of a plugin.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Answer {
@@ -75,11 +76,11 @@ struct Answer {
 }
 
 impl Plugin {
-    /// The files that the program has answered with.
+    /// Returns the files in the program's output.
     ///
     /// # Errors
     ///
-    /// If it is no list of files.
+    /// Returns an error if the output is not a list of files.
     pub fn artifacts(&self, answer: &[u8]) -> Result<Vec<Artifact>, serde_json::Error> {
         let files: Vec<Answer> = serde_json::from_slice(answer)?;
         let artifact = |file: Answer| Artifact {

@@ -1,6 +1,6 @@
-//! What can be made of a model, and the files that it comes to.
+//! The kinds of output, and the generated files.
 
-/// A kind of output; `fcproto generate --only` names them.
+/// A kind of output, which `fcproto generate --only` selects by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Product {
     /// The generated crate's sources.
@@ -11,18 +11,18 @@ pub enum Product {
     Vectors,
     /// The generated part of the TypeScript package.
     TypeScript,
-    /// That of the Python package.
+    /// The generated part of the Python package.
     Python,
-    /// That of the Kotlin package.
+    /// The generated part of the Kotlin package.
     Kotlin,
-    /// That of the C++ package.
+    /// The generated part of the C++ package.
     Cpp,
     /// The JSON Schema of the spec language.
     Schema,
 }
 
 impl Product {
-    /// Every product, in the order in which they are made.
+    /// All products, in the order of generation.
     pub const ALL: [Self; 8] = [
         Self::Rust,
         Self::Markdown,
@@ -34,25 +34,25 @@ impl Product {
         Self::Schema,
     ];
 
-    /// Its name on the command line, in `fc.yaml` and in the manifest.
+    /// Returns the name on the command line, in `fc.yaml` and in the manifest.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.facts().0
     }
 
-    /// Where it goes unless `fc.yaml` says otherwise.
+    /// Returns the directory of the product, unless `fc.yaml` sets another one.
     #[must_use]
     pub fn usual_place(self) -> &'static str {
         self.facts().1
     }
 
-    /// The product of this name, if there is one.
+    /// Returns the product with this name; `None` if there is none.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|product| product.name() == name)
     }
 
-    /// Its name, and its usual place from the project's root.
+    /// Returns the name, and the default directory relative to the project's root.
     fn facts(self) -> (&'static str, &'static str) {
         match self {
             Self::Rust => ("rust", "fc-generated"),
@@ -67,13 +67,13 @@ impl Product {
     }
 }
 
-/// A file to be written.
+/// A generated file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Artifact {
-    /// Name of the target that it belongs to.
+    /// The name of its target.
     pub target: String,
-    /// Path from the project's root, `/` between its parts.
+    /// The path from the project's root, with `/` between its parts.
     pub path: String,
-    /// All of it.
+    /// The complete contents.
     pub contents: String,
 }

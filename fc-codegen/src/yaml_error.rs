@@ -1,8 +1,8 @@
-//! Errors of the YAML library in Chinese: the library has English messages only.
+//! Chinese messages for errors of the YAML library, which has only English ones.
 
 use fc_spec::model::Text;
 
-/// Describes in Chinese why the text of the file does not fit.
+/// Describes in Chinese why the file does not have the expected shape.
 pub(crate) fn chinese(error: &serde_yaml::Error) -> String {
     let message = error.to_string();
     let (message, place) = match (message.split_once(" at line "), error.location()) {
@@ -37,7 +37,7 @@ pub(crate) fn chinese(error: &serde_yaml::Error) -> String {
     format!("{place}{path}{fact}")
 }
 
-/// The library's words for kinds of values, in Chinese.
+/// Translates the library's words for kinds of values into Chinese.
 fn words(text: &str) -> String {
     let known = [
         ("one of ", ""),
@@ -70,7 +70,7 @@ fn words(text: &str) -> String {
     let is_quote = |c: char| matches!(c, '`' | '"');
     let parts = text.split_inclusive(is_quote).enumerate();
     let parts = parts.map(|(at, part)| {
-        // Words between quotes are those of the file.
+        // Words between quotes come from the file.
         let known = known.iter().filter(|_| at % 2 == 0);
         known.fold(part.to_owned(), |part, (en, zh)| part.replace(en, zh))
     });

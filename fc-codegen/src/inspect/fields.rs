@@ -1,4 +1,4 @@
-//! The flat list of what may stand in a body, by paths of wire keys.
+//! The flat list of a body's fields, by paths of wire keys.
 
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{
@@ -7,7 +7,7 @@ use fc_spec::model::{
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Everything that may stand in a body, in order.
+/// Returns all fields of a body, in order.
 pub(super) fn of_body<'m>(samples: &Samples<'m>, body: &'m Body) -> Vec<Entry<'m>> {
     let mut walk = Walk {
         samples,
@@ -32,23 +32,23 @@ pub(super) struct Entry<'m> {
     variants: Vec<&'m str>,
     #[serde(flatten)]
     text: &'m Text,
-    /// In code; the item of a list has none.
+    /// The name in code; `None` for the item of a list.
     name: Option<&'m str>,
     sensitive: bool,
     #[serde(flatten)]
     details: &'m FieldDetails,
 }
 
-/// A walk over a body and everything in it.
+/// A walk over a body and its contents.
 struct Walk<'s, 'm> {
     samples: &'s Samples<'m>,
     entries: Vec<Entry<'m>>,
-    /// Where the entry of each path stands: variants of a choice share their keys.
+    /// The index of each path's entry. Variants of a choice share keys.
     at: HashMap<String, usize>,
 }
 
 impl<'m> Walk<'_, 'm> {
-    /// Adds what is in a named type at `path`.
+    /// Adds the fields of a named type at `path`.
     fn named(
         &mut self,
         ty: &'m TypeDef,
@@ -107,7 +107,7 @@ impl<'m> Walk<'_, 'm> {
         self.inside(&field.ty, &path, field, example);
     }
 
-    /// Adds what is in a value of this type.
+    /// Adds the fields inside a value of this type.
     fn inside(&mut self, ty: &'m Type, path: &str, field: &'m Field, example: Option<&Value>) {
         match ty {
             Type::Named(named) => {
@@ -147,7 +147,7 @@ impl<'m> Walk<'_, 'm> {
     }
 }
 
-/// How a value of this type travels.
+/// Returns the JSON type of a value on the wire.
 pub(super) fn wire(types: &Types, ty: &Type, form: WireForm) -> &'static str {
     match ty {
         Type::Array(_) => "array",

@@ -1,11 +1,13 @@
-//! The dump of a release, as it is kept in a repository.
+//! The dump of a release, as a repository stores it.
 
 use super::tree;
 use fc_spec::model::{Dump, Model, Value};
 use std::fmt::Write as _;
 
-/// The dump as JSON for files that are kept: without what is worked out from the rest, and with a line for each operation, type and
-/// other thing of a list, so that text tools find and compare them. It is read like any other dump.
+/// Returns the dump as JSON for storage, without derived keys.
+///
+/// Each operation, type or other item of a list has one line, so that text tools can find and compare it. A release
+/// dump is read like any other dump.
 #[must_use]
 pub fn release_dump(model: &Model) -> String {
     let mut out = String::new();
@@ -14,9 +16,9 @@ pub fn release_dump(model: &Model) -> String {
     out
 }
 
-/// A value with a line for each thing in it, down to some depth.
+/// Writes a value with one line for each item, down to `depth`.
 fn parts(out: &mut String, value: &Value, depth: usize) {
-    // Writing to a String cannot fail.
+    // Writing to a `String` cannot fail.
     match value {
         Value::Object(entries) if depth > 0 && !entries.is_empty() => {
             let mut before = "{\n";

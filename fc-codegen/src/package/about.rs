@@ -7,25 +7,25 @@ use fc_spec::model::{
     CodeRange, DeclaredError, Entity, Group, Model, Operation, ResultCode, Table, TypeDef,
 };
 
-/// The layer below the messages.
+/// The description of the layer below the messages.
 pub const WIRE: [&str; 2] = [
     "消息之下的一层：包头、公共字段、结果码、端口和各种上限。",
     "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
 ];
 
-/// The envelope of requests.
+/// The description of the envelope of requests.
 pub const REQUEST_ENVELOPE: [&str; 2] = [
     "每个请求和上报都带的公共字段。",
     "The keys of every request and report, in addition to those of its body.",
 ];
 
-/// The envelope of responses.
+/// The description of the envelope of responses.
 pub const RESPONSE_ENVELOPE: [&str; 2] = [
     "每个响应和应答都带的公共字段。",
     "The keys of every response and acknowledgement, in addition to those of its body.",
 ];
 
-/// The tables of constants.
+/// The description of the tables of constants.
 pub const TABLES: [&str; 2] = ["规范中的常量表。", "Tables of constants in the spec."];
 
 /// Adds the description of a module's types: those of a group, or the types that several groups share.
@@ -39,7 +39,7 @@ pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
     }
 }
 
-/// The result codes.
+/// Returns the description of the result codes.
 pub fn results(context: &Context<'_>) -> Docs<'static> {
     let mut docs = Docs::said(&[
         "结果码。用结果码判断成败，不要用随附的文字。",
@@ -51,14 +51,14 @@ pub fn results(context: &Context<'_>) -> Docs<'static> {
     docs
 }
 
-/// A result code.
+/// Returns the description of a result code.
 pub fn result(result: &ResultCode) -> Docs<'_> {
     let mut docs = Docs::titled(&result.text);
     docs.text(&result.about);
     docs
 }
 
-/// The errors that a command declares.
+/// Returns the description of the errors that a command declares.
 pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
     let title = &command.title;
     let zh = format!("{}：声明的错误", title.zh);
@@ -67,12 +67,12 @@ pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
     docs
 }
 
-/// An error that a command declares.
+/// Returns the description of an error that a command declares.
 pub fn error<'m>(error: &'m DeclaredError, result: &'m ResultCode) -> Docs<'m> {
     Docs::titled(error.cause.as_ref().unwrap_or(&result.text))
 }
 
-/// The protocol.
+/// Returns the description of the protocol.
 pub fn protocol(model: &Model) -> Docs<'_> {
     let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
@@ -80,7 +80,7 @@ pub fn protocol(model: &Model) -> Docs<'_> {
     docs
 }
 
-/// A table of constants.
+/// Returns the description of a table of constants.
 pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
     let mut docs = Docs::titled(&table.title);
     docs.text(&table.about);
@@ -89,7 +89,7 @@ pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
     docs
 }
 
-/// The type of the ids of an entity.
+/// Returns the description of an entity's id type.
 pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
     let title = &entity.title;
     let zh = format!("{}：ID", title.zh);
@@ -98,7 +98,7 @@ pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
     docs
 }
 
-/// An enum, with a paragraph about values that are not in the spec.
+/// Returns the description of an enum, with the paragraph `open` about values that are not in the spec.
 pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static str) -> Docs<'m> {
     let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
@@ -110,7 +110,7 @@ pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static st
     docs
 }
 
-/// A method for the codes of a range that a robot handles as a whole.
+/// Returns the description of the method for a range of codes.
 pub fn range(range: &CodeRange) -> Docs<'_> {
     let mut docs = Docs::titled(&range.text);
     let (first, last) = (&range.first_spelling, &range.last_spelling);
@@ -121,7 +121,7 @@ pub fn range(range: &CodeRange) -> Docs<'_> {
     docs
 }
 
-/// A method for codes that are not in the spec.
+/// Returns the description of the method for codes that are not in the spec.
 pub fn unknown() -> Docs<'static> {
     let mut docs = Docs::said(&[
         "功能码不在规范中的指令。",
@@ -131,7 +131,7 @@ pub fn unknown() -> Docs<'static> {
     docs
 }
 
-/// The default of a method for requests without a type.
+/// Adds the default behaviour of a method for requests without a type.
 fn refused(docs: &mut Docs<'_>) {
     docs.paragraph("不实现此方法时，按未知指令拒绝。");
     docs.paragraph("Without this method, the robot refuses them as unknown commands.");

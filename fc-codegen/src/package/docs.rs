@@ -4,7 +4,7 @@ use super::style::Comment;
 use fc_spec::model::{Text, has_unprintable, is_hidden};
 use std::borrow::Cow;
 
-/// Paragraphs of a documentation comment, in the spec's own Markdown.
+/// Paragraphs of a documentation comment, in the Markdown of the spec.
 #[derive(Clone, Debug, Default)]
 pub struct Docs<'t>(Vec<Block<'t>>);
 
@@ -108,7 +108,7 @@ impl<'t> Docs<'t> {
             }
             match block {
                 Block::Prose(text) => prose(text.trim(), comment, width, &mut line),
-                // Names and keys of the spec in it must not end the comment either.
+                // Names and keys of the spec must not end the comment either.
                 Block::Raw(text) => (text.lines()).for_each(|text| {
                     line(&(comment.code)(&clean(text)));
                 }),

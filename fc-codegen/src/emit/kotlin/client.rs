@@ -1,4 +1,4 @@
-//! The app's side: one method per command, and following.
+//! The app's side: one method per command, and methods that follow its reports.
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;

@@ -1,4 +1,4 @@
-//! `Operations`: every command and report as a value, with what the runtime needs of it.
+//! `Operations`: every command and report as a value, with the facts that the runtime needs.
 
 use super::group::{heading, part_name, part_of, parts};
 use super::messages::both;

@@ -31,7 +31,7 @@ impl<'p, 'm> Deref for NamedGroup<'p, 'm> {
     }
 }
 
-/// A part of a group's module that a file of the package combines with those of other groups.
+/// A part of a group's module. A file of the package combines this part of all groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GroupPart {
     /// The methods of the client.
@@ -40,7 +40,7 @@ pub enum GroupPart {
     SyncCalls,
     /// The methods of a complete robot.
     Handlers,
-    /// The methods of a robot that implements only some of them.
+    /// The methods of a partial robot, which implements only some of them.
     PartialHandlers,
     /// The methods that push reports.
     Reporter,

@@ -38,7 +38,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
     });
 }
 
-/// Writes the same methods for a robot that implements only some of them.
+/// Writes the methods of a partial robot. Each method is optional.
 pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
     let (Some(name), Some(base)) = (
         group.part(GroupPart::PartialHandlers),

@@ -299,7 +299,7 @@ fn kind(name: &str) -> u8 {
     }
 }
 
-/// Compares texts by their characters, and numbers in them by value.
+/// Compares strings by character, and numbers in them by value.
 fn natural(one: &str, other: &str) -> Ordering {
     let (mut one, mut other) = (one, other);
     loop {

@@ -19,7 +19,7 @@ pub enum What {
     Commands,
     /// Types with an optional field whose absence has a meaning.
     Defaults,
-    /// Anything that a program names.
+    /// Any content that a program names.
     Messages,
     /// Reports that have a code.
     Reports,
