@@ -1,7 +1,7 @@
 //! The content of a generated package, independent of the language.
 //!
 //! These modules turn the model into facts, comments and files under construction. An emitter spells the facts in its
-//! language and lays out its files with the language's [`Style`](style::Style).
+//! language and lays out its files with the language's `Style`.
 
 pub(crate) mod about;
 pub(crate) mod conditions;
