@@ -89,8 +89,9 @@ words! {
 }
 
 words! {
-    /// What the engine uses a header field for. A checked model has each role at most once, the head first, with the
-    /// width that the role asks for; it may lack the status, the digest, and what only compressed data needs.
+    /// Role of a header field. A checked model has each role at most once, the head first.
+    /// Each field has the width that its role requires. The status and the digest are optional.
+    /// The roles that only compressed data needs are optional as well.
     pub enum HeaderRole {
         /// First bytes of a frame.
         /// 一帧开头的字节。
@@ -123,7 +124,7 @@ words! {
 }
 
 words! {
-    /// How the data of a frame is digested, and the type of a header field that holds it.
+    /// Digest algorithm of the data of a frame, with the type of the header field that holds the digest.
     pub enum DigestAlgorithm {
         /// MD5 (RFC 1321); bytes(16).
         /// MD5（RFC 1321）；bytes(16)。
@@ -155,7 +156,7 @@ impl DigestAlgorithm {
 }
 
 words! {
-    /// Where the decoder of a header is lenient.
+    /// Leniency of the decoder of a header.
     pub enum HeaderQuirk {
         /// A received 0 on an uncompressed frame is accepted.
         /// 不压缩的帧填 0 也接受。
@@ -164,7 +165,7 @@ words! {
 }
 
 words! {
-    /// What a port carries; also its key in `transport.ports` and the value of an operation's port.
+    /// Role of a port. It is the key of the port in `transport.ports` and the value of an operation's port.
     pub enum PortRole {
         /// The port of commands and reports.
         /// 指令和上报的端口。
@@ -176,7 +177,7 @@ words! {
 }
 
 words! {
-    /// What a frame of some kind carries, as JSON but for a stream.
+    /// Content of the frames of a kind. Commands and reports are JSON.
     pub enum KindRole {
         /// Raw bytes.
         /// 原始字节。
@@ -194,7 +195,7 @@ words! {
 }
 
 words! {
-    /// How the data of a frame is packed.
+    /// Compression of the data of a frame.
     pub enum EncodingRole {
         /// Uncompressed.
         /// 不压缩。
@@ -206,7 +207,7 @@ words! {
 }
 
 words! {
-    /// What the engine uses an envelope key for.
+    /// Role of an envelope key.
     pub enum EnvelopeRole {
         /// Time of creation of the message; timestamp_ms.
         /// 消息生成的时间；timestamp_ms。
@@ -221,7 +222,7 @@ words! {
 }
 
 words! {
-    /// When the engine itself answers with a result code. A checked model has each role exactly once.
+    /// Case in which the runtime returns a result code automatically. A checked model has each role exactly once.
     pub enum ResultRole {
         /// Success.
         /// 成功。
@@ -242,7 +243,7 @@ words! {
 }
 
 words! {
-    /// What the `then` of an enum's values claims.
+    /// Meaning of the `then` lists of an enum's values.
     pub enum StateOrder {
         /// The normal order of the values. Other changes may occur as well.
         /// 取值的正常顺序；也可能出现其他切换。
@@ -254,8 +255,8 @@ words! {
 }
 
 words! {
-    /// A place where RFC 8259 leaves open what a JSON text means. What is done there is fixed, the same in
-    /// every protocol and language; the vectors have it as examples, and `json:` of the spec says it in words.
+    /// A point of JSON that RFC 8259 leaves open. Its handling is the same in every protocol and language.
+    /// The vectors contain examples of it, and `json:` of the spec describes it.
     pub enum JsonRule {
         /// A body is UTF-8 and one object, with nothing around it.
         /// 消息体是 UTF-8，一个对象，前后没有别的内容。
@@ -300,7 +301,7 @@ words! {
 }
 
 words! {
-    /// What an operation is.
+    /// Kind of an operation.
     pub enum Kind {
         /// The app sends a request, the robot sends a response.
         /// app 请求，机器人响应。
@@ -327,7 +328,7 @@ impl Kind {
 }
 
 words! {
-    /// Who sends.
+    /// Party that sends.
     pub enum Side {
         /// The robot sends it.
         /// 由机器人发送。
@@ -339,7 +340,7 @@ words! {
 }
 
 words! {
-    /// Which way a message goes.
+    /// Direction of a message.
     pub enum Direction {
         /// The request of a command, a report, or the data of a stream.
         /// 指令的请求、上报的内容、数据流的内容。
@@ -351,7 +352,7 @@ words! {
 }
 
 words! {
-    /// What a command does to the robot.
+    /// Effect of a command on the robot.
     pub enum Effect {
         /// Changes nothing; it is safe to resend.
         /// 不改变任何东西，可以放心重发。
@@ -369,7 +370,7 @@ words! {
 }
 
 words! {
-    /// How sure a fact is, the surest first.
+    /// Confidence in a fact, the highest first.
     pub enum BodyState {
         /// A body that may have any keys, by design.
         /// 有意不限定键的消息体。
@@ -390,7 +391,7 @@ words! {
 }
 
 words! {
-    /// What the source says of an operation, where it is not lost.
+    /// A fact about an operation that the source states or has lost.
     pub enum Fact {
         /// The heading.
         /// 标题。
@@ -473,7 +474,7 @@ words! {
 }
 
 words! {
-    /// How a value is sent. A spec says it only where it differs from the type.
+    /// Form in which a value is sent. A spec gives it only if it differs from the type.
     pub enum WireForm {
         /// According to its type.
         /// 与类型一致。
@@ -488,7 +489,7 @@ words! {
 }
 
 words! {
-    /// Where a decoder is lenient. The encoder is not: it sends the canonical form.
+    /// Leniency of a decoder. The encoder always sends the canonical form.
     pub enum Quirk {
         /// null, {}, [] and "" are read as an absent optional field.
         /// null、{}、[] 和 "" 都当作没有这个可选字段。
@@ -503,7 +504,7 @@ words! {
 }
 
 words! {
-    /// How a gap of the source is answered.
+    /// Kind of an answer to a gap of the source.
     pub enum AnswerKind {
         /// Decided here until the protocol owner says otherwise.
         /// 在协议负责人另行说明之前按此执行。
@@ -521,7 +522,8 @@ words! {
 }
 
 words! {
-    /// What an open question holds up, the most pressing first; the sentence says what the tools do until it is settled.
+    /// Impact of an open question, the most urgent first.
+    /// Each description gives the behaviour of the tools until the question is settled.
     pub enum Impact {
         /// Without a code it cannot be sent. Types and documentation are generated, dispatch is not.
         /// 没有功能码就不能发送：照常生成类型和文档，但不参与分发。
@@ -548,7 +550,7 @@ words! {
 }
 
 words! {
-    /// How much depends on a gap.
+    /// Severity of a gap in the source, the highest first.
     pub enum Severity {
         /// Until it is settled, peers disagree about bytes or meaning.
         /// 定下来之前，双方对字节或含义的理解不一致。

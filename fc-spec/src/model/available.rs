@@ -6,14 +6,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The words that `available` may use, declared once.
+/// Declarations of the audiences, machines and releases for `available`.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Availability {
-    /// For whom something may be: kinds of app.
+    /// Audiences: kinds of app.
     pub audiences: Vec<Declared>,
     /// Lines of machines.
     pub hardware: Vec<Declared>,
-    /// What is counted in releases: a firmware, a software.
+    /// Series of releases, such as those of a firmware.
     pub releases: Vec<Declared>,
 }
 
@@ -49,15 +49,15 @@ pub struct Declared {
     /// Name, such as `debugging_app`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it is called.
+    /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
 
-/// For whom a thing is, on which machines and in which releases. What is empty limits nothing.
+/// Audiences, machines and releases that have a thing. An empty list or map sets no limit.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Available {
     /// Names of the audiences that have it.
@@ -65,9 +65,9 @@ pub struct Available {
     pub audiences: Vec<String>,
     /// Names of the lines of machines that have it.
     pub hardware: Vec<String>,
-    /// By series, the first release that has it.
+    /// First release that has it, by series.
     pub from: BTreeMap<String, String>,
-    /// By series, the last release that has it.
+    /// Last release that has it, by series.
     pub until: BTreeMap<String, String>,
 }
 

@@ -70,42 +70,41 @@ pub struct TypeDef {
     /// `PascalCase` name.
     #[serde(deserialize_with = "names::read_pascal")]
     pub name: String,
-    /// Group whose file (and Rust module) holds it; `None` for `spec/types.yaml`.
+    /// Group whose file (and Rust module) contains it; `null` for `spec/types.yaml`.
     pub group: Option<String>,
     /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// More about it.
+    /// Longer description.
     pub about: Option<Text>,
     /// Struct, enum or one-of.
     #[serde(flatten)]
     pub shape: TypeShape,
-    /// Operation and side whose body, or inline object in whose body, this is; `None` for a type
-    /// of a `types:` section.
+    /// Body that the type was made for, or inline object of a body. `null` for a type of a `types:` section.
     pub body_of: Option<BodyField>,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
     /// History.
     pub changes: Vec<Change>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
 
-/// Which body a made type belongs to, and where in it.
+/// A body, or an inline object in it, for which a type was made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct BodyField {
     /// Operation.
     pub operation: String,
-    /// Which of its two bodies.
+    /// Direction of the message with this body.
     pub side: Direction,
     /// Path of wire keys of an inline object (`["data"]`); empty for the body itself.
     #[serde(deserialize_with = "names::read_line")]
     pub path: Vec<String>,
 }
 
-/// What a named type is made of.
+/// Shape of a named type.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TypeShape {
@@ -122,9 +121,9 @@ pub enum TypeShape {
 pub struct StructType {
     /// Fields in the order written, which is the order sent.
     pub fields: Vec<Field>,
-    /// `Open` for a lost body: no fields, every key kept as JSON.
+    /// `open` for a lost body. It has no fields, and every key is kept as JSON.
     pub state: BodyState,
-    /// Name of the coordinate system in which its values are given.
+    /// Name of the coordinate system of its values; `null` if none is stated.
     pub coordinates: Option<String>,
 }
 
@@ -160,19 +159,19 @@ pub struct Field {
     /// Type without the optional mark.
     #[serde(rename = "type")]
     pub ty: Type,
-    /// `T?`: may be absent.
+    /// `true` if the field may be absent (`T?`).
     pub optional: bool,
     /// Description.
     #[serde(flatten)]
     pub text: Text,
-    /// What composed examples show for it.
+    /// Value in generated examples.
     #[serde(flatten)]
     pub example: Example,
-    /// How it travels.
+    /// Form in which it is sent.
     pub wire_form: WireForm,
-    /// Never in logs.
+    /// `true` if it must not appear in logs.
     pub sensitive: bool,
-    /// What few fields have; a spec has more fields than anything else.
+    /// Rare properties, kept apart to save memory.
     #[serde(flatten, serialize_with = "details")]
     pub details: Option<Box<FieldDetails>>,
 }
@@ -185,20 +184,19 @@ impl Field {
     }
 }
 
-/// What a field says about itself beyond the usual.
+/// Rare properties of a field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FieldDetails {
-    /// More about it: meaning of odd values, where it comes from.
+    /// Additional notes, such as special values and origin.
     pub note: Option<Text>,
-    /// Name of the entity of which its value is the id, or each value of its list.
+    /// Name of the entity that its value identifies, or each value of its list.
     pub refers: Option<String>,
-    /// Under which values of the fields beside it an optional field is there, and a required one is valid; `None`: under
-    /// all.
+    /// Condition under which an optional field is present and a required field is valid; `null` for no condition.
     pub condition: Option<Condition>,
-    /// Name of the coordinate system in which its object, or each object of its list, is given. That of an object in
-    /// place, and one that a declared struct names itself, is with the struct.
+    /// Name of the coordinate system of its object, or of each object in its list.
+    /// For an inline object, and for a declared struct that names one, the struct has the name instead.
     pub coordinates: Option<String>,
-    /// Name of the store in which it is kept.
+    /// Name of the store in which its value is kept; `null` if none is stated.
     pub kept: Option<String>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
@@ -210,11 +208,11 @@ pub struct FieldDetails {
     pub length: Option<(u64, u64)>,
     /// Regular expression that a string must match as a whole.
     pub pattern: Option<Pattern>,
-    /// Values of its enum that it takes, in wire form; all where there are none.
+    /// Accepted values of its enum, in wire form. Empty if all values are accepted.
     pub only: Vec<Scalar>,
-    /// What the receiver takes for an absent optional field; documented, not sent.
+    /// Value that the receiver uses if the optional field is absent. It is documented and not sent.
     pub default: Option<Scalar>,
-    /// Where the decoder is lenient.
+    /// Leniencies of the decoder.
     pub quirks: Vec<Quirk>,
     /// Other wire keys the decoder accepts for it.
     #[serde(deserialize_with = "names::read_line")]
@@ -222,9 +220,9 @@ pub struct FieldDetails {
     /// `YYYY-MM` or `YYYY-MM-DD`.
     #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
-    /// For whom it is, and where; `None` for everyone.
+    /// Audiences, machines and releases that have it; `null` for all.
     pub available: Option<Available>,
-    /// Withdrawn.
+    /// Its deprecation; `null` if it is not deprecated.
     pub deprecated: Option<Deprecation>,
 }
 
@@ -291,7 +289,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     deprecated: None,
 };
 
-/// What composed examples show for a field.
+/// Value of a field in generated examples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "example_is", content = "example", rename_all = "snake_case")]
 pub enum Example {
@@ -307,11 +305,11 @@ pub enum Example {
 /// A choice of named values.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnumType {
-    /// What travels.
+    /// Wire type of the values.
     pub repr: EnumRepr,
-    /// `closed: true`: an unknown value is a fault. Otherwise it is kept.
+    /// `true` if an unknown value is an error. Otherwise, it is kept.
     pub closed: bool,
-    /// What `then` of the values claims; `None` where nothing is said of how they follow each other.
+    /// Meaning of `then` of the values; `null` if their order is not stated.
     pub order: Option<StateOrder>,
     /// Values in the order written.
     pub values: Vec<EnumValue>,
@@ -329,34 +327,34 @@ pub enum EnumRepr {
 /// A value of an enum.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EnumValue {
-    /// On the wire: `Scalar::Number(Number::Int)` or `Scalar::String`.
+    /// Value on the wire: an integer or a string.
     #[serde(rename = "value")]
     pub wire: Scalar,
     /// `snake_case` name.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it means.
+    /// Its meaning.
     #[serde(flatten)]
     pub text: Text,
-    /// Whether a process begins with it.
+    /// `true` if a process begins with it.
     pub start: bool,
-    /// Names of the values that follow it, as the enum's `order` says.
+    /// Names of the values that can follow it. The `order` of the enum gives the meaning of the list.
     pub then: Vec<String>,
-    /// Whether nothing follows it.
+    /// `true` if no value follows it.
     #[serde(rename = "final")]
     pub is_final: bool,
-    /// Whether it says that something failed.
+    /// `true` if it means that something failed.
     #[serde(rename = "error")]
     pub is_error: bool,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
-    /// For whom it is, and where; `None` for everyone.
+    /// Audiences, machines and releases that have it; `null` for all.
     pub available: Option<Available>,
 }
 
-/// A choice of structs. A variant is taken when all its required keys are present, in the order
-/// written; a checked model has no variant that an earlier one always hides.
+/// A choice of structs. The first variant whose required keys are all present is taken, in the order written.
+/// A checked model has no variant that an earlier one always hides.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct OneOf {
     /// Variants in the order written.
@@ -369,14 +367,14 @@ pub struct Variant {
     /// `snake_case` name.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it means.
+    /// Its meaning.
     #[serde(flatten)]
     pub text: Text,
     /// Its struct.
     #[serde(rename = "type")]
     pub ty: StructRef,
-    /// For whom it is, and where; `None` for everyone.
+    /// Audiences, machines and releases that have it; `null` for all.
     pub available: Option<Available>,
-    /// Withdrawn.
+    /// Its deprecation; `null` if it is not deprecated.
     pub deprecated: Option<Deprecation>,
 }

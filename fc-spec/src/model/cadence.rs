@@ -4,27 +4,27 @@ use super::Number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When a robot sends a report. A path is that of wire keys from the report's body on, joined by dots; it leads through
-/// lists into their items.
+/// Cadence of a report. A path consists of the wire keys from the body of the report on, joined by dots.
+/// A key of a list leads to its items.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cadence {
-    /// At each change of the field at this path.
+    /// The report is sent at each change of the field at this path.
     OnChange(String),
-    /// At each step of a number.
+    /// The report is sent at each step of a number.
     Step(Step),
-    /// At intervals of this many milliseconds.
+    /// The report is sent at intervals of this many milliseconds.
     EveryMs(u32),
-    /// At the latest this many milliseconds after a command that sets it off.
+    /// The report is sent at the latest this many milliseconds after a command that sets it off.
     WithinMs(u32),
 }
 
-/// A number of a report, and how far it moves from one report to the next.
+/// A number in a report, and its step from one report to the next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Step {
     /// Path of the field.
     pub field: String,
-    /// How far, greater than 0.
+    /// Size of the step, greater than 0.
     pub by: Number,
 }
 

@@ -4,24 +4,24 @@ use super::{Scalar, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Under which values of the fields beside it an optional field is there, and a required one, which is always there,
-/// is valid.
+/// Condition of a field on other fields of the same object. An optional field is present only if the condition
+/// holds. A required field is always present and is valid only if the condition holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Condition {
-    /// Exactly where all of these fields have one of their values.
+    /// Holds if every listed field has one of its values.
     When(Vec<Asked>),
-    /// Everywhere else.
+    /// Holds unless every listed field has one of its values.
     Unless(Vec<Asked>),
 }
 
-/// A field that a condition asks, and the values that it asks for.
+/// A field in a condition, with the values that match.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Asked {
-    /// Its wire key. It stands in the same object and is required.
+    /// Wire key of the field, which is a required field of the same object.
     #[serde(rename = "path")]
     pub wire: String,
-    /// The values, in wire form: any of them.
+    /// Values in wire form; each of them matches.
     pub values: Vec<Scalar>,
 }
 

@@ -5,36 +5,36 @@ use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A coordinate system, in which structs give their values.
+/// A coordinate system for the values of structs.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CoordinateSystem {
     /// Name, such as `map`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it is called.
+    /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// Where its origin is and how its axes lie.
+    /// Origin and axes; `null` if not described.
     pub about: Option<Text>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
 
-/// A place where things are kept.
+/// A store: a place where the robot keeps values.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Store {
     /// Name, such as `config_file`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it is called.
+    /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// More about it.
+    /// Longer description.
     pub about: Option<Text>,
-    /// Whether what is kept there is still there after a restart; `None` where nothing is known.
+    /// `true` if its content survives a restart; `null` if unknown.
     pub survives_restart: Option<bool>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }

@@ -11,10 +11,10 @@ pub struct Entity {
     /// Name, such as `station`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it is called.
+    /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }

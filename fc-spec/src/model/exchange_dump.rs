@@ -8,37 +8,37 @@ use crate::vocabulary::{BodyState, Effect, Kind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// An exchange in a dump: every key for every kind, `null` where the kind has nothing of it.
+/// An exchange in a dump. Every kind has every key. A key that does not apply is `null` or empty.
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 pub(super) struct ExchangeDump {
     /// Command, report or stream.
     kind: Kind,
-    /// What it does to the robot; commands only.
+    /// Its effect on the robot; commands only.
     effect: Option<Effect>,
-    /// How sure that is; commands only.
+    /// Confidence in the effect; commands only.
     effect_state: Option<BodyState>,
     /// The reports that it sets off; commands only.
     sets_off: Vec<SetOff>,
-    /// What has to hold before it is accepted; commands only.
+    /// Its preconditions; commands only. `null` if none are stated.
     accepted: Option<Accepted>,
-    /// What the command asks, what the report says, what the stream carries.
+    /// Request of a command, data of a report, or data of a stream.
     request: BodyDump,
-    /// The answer or acknowledgement.
+    /// Response or acknowledgement. A stream has none: its type is `null`.
     response: BodyDump,
-    /// For reports.
+    /// Resending until it is acknowledged; reports only.
     ack: Option<Ack>,
-    /// When it is sent; reports only.
+    /// Its cadence; reports only. `null` if none is stated.
     cadence: Option<Cadence>,
-    /// Media type of the bytes in a stream's frames, where it is stated and they are raw.
+    /// Media type of the raw bytes in the frames of a stream; `null` if not stated.
     #[serde(default, deserialize_with = "names::read_media_type")]
     content: Option<String>,
-    /// Name of the command after which a stream is sent.
+    /// Name of the command that starts a stream; `null` if not stated.
     started_by: Option<String>,
-    /// Name of the command after which a stream is no longer sent.
+    /// Name of the command that stops a stream; `null` if not stated.
     stopped_by: Option<String>,
-    /// The key of a report that says how far a process has come; `null` where there is none.
+    /// Key of a report with the state of a process; `null` if there is none.
     state: Option<KeyPath>,
-    /// Other keys of a report that may say that something failed.
+    /// Other keys of a report whose values can mean that something failed.
     failures: Vec<KeyPath>,
 }
 
@@ -46,12 +46,12 @@ pub(super) struct ExchangeDump {
 #[derive(Clone, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Body")]
 struct BodyDump {
-    /// Stated, inferred or open.
+    /// Confidence in the body.
     state: BodyState,
-    /// Name of its struct; `null` for raw bytes and where nothing is sent.
+    /// Name of its struct; `null` for raw bytes and for a message that does not exist.
     #[serde(rename = "type")]
     ty: Option<StructRef>,
-    /// Why it is inferred or open, or what else there is to say.
+    /// Reason why it is inferred or open, or another note.
     note: Option<Text>,
 }
 

@@ -5,20 +5,20 @@ use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A word of the protocol, and what it means.
+/// A term of the protocol and its meaning.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Term {
     /// Id, such as `docking`.
     #[serde(deserialize_with = "names::read_snake")]
     pub id: String,
-    /// The word.
+    /// The term.
     #[serde(flatten)]
     pub word: Text,
-    /// What it means.
+    /// Its meaning.
     pub means: Text,
-    /// Other forms of it: synonyms, plurals.
+    /// Other forms of the term: synonyms, plurals.
     pub also: Aliases,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }

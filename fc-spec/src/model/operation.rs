@@ -20,9 +20,9 @@ pub struct Group {
     /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// What belongs here.
+    /// Description; `null` if there is none.
     pub about: Option<Text>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
@@ -30,44 +30,44 @@ pub struct Group {
 /// The code of an operation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Code {
-    /// Number; `None` while unassigned, and then `state` is `Open`.
+    /// Number; `null` while unassigned, with the state `open`.
     #[serde(rename = "code")]
     pub value: Option<u16>,
-    /// As written in the spec, such as `0x0A01` or `unassigned`.
+    /// Spelling in the spec, such as `0x0A01` or `unassigned`.
     #[serde(deserialize_with = "names::read_code")]
     #[serde(rename = "code_spelling")]
     pub spelling: String,
-    /// Stated, inferred or open.
+    /// Confidence in the code.
     #[serde(rename = "code_state")]
     pub state: BodyState,
 }
 
-/// How often a report is sent again until it is acknowledged.
+/// Resending of a report until it is acknowledged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Ack {
-    /// Wait before it is sent again, in milliseconds.
+    /// Wait before it is resent, in milliseconds.
     pub timeout_ms: u32,
-    /// How often it is sent again; 0 for once only.
+    /// Maximum number of resends; 0 sends it only once.
     pub retries: u32,
 }
 
 /// `calls:` and `ack:` of `protocol.yaml`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CallDefaults {
-    /// How long an app waits for an answer, in milliseconds.
+    /// Time an app waits for a response, in milliseconds.
     pub timeout_ms: u32,
-    /// How long the robot lets a handler work, in milliseconds.
+    /// Time the robot waits for a handler, in milliseconds.
     pub handler_timeout_ms: u32,
-    /// Age past which a message is refused as expired, in milliseconds; `None`: never.
+    /// Age above which a message is refused as expired, in milliseconds; `null` if messages do not expire.
     pub max_age_ms: Option<u32>,
-    /// Default acknowledgement of reports.
+    /// Default resending of reports.
     pub ack: Ack,
 }
 
 /// One side of a command or report.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Stated, inferred or open.
+    /// Confidence in the body.
     pub state: BodyState,
     /// The struct with the keys of the message. The envelope is not part of it.
     pub ty: StructRef,
@@ -75,38 +75,38 @@ pub struct Body {
     pub note: Option<Text>,
 }
 
-/// What travels, by the kind of the operation.
+/// Messages of an operation, by its kind.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(into = "ExchangeDump", try_from = "ExchangeDump")]
 #[schemars(with = "ExchangeDump")]
 pub enum Exchange {
-    /// An app asks, the robot answers.
+    /// The app sends a request, and the robot sends a response.
     Command {
-        /// What it does to the robot.
+        /// Its effect on the robot.
         effect: Effect,
-        /// How sure that is.
+        /// Confidence in the effect.
         effect_state: BodyState,
         /// The reports that the robot sends because of it.
         sets_off: Vec<SetOff>,
-        /// What has to hold before it is accepted; `None` where nothing is said of that.
+        /// Its preconditions; `None` if none are stated.
         accepted: Option<Accepted>,
-        /// What the command asks, and the answer.
+        /// The request and the response.
         messages: Messages,
     },
-    /// The robot says, an app acknowledges.
+    /// The robot sends a report, and the app acknowledges it.
     Report {
-        /// How often it is sent again until it is acknowledged.
+        /// Resending until it is acknowledged.
         ack: Ack,
-        /// When it is sent; `None` where nothing is said of that.
+        /// Its cadence; `None` if none is stated.
         cadence: Option<Cadence>,
-        /// The key that says how far a process has come.
+        /// The key with the state of a process; `None` if there is none.
         state: Option<KeyPath>,
-        /// Other keys that may say that something failed.
+        /// Other keys whose values can mean that something failed.
         failures: Vec<KeyPath>,
-        /// What the report says, and its acknowledgement.
+        /// The report and its acknowledgement.
         messages: Messages,
     },
-    /// One side sends, nobody answers.
+    /// One side sends frames without a response.
     Stream(Stream),
 }
 
@@ -177,12 +177,12 @@ impl Messages {
     }
 }
 
-/// A result besides success that an operation may answer.
+/// A result that an operation may return besides success.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct DeclaredError {
     /// The result code.
     pub code: i64,
-    /// What it means for this operation; `None` where only the result code's own text is known.
+    /// Its meaning for this operation; `null` if only the text of the result code is known.
     pub cause: Option<Text>,
 }
 
@@ -192,9 +192,9 @@ pub struct Operation {
     /// `snake_case` name.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// Stated, or inferred where the source prints no type.
+    /// Confidence in the kind: inferred if the source prints no type, confirmed if the owner has answered.
     pub kind_state: BodyState,
-    /// Who sends the request (or the stream).
+    /// Sender of the request, the report or the stream.
     pub sender: Side,
     /// Its code.
     #[serde(flatten)]
@@ -204,38 +204,38 @@ pub struct Operation {
     /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// Stated, or inferred where the source has lost the heading.
+    /// Confidence in the title: inferred if the source has lost the heading, confirmed if the owner has answered.
     pub title_state: BodyState,
     /// Other words for it.
     pub aliases: Aliases,
-    /// What it does, where the title does not say it all. Markdown paragraphs.
+    /// Longer description, as Markdown paragraphs; `null` if the title is enough.
     pub about: Option<Text>,
-    /// Port.
+    /// Port on which it is sent.
     #[serde(rename = "port_role")]
     pub port: PortRole,
-    /// Sections of the source document.
+    /// Numbers of its sections in the source document; empty if it is not in the document.
     pub sections: Vec<u16>,
-    /// What of the source is lost.
+    /// Facts missing from the source.
     pub lost: Vec<Fact>,
-    /// Name of the store in which what it reads and sets is kept.
+    /// Name of the store that it reads and sets; `null` if none is stated.
     pub kept: Option<String>,
     /// `YYYY-MM` or `YYYY-MM-DD` of the section's first appearance.
     #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
-    /// For whom it is, and where; `None` for everyone.
+    /// Audiences, machines and releases that have it; `null` for all.
     pub available: Option<Available>,
-    /// Withdrawn.
+    /// Its deprecation; `null` if it is not deprecated.
     pub deprecated: Option<Deprecation>,
     /// History.
     pub changes: Vec<Change>,
-    /// Command, report or stream, and what each of them has.
+    /// Kind of the operation, with its messages and the properties of this kind.
     #[serde(flatten)]
     pub exchange: Exchange,
-    /// What examples of its response show as result text, where the source prints one.
+    /// Result text in examples of its response; `null` if the source prints none.
     pub result_text: Option<String>,
-    /// Results it may answer besides success, by their codes.
+    /// Results it may return besides success, by code.
     pub errors: Vec<DeclaredError>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }

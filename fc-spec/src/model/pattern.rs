@@ -14,8 +14,9 @@ use std::fmt::{self, Write as _};
 
 /// A regular expression that a text must match as a whole.
 ///
-/// The dialect is that of `regex-lite`: `\d`, `\w` and `\s` are ASCII, and `.` excludes only `\n`. What engines of other
-/// languages read differently is translated, or refused. In a dump it is its source.
+/// The dialect is that of `regex-lite`: `\d`, `\w` and `\s` are ASCII, and `.` excludes only `\n`.
+/// A construct that other languages interpret differently is translated or refused.
+/// A dump contains the source of the pattern.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(into = "String", try_from = "String")]
 #[schemars(with = "String")]

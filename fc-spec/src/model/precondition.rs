@@ -4,25 +4,25 @@ use super::{Scalar, Text, TypeRef};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What has to hold before a command is accepted. What is not said here is not known.
+/// Preconditions of a command. A precondition that is missing here is unknown.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Accepted {
-    /// In which states the robot accepts it; `None` where that is not said.
+    /// States in which the robot accepts it; `null` if unknown.
     #[serde(rename = "in")]
     pub states: Option<AcceptedIn>,
-    /// Names of the commands that come first.
+    /// Names of the commands to be sent first.
     pub after: Vec<String>,
-    /// More about it.
+    /// Additional notes.
     pub note: Option<Text>,
 }
 
-/// In which states a robot accepts a command.
+/// States in which a robot accepts a command.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AcceptedIn {
-    /// In any state.
+    /// Any state.
     Any,
-    /// In those in which each of these enums has one of these values.
+    /// The states in which every listed enum has one of its values.
     States(Vec<StateSet>),
 }
 

@@ -14,14 +14,14 @@ pub type KeyPath = Vec<String>;
 pub struct SetOff {
     /// Name of the report.
     pub report: String,
-    /// By which keys a report belongs to a call; empty where nothing in the messages ties them.
+    /// Keys that tie a report to a call. Empty if no key in the messages ties them.
     pub tied: Vec<Tie>,
 }
 
 /// A key of a command and the key of a report that has the same value.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Tie {
-    /// Which message of the command has it.
+    /// Message of the command that has the key.
     pub side: Direction,
     /// The key of the command.
     pub command: KeyPath,

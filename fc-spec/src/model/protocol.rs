@@ -20,14 +20,14 @@ pub struct Protocol {
     /// Name.
     #[serde(flatten)]
     pub title: Text,
-    /// What it is for.
+    /// Its purpose.
     pub about: Text,
     /// Version of the spec.
     #[serde(deserialize_with = "names::read_line")]
     pub version: String,
-    /// The two parties.
+    /// The robot, the party that listens.
     pub robot: Party,
-    /// The two parties.
+    /// The app, the party that connects.
     pub app: Party,
 }
 
@@ -37,7 +37,7 @@ pub struct Party {
     /// Its name.
     #[serde(flatten)]
     pub title: Text,
-    /// What it is, and what else documents call it.
+    /// Description, with its other names in documents.
     pub about: Text,
 }
 
@@ -56,9 +56,9 @@ pub struct Transport {
 #[serde(into = "Vec<Port>", try_from = "Vec<Port>")]
 #[schemars(with = "Vec<Port>")]
 pub struct Ports {
-    /// Where commands and reports travel.
+    /// Port of commands and reports.
     pub command: Port,
-    /// Where streams travel.
+    /// Port of streams.
     pub data: Port,
 }
 
@@ -105,7 +105,7 @@ impl TryFrom<Vec<Port>> for Ports {
 /// A TCP port.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Port {
-    /// What it carries.
+    /// Its role.
     pub role: PortRole,
     /// Number.
     pub number: u16,
@@ -172,15 +172,15 @@ pub struct HeaderField {
     /// Width and kind.
     #[serde(rename = "type")]
     pub ty: HeaderType,
-    /// Bytes before it.
+    /// Number of bytes before it in the frame.
     pub offset: usize,
-    /// What the engine uses it for; `None` for a field that only travels.
+    /// Its role. `null` for a field that the runtime does not interpret.
     pub role: Option<HeaderRole>,
-    /// What is sent where nothing else decides; only for fields without a role or with role `Status`.
+    /// Default value to send; only for fields without a role or with the role `status`.
     pub value: u64,
-    /// How a digest is computed; `None` of any other field.
+    /// Algorithm of a digest; `null` for any other field.
     pub algorithm: Option<DigestAlgorithm>,
-    /// Where the decoder is lenient.
+    /// Leniencies of the decoder.
     pub quirks: Vec<HeaderQuirk>,
     /// Description.
     #[serde(flatten)]
@@ -268,7 +268,7 @@ pub struct FrameKinds {
     pub command: FrameKind,
     /// Reports and their acknowledgements.
     pub report: FrameKind,
-    /// Refused by name, sorted by value.
+    /// Reserved kinds, which are refused; sorted by value.
     pub reserved: Vec<FrameKind>,
 }
 
@@ -347,7 +347,7 @@ pub struct FrameKind {
     /// Its name in the spec, such as `stream`, `command`, `protobuf`, `report`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// What it carries.
+    /// Its role.
     pub role: KindRole,
     /// Port it travels on.
     pub port: PortRole,
@@ -364,19 +364,19 @@ pub struct Encoding {
     /// Its name in the spec, `plain` or `gzip`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// How the data is packed.
+    /// Compression of the data.
     pub role: EncodingRole,
     /// Description.
     #[serde(flatten)]
     pub text: Text,
 }
 
-/// `envelope:`: the keys that stand beside a message's own.
+/// `envelope:`: keys of every message, in addition to those of its body.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Envelope {
-    /// Of every request.
+    /// Keys of every request.
     pub request: Vec<EnvelopeField>,
-    /// Of every response and acknowledgement.
+    /// Keys of every response and acknowledgement.
     pub response: Vec<EnvelopeField>,
 }
 
@@ -401,9 +401,9 @@ pub struct EnvelopeField {
     /// Type.
     #[serde(rename = "type")]
     pub ty: Type,
-    /// Whether a received message may lack it. It is always sent.
+    /// `true` if it may be missing in received messages. It is always sent.
     pub optional: bool,
-    /// What the engine uses it for.
+    /// Its role.
     pub role: EnvelopeRole,
     /// Value in composed examples.
     pub example: Scalar,
@@ -422,29 +422,29 @@ pub struct ResultCode {
     /// Name in code, such as `invalid_parameter`.
     #[serde(deserialize_with = "names::read_snake")]
     pub name: String,
-    /// When the engine itself answers with it.
+    /// Case in which the runtime returns it automatically; `null` if it never does.
     pub role: Option<ResultRole>,
-    /// What it means; its Chinese is also the text sent beside it.
+    /// Its meaning. The Chinese text is also sent as the result text.
     #[serde(flatten)]
     pub text: Text,
-    /// When a peer answers with it.
+    /// Cases in which a peer returns it.
     pub about: Text,
 }
 
-/// Default limits of both stubs; every one can be changed where a stub is made.
+/// Default limits of client and server. Each limit can be changed when a client or server is created.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
-    /// Longest frame, header included, in bytes.
+    /// Maximum length of a frame in bytes, including the header.
     pub frame_bytes: u32,
-    /// Longest data after decompression, in bytes.
+    /// Maximum length of the data in bytes, after decompression.
     pub inflated_bytes: u32,
-    /// Deepest nesting of a JSON body.
+    /// Maximum nesting depth of a JSON body.
     pub json_depth: u32,
-    /// Calls in flight on one connection.
+    /// Maximum number of calls in flight on one connection.
     pub in_flight: u32,
-    /// Reports waiting for one app.
+    /// Maximum number of reports waiting for one app.
     pub queued_reports: u32,
-    /// Connections at one server.
+    /// Maximum number of connections at one server.
     pub connections: u32,
 }
 
@@ -468,7 +468,7 @@ pub struct CodeRange {
     /// Its purpose.
     #[serde(rename = "use")]
     pub usage: RangeUse,
-    /// IDs of the groups whose new operations get their codes here; none if it names no groups.
+    /// Ids of the groups whose new operations get their codes here. Empty if the range names no groups.
     #[serde(default, deserialize_with = "names::read_snake")]
     pub groups: Vec<String>,
     /// Description.
@@ -508,7 +508,7 @@ pub struct RetiredCode {
     /// Its spelling.
     #[serde(deserialize_with = "names::read_code")]
     pub spelling: String,
-    /// Why.
+    /// Reason.
     #[serde(flatten)]
     pub text: Text,
 }
@@ -522,15 +522,15 @@ pub struct Table {
     /// Title.
     #[serde(flatten)]
     pub title: Text,
-    /// What it is for.
+    /// Its purpose.
     pub about: Text,
     /// The struct of a row.
     pub row: StructRef,
     /// Rows as checked values of that type, in wire form.
     pub rows: Vec<Value>,
-    /// Name of the store in which it is kept.
+    /// Name of the store in which it is kept; `null` if none is stated.
     pub kept: Option<String>,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
@@ -540,7 +540,7 @@ pub struct Table {
 pub struct MissingSection {
     /// Number.
     pub section: u16,
-    /// What is known.
+    /// Known facts about it.
     #[serde(flatten)]
     pub text: Text,
 }
@@ -553,9 +553,9 @@ pub struct Conflict {
     pub id: String,
     /// Category, such as `frame`, `codes`, `fields`.
     pub category: String,
-    /// How much depends on it.
+    /// Its severity.
     pub severity: Severity,
-    /// What is missing or contradicts itself.
+    /// Description of the gap or contradiction.
     #[serde(flatten)]
     pub text: Text,
 }

@@ -6,60 +6,61 @@ use crate::vocabulary::{Impact, Severity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The word of the protocol's owner: `{ by: 张伟, date: 2026-11-23, reference: …, reply: … }`.
+/// Confirmation by the owner of the protocol: `{ by: 张伟, date: 2026-11-23, reference: …, reply: … }`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Confirmation {
-    /// Who said it.
+    /// Name of the person who confirmed it.
     pub by: String,
     /// `YYYY-MM` or `YYYY-MM-DD`.
     #[serde(deserialize_with = "names::read_date")]
     pub date: String,
-    /// Where it can be looked up.
+    /// Reference, such as a mail or a ticket; `null` if there is none.
     pub reference: Option<String>,
-    /// In their own words, in the language they were said.
+    /// The owner's words, in the original language; `null` if there are none.
     pub reply: Option<String>,
 }
 
-/// A fact that an answer governs, and what the spec says of it until the owner has answered.
+/// A fact that an answer governs, with its state in the spec until the owner has answered.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Governed {
-    /// A fact of an operation, such as `code`, or the keys that lead to it from where the answer stands, such as
+    /// A fact of an operation, such as `code`, or the keys from the entry with the answer to the fact, such as
     /// `response.data.x.unit`.
     pub path: String,
-    /// How sure a fact of an operation is: `inferred` or `open`. Of anything else, its value, or `absent`.
+    /// Confidence in a fact of an operation: `inferred` or `open`. For any other fact, its value, or `absent`.
     pub meanwhile: String,
 }
 
-/// What the owner has been asked, or is to confirm.
+/// A question to the owner, or a decision that the owner can confirm.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Question {
-    /// Apart from all others: the first conflict it is about, `C040`, followed by where it stands if that has several
-    /// questions, `C087.get_station`; without a conflict, operation and fact, `list_stations.code`.
+    /// Unique id. It is the id of the first conflict, such as `C040`.
+    /// If the conflict has several questions, the place follows: `C087.get_station`.
+    /// Without a conflict, it is the operation and the fact: `list_stations.code`.
     pub id: String,
-    /// The conflicts it is about.
+    /// Ids of its conflicts.
     #[serde(deserialize_with = "names::read_conflict_id")]
     pub ids: Vec<String>,
     /// A question or a decision.
     pub kind: AnswerKind,
-    /// What it holds up.
+    /// Its impact; `decided` for a decision.
     pub impact: Impact,
-    /// That of the gravest conflict.
+    /// Highest severity of its conflicts; `null` without a conflict.
     pub severity: Option<Severity>,
-    /// Group of the file in which it stands.
+    /// Id of the group whose file contains it; `null` for other files.
     pub group: Option<String>,
-    /// What it is about.
+    /// Subject of the question.
     pub subject: Subject,
-    /// What is asked, or decided.
+    /// Text of the question or decision.
     #[serde(flatten)]
     pub text: Text,
     /// The facts it governs.
     pub about: Vec<Governed>,
-    /// The owner's word; `None` while it is open.
+    /// The owner's confirmation; `null` while the question is open.
     pub confirmed: Option<Confirmation>,
-    /// The lines of the file that an answer changes, as a diff without line numbers in which `…` is what the owner
-    /// has to say; empty where it is settled.
+    /// Lines of the file that an answer changes, as a diff without line numbers. `…` is a value that the owner
+    /// must give. Empty if the question is settled.
     pub edit: String,
-    /// Where it stands.
+    /// Position in the spec: that of the answer, or of the operation if no answer covers the fact.
     #[serde(rename = "place")]
     pub location: Location,
 }

@@ -51,17 +51,18 @@ macro_rules! sections {
             }
         }
 
-        /// What the generator knows of a protocol, for other programs.
+        /// A complete, resolved protocol, for other programs.
         #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
         pub struct Dump {
-            /// Counts up when a key changes its meaning or goes. A key that is new in a format has a default.
+            /// Version of the format. It grows when a key is removed or changes its meaning.
+            /// A key added within a version has a default.
             pub format: u32,
-            /// The protocol as a whole, and what lies below its messages.
+            /// The protocol as a whole, and the layers below its messages.
             protocol: Below,
             $($(#[doc = $doc])+ $(#[serde($($serde)+)])? $list: $List,)+
         }
 
-        /// The protocol as a whole, and what lies below its messages.
+        /// The protocol as a whole, and the layers below its messages.
         #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
         #[schemars(rename = "Protocol")]
         struct Below {
@@ -94,9 +95,9 @@ sections! {
         protocol (flatten): Protocol,
         transport (flatten): Transport,
         frame: Frame,
-        /// What is done where JSON leaves it open, by rule.
+        /// Handling of JSON where RFC 8259 leaves it open, by rule.
         json: BTreeMap<JsonRule, Text>,
-        /// The keys beside those of a message.
+        /// Keys of every message, in addition to those of its body.
         envelope: Envelope,
         calls: CallDefaults,
         limits: Limits,
@@ -106,7 +107,7 @@ sections! {
         groups: Vec<Group>,
         /// Commands, reports and streams, by group, in the order of the files.
         operations: Vec<Operation>,
-        /// Declared types and those made for bodies, as they stand in the spec.
+        /// Declared types and the types made for bodies, in the order of the spec.
         types: Types,
         /// By number.
         results (rename = "result_codes"): Vec<ResultCode>,
@@ -116,27 +117,27 @@ sections! {
         retired (rename = "retired_codes"): Vec<RetiredCode>,
         /// Published tables of constants.
         tables: Vec<Table>,
-        /// What the ids in bodies stand for.
+        /// Kinds of things that the ids in bodies identify.
         entities: Vec<Entity>,
-        /// In which positions are given.
+        /// Coordinate systems of positions.
         coordinates: Vec<CoordinateSystem>,
-        /// Where things are kept.
+        /// Stores: the places where values are kept.
         stores: Vec<Store>,
         /// Audiences, lines of machines and series of releases.
         availability: Availability,
-        /// The words of the protocol and what they mean.
+        /// Terms of the protocol and their meanings.
         glossary: Vec<Term>,
         /// Findings that are accepted for a time.
         waivers (default): Vec<Waiver>,
-        /// What the source lacks or contradicts.
+        /// Gaps and contradictions of the source.
         conflicts: Vec<Conflict>,
-        /// What the spec answers to that.
+        /// Answers of the spec to the conflicts.
         answers: Vec<Answer>,
-        /// What only the owner of the protocol can say, the most pressing first.
+        /// Questions and decisions for the owner of the protocol: open ones first, the most urgent at the top.
         questions: Vec<Question>,
-        /// Sections of the source of which nothing is left.
+        /// Sections that are missing from the source.
         missing_sections (rename = "lost_sections"): Vec<MissingSection>,
-        /// Of the protocol as a whole.
+        /// Dated changes of the protocol as a whole.
         changes: Vec<Change>,
     }
 }

@@ -224,9 +224,9 @@ pub struct Location {
     /// Path from the project's root with `/` between its parts, such as `spec/commands/station.yaml`.
     #[serde(deserialize_with = "names::read_place")]
     pub file: String,
-    /// Its name in the file: the keys that lead to the entry it stands in, such as `commands.get_station`
-    /// or `frame`; of an answer the first of its ids, if it has any, from the second such one of the file on
-    /// with a number: `C040.2`.
+    /// Name in the file: the keys that lead to the entry, such as `commands.get_station` or `frame`.
+    /// An answer with ids has its first id as name.
+    /// Later answers of the file with the same id have a number: `C040.2`.
     #[serde(deserialize_with = "names::read_place")]
     pub name: String,
     /// Line, counted from 1.
@@ -239,7 +239,7 @@ pub struct Change {
     /// `YYYY-MM` or `YYYY-MM-DD`.
     #[serde(deserialize_with = "names::read_date")]
     pub date: String,
-    /// What changed.
+    /// Description of the change.
     #[serde(flatten)]
     pub text: Text,
 }
@@ -250,10 +250,10 @@ pub struct Deprecation {
     /// `YYYY-MM` or `YYYY-MM-DD`, where the source gives it.
     #[serde(default, deserialize_with = "names::read_date")]
     pub since: Option<String>,
-    /// Last day or month in which it is there, `YYYY-MM-DD` or `YYYY-MM`.
+    /// Last day or month in which it works, `YYYY-MM-DD` or `YYYY-MM`; `null` if not stated.
     #[serde(default, deserialize_with = "names::read_date")]
     pub sunset: Option<String>,
-    /// Why, and what to do instead.
+    /// Reason and replacement.
     #[serde(flatten)]
     pub note: Text,
     /// Name of the operation to use instead.
@@ -295,23 +295,23 @@ pub enum Subject {
 /// One entry of an `answers:` list.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Answer {
-    /// Ids of the conflicts it answers, such as `C040`; none where the source has lost what it is about.
+    /// Ids of the conflicts it answers, such as `C040`. Empty if the source has lost its subject.
     #[serde(deserialize_with = "names::read_conflict_id")]
     pub ids: Vec<String>,
     /// Decision, quirk, note or question.
     pub kind: AnswerKind,
-    /// The answer, or what has to be asked.
+    /// The answer or the question.
     #[serde(flatten)]
     pub text: Text,
     /// The facts it governs.
     pub about: Vec<Governed>,
-    /// Whether it says what the runtime does, which no value of the spec changes.
+    /// `true` if it describes the runtime. No value of the spec changes this behaviour.
     pub runtime: bool,
-    /// The owner's word, which settles it.
+    /// The owner's confirmation, which settles it; `null` while there is none.
     pub confirmed: Option<Confirmation>,
-    /// Where it stands.
+    /// Its subject.
     pub subject: Subject,
-    /// Its place.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }

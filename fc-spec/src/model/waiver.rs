@@ -10,17 +10,17 @@ use std::fmt::Write as _;
 /// A finding that is accepted for a time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Waiver {
-    /// Which finding: number of its rule and its fingerprint, `FC0725-1a2b3c4d5e6f`.
+    /// Rule number and fingerprint of the finding: `FC0725-1a2b3c4d5e6f`.
     pub id: String,
-    /// Why it is accepted.
+    /// Reason for accepting it.
     #[serde(flatten)]
     pub reason: Text,
-    /// Who has accepted it.
+    /// Name of the person who accepted it.
     pub by: String,
-    /// Last day or month for which it holds: `YYYY-MM` or `YYYY-MM-DD`.
+    /// Last day or month of its validity: `YYYY-MM-DD` or `YYYY-MM`.
     #[serde(deserialize_with = "names::read_date")]
     pub until: String,
-    /// Where it stands.
+    /// Position in the spec: file, name and line.
     #[serde(rename = "place")]
     pub location: Location,
 }
