@@ -72,7 +72,8 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
             .collect();
         let slips: Vec<&str> = used.difference(&known).copied().collect();
         for slip in slips {
-            used.extend(nearest(slip, known.iter().copied()));
+            let names = things.declared.iter().map(|(name, _)| *name);
+            used.extend(nearest(slip, names));
         }
         let declared = things.declared.iter();
         let unused: Vec<_> = declared.filter(|(name, _)| !used.contains(name)).collect();
