@@ -359,9 +359,24 @@ fn dump_with_an_example_of_another_type_is_refused() {
         field["example"] = other;
         assert_eq!(
             refused(&dump.to_string()),
-            format!("the example or default of `{ty}.{key}` does not fit its type")
+            format!("a value of `{ty}.{key}` does not fit its type")
         );
     }
+}
+
+#[test]
+fn dump_with_a_row_of_another_type_is_refused() {
+    let text = inspect::json(&good_spec::model());
+    let mut dump: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let table = &mut dump["tables"][0];
+    let id = table["id"].as_str().expect("an id").to_owned();
+    let row = table["rows"][0].as_object_mut().expect("an object");
+    let number = row.values_mut().find(|value| value.is_number());
+    *number.expect("a number") = json!("wide");
+    assert_eq!(
+        refused(&dump.to_string()),
+        format!("a value of `{id}` does not fit its type")
+    );
 }
 
 /// Dumps are kept, as what a protocol was. This one was made when the format began, and is never made again: what is

@@ -17,7 +17,7 @@ pub enum DumpError {
     Name(Unlinked),
     /// The spelling of a code does not match its number.
     Spelling(String),
-    /// The example or default of a field, `Type.key`, does not fit its type.
+    /// A value does not fit its type: the example or default of a field, `Type.key`, or a row of a table.
     Value(String),
 }
 
@@ -41,9 +41,9 @@ impl DumpError {
                 "功能码的写法 {spelling} 与它的数值不一致",
                 "the spelling {spelling} of a code does not match its number"
             ),
-            Self::Value(field) => text!(
-                "`{field}` 的示例或默认值与它的类型不符",
-                "the example or default of `{field}` does not fit its type"
+            Self::Value(place) => text!(
+                "`{place}` 中有与类型不符的值",
+                "a value of `{place}` does not fit its type"
             ),
             Self::Name(Unlinked { missing, user }) => text!(
                 "{user} 用到了 {missing}，而输出中没有它",
@@ -103,8 +103,8 @@ impl Dump {
         let model = model.link().map_err(DumpError::Name)?;
         model.check_ways().map_err(DumpError::Name)?;
         model.check_bodies().map_err(DumpError::Name)?;
-        if let Some((ty, field)) = model.misfit() {
-            return Err(DumpError::Value(format!("{}.{}", ty.name, field.wire)));
+        if let Some(place) = model.misfit() {
+            return Err(DumpError::Value(place));
         }
         Ok(model)
     }

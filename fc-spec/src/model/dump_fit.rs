@@ -1,7 +1,7 @@
 //! Checks the bodies and examples of a dump against its types.
 
 use super::{
-    EnumRepr, Example, Field, Model, Number, Type, TypeDef, TypeShape, Unlinked, Value, WireForm,
+    EnumRepr, Example, Field, Model, Number, StructType, Type, TypeShape, Unlinked, Value, WireForm,
 };
 
 impl Model {
@@ -21,15 +21,20 @@ impl Model {
         Ok(())
     }
 
-    /// Returns the first field whose example or default does not fit its type.
-    pub(super) fn misfit(&self) -> Option<(&TypeDef, &Field)> {
-        self.types.iter().find_map(|ty| {
+    /// Returns the first place with a value that does not fit its type: a field as `Type.key`, or a table.
+    pub(super) fn misfit(&self) -> Option<String> {
+        let mut fields = self.types.iter().filter_map(|ty| {
             let TypeShape::Struct(shape) = &ty.shape else {
                 return None;
             };
             let field = shape.fields.iter().find(|field| !self.fits_field(field))?;
-            Some((ty, field))
-        })
+            Some(format!("{}.{}", ty.name, field.wire))
+        });
+        let mut tables = self.tables.iter().filter(|table| {
+            let shape = self.types.structure(&table.row);
+            !table.rows.iter().all(|row| self.fits_struct(shape, row))
+        });
+        fields.next().or_else(|| Some(tables.next()?.id.clone()))
     }
 
     fn fits_field(&self, field: &Field) -> bool {
@@ -67,11 +72,7 @@ impl Model {
                 items.iter().all(|value| self.fits_type(item, value))
             }
             (Type::Named(named), value) => match (&self.types.get(named).shape, value) {
-                (TypeShape::Struct(shape), Value::Object(entries)) => {
-                    entries.iter().all(|(key, value)| {
-                        shape.field(key).is_none_or(|field| self.fits(field, value))
-                    })
-                }
+                (TypeShape::Struct(shape), value) => self.fits_struct(shape, value),
                 (TypeShape::Enum(shape), Value::String(_)) => shape.repr == EnumRepr::String,
                 (TypeShape::Enum(shape), Value::Number(_)) => shape.repr != EnumRepr::String,
                 (TypeShape::OneOf(_), Value::Object(_)) => true,
@@ -79,5 +80,18 @@ impl Model {
             },
             _ => false,
         }
+    }
+
+    fn fits_struct(&self, shape: &StructType, value: &Value) -> bool {
+        let Value::Object(entries) = value else {
+            return false;
+        };
+        let mut required = shape.fields.iter().filter(|field| !field.optional);
+        let is_whole = required.all(|field| value.get(&field.wire).is_some());
+        is_whole
+            && entries.iter().all(|(key, value)| {
+                let field = shape.field(key);
+                field.is_none_or(|field| self.fits(field, value))
+            })
     }
 }
