@@ -333,7 +333,7 @@ fn dump_with_a_body_of_no_operation_is_refused() {
             let renamed = text.replace(&owner, &format!("\"operation\": \"{other}\""));
             assert_eq!(
                 refused(&renamed),
-                format!("`{user}` names such a body of `{other}`, which is not in the dump")
+                format!("`{user}` names the request of `{other}`, which is not in the dump")
             );
         }
     }

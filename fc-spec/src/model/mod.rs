@@ -9,7 +9,7 @@ mod cadence;
 mod condition;
 mod coordinates;
 mod dump;
-mod dump_fit;
+mod dump_check;
 mod entity;
 mod exchange_dump;
 mod glossary;

@@ -1,7 +1,8 @@
 //! Checks the bodies and examples of a dump against its types.
 
 use super::{
-    EnumRepr, Example, Field, Model, Number, StructType, Type, TypeShape, Unlinked, Value, WireForm,
+    Direction, EnumRepr, Example, Field, Model, Number, StructType, Type, TypeShape, Unlinked,
+    Value, WireForm,
 };
 
 impl Model {
@@ -12,8 +13,12 @@ impl Model {
             let operation = self.operations.iter().find(|it| it.name == body.operation);
             let found = operation.and_then(|it| it.body(body.side));
             if !found.is_some_and(|it| !body.path.is_empty() || it.ty.name() == ty.name) {
+                let side = match body.side {
+                    Direction::Request => "request",
+                    Direction::Response => "response",
+                };
                 return Err(Unlinked {
-                    missing: format!("such a body of `{}`", body.operation),
+                    missing: format!("the {side} of `{}`", body.operation),
                     user: format!("`{}`", ty.name),
                 });
             }
