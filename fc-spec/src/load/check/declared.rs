@@ -203,39 +203,6 @@ fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<
 /// Returns all things that references may name, except types.
 fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
     let words = &draft.availability;
-    let entities = Things {
-        kinds: Entity::KINDS,
-        what: text!("实体", "entity"),
-        home: Home::Section {
-            key: FILE.entities.name,
-            by: FIELD.refers.name,
-        },
-        declared: names(&draft.entities, |it| &it.name),
-        unknown: FaultCode::UnknownEntity,
-        unused: Some(FaultCode::UnusedEntity),
-    };
-    let coordinates = Things {
-        kinds: CoordinateSystem::KINDS,
-        what: text!("坐标系", "coordinate system"),
-        home: Home::Section {
-            key: FILE.coordinates.name,
-            by: FIELD.coordinates.name,
-        },
-        declared: names(&draft.coordinates, |it| &it.name),
-        unknown: FaultCode::UnknownCoordinates,
-        unused: Some(FaultCode::UnusedCoordinates),
-    };
-    let stores = Things {
-        kinds: Store::KINDS,
-        what: text!("存储位置", "store"),
-        home: Home::Section {
-            key: FILE.stores.name,
-            by: COMMON.kept.name,
-        },
-        declared: names(&draft.stores, |it| &it.name),
-        unknown: FaultCode::UnknownStore,
-        unused: Some(FaultCode::UnusedStore),
-    };
     let command = text!("指令", "command");
     let report = text!("上报", "report");
     let operation = text!("接口", "operation");
@@ -246,13 +213,45 @@ fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
         operations::<Command>(draft, command, |kind| kind == Kind::Command),
         operations::<Report>(draft, report, |kind| kind == Kind::Report),
         operations::<AnyOperation>(draft, operation, |_| true),
-        entities,
-        coordinates,
-        stores,
+        section::<Entity>(
+            text!("实体", "entity"),
+            [FILE.entities.name, FIELD.refers.name],
+            names(&draft.entities, |it| &it.name),
+            [FaultCode::UnknownEntity, FaultCode::UnusedEntity],
+        ),
+        section::<CoordinateSystem>(
+            text!("坐标系", "coordinate system"),
+            [FILE.coordinates.name, FIELD.coordinates.name],
+            names(&draft.coordinates, |it| &it.name),
+            [FaultCode::UnknownCoordinates, FaultCode::UnusedCoordinates],
+        ),
+        section::<Store>(
+            text!("存储位置", "store"),
+            [FILE.stores.name, COMMON.kept.name],
+            names(&draft.stores, |it| &it.name),
+            [FaultCode::UnknownStore, FaultCode::UnusedStore],
+        ),
         available::<Audience>(audience, AVAILABILITY.audiences.name, &words.audiences),
         available::<Machine>(machine, AVAILABILITY.hardware.name, &words.hardware),
         available::<Series>(series, AVAILABILITY.releases.name, &words.releases),
     ]
+}
+
+/// Returns the things of a section: `key` declares them, and `by` refers to them.
+fn section<'d, T: Named>(
+    what: Text,
+    [key, by]: [&'static str; 2],
+    declared: Vec<(&'d str, Span)>,
+    [unknown, unused]: [FaultCode; 2],
+) -> Things<'d> {
+    Things {
+        kinds: T::KINDS,
+        what,
+        home: Home::Section { key, by },
+        declared,
+        unknown,
+        unused: Some(unused),
+    }
 }
 
 fn operations<'d, T: Named>(
