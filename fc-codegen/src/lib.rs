@@ -14,6 +14,7 @@ mod plugin;
 pub mod product;
 pub mod questions;
 pub mod target;
+mod target_error;
 mod yaml_error;
 
 use fc_reflect::sample;
