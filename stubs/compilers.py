@@ -18,7 +18,7 @@ from pathlib import Path
 
 STUBS = Path(__file__).resolve().parent
 ROOT = STUBS.parent
-# How long a compiler may take, in seconds.
+# Time limit for a compiler, in seconds.
 PATIENCE = 900
 TARGETS = """spec: spec
 targets:

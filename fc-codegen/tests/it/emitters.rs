@@ -1,4 +1,4 @@
-//! An emitter of a package spells what `package` decides: it has no group of its own, and no word of the vocabulary that
+//! An emitter spells the decisions of `package`. It declares no `Group`, and reads no word of the vocabulary that
 //! `package` turns into names and values.
 
 use std::fs;

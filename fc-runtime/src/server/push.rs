@@ -59,7 +59,7 @@ pub enum PushError {
     #[error("there is no connection {0} to send to")]
     NoConnection(ConnectionId),
     /// For a stream: there are data connections from the app's address, but several command connections came from
-    /// there, so their owners are unknown. Nothing was sent.
+    /// there, so their owners are unknown, and no frame was sent.
     #[error(
         "several apps share the address of {0}, and nothing tells whose data connection is whose"
     )]

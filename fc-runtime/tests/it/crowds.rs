@@ -83,7 +83,7 @@ async fn one_address_alone_cannot_take_all() {
     }
 }
 
-/// From an app's view: silent connections of its own address do not lock it out.
+/// From an app's view: silent connections from the same address do not lock it out.
 #[fc_test::test]
 async fn silent_connections_lock_nobody_out() {
     let _alone = alone();

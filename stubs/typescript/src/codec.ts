@@ -1,4 +1,4 @@
-// Frames and bodies of any operation, for tools that show what is sent. They read bodies by the schemas of the typed messages.
+// Frames and bodies of any operation, for tools that show messages. They read bodies by the schemas of the typed messages.
 
 export type { Algorithms, Codec, GunzipFault } from './algorithms.ts'
 export { readBody } from './body.ts'

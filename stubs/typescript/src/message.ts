@@ -19,7 +19,7 @@ export interface MessageParts {
   gzip: boolean
 }
 
-/** The frame of a message; `null` for an operation without a code. What is not JSON is sent as it is. */
+/** The frame of a message; `null` for an operation without a code. Text that is not JSON is sent unchanged. */
 export function messageFrame(
   codec: Codec,
   operation: Operation,
@@ -41,7 +41,7 @@ export function messageFrame(
 
 const WHITE = ' \t\n\r'
 
-/** Drops white space outside strings, and touches nothing else: numbers keep their spelling. What is not JSON stays as it is. */
+/** Removes white space outside strings. Numbers keep their spelling, and text that is not JSON is returned unchanged. */
 export function compact(text: string, maxDepth: number): string {
   try {
     judge(utf8Of(text), { ...ANY, depth: maxDepth })

@@ -101,7 +101,7 @@ export interface Protocol extends FrameLayout {
   readonly encodings: readonly Encoding[]
   /** The keys of every message, and what they are for. */
   readonly envelope: EnvelopesOf
-  /** Bounds of what a peer sends. */
+  /** Limits of the data from a peer. */
   readonly limits: Limits
   /** Result codes. */
   readonly results: readonly Result[]

@@ -122,7 +122,7 @@ for (const [repr, closed, values, only, value, fault] of CHOICES) {
   })
 }
 
-/** A message with a list of parts, of which each has a value and perhaps a mode. */
+/** A message with a list of parts. Each part has a value and an optional mode. */
 const NESTED = {
   is: 'struct',
   name: 'Outer',
@@ -141,7 +141,7 @@ const PART = {
   },
 }
 
-/** body, faults by name and path, paths of what is unknown. */
+/** Body, names and paths of its faults, paths of unknown keys and values. */
 const SEVERAL = [
   [
     '{"parts":[{"value":256},{},{"value":"1","mode":9,"more":{}}],"name":"long","last":1,"x":[]}',

@@ -1,4 +1,4 @@
-// The package's own protocol, and those that share nothing with it: what is generated of each, and its golden vectors.
+// The protocol of the package and other protocols: the generated modules of each, and its golden vectors.
 
 import assert from 'node:assert/strict'
 import { cpSync } from 'node:fs'
@@ -7,7 +7,7 @@ import { nodeAlgorithms } from 'fc-protocol/node'
 import { compile, emptyFolder, load, repository } from './packages.mjs'
 import { root, vectors, vectorsIn } from './support.mjs'
 
-/** A protocol of which this gives the modules that have been compiled. */
+/** A protocol; `from` imports one of its compiled modules. */
 async function protocolOf(name, vectors, from) {
   const { protocol } = await from('generated/protocol.js')
   return {
