@@ -1,6 +1,7 @@
 //! Applies the rules. Each section reports its findings and claims the paths of the dump that it has judged.
 
 mod accept;
+mod codes;
 mod constraints;
 mod fields;
 mod frame;

@@ -1,7 +1,7 @@
 //! Judges operations.
 
 use super::frame::both;
-use super::{Judge, by, called};
+use super::{Judge, called};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
 use crate::rule::{Language, Rule, Wire};
@@ -9,10 +9,8 @@ use crate::rules::fields::{NAME_CHANGED, TYPE_CHANGED};
 use crate::rules::operations as rules;
 use crate::rules::process::DOCS;
 use crate::rules::results::{ACK_TIMING, ERROR_ADDED, ERROR_REMOVED};
-use fc_spec::model::{
-    CodeRange, Content, Direction, Exchange, Fact, Kind, Model, Operation, RangeUse, Side,
-};
-use std::collections::{BTreeMap, HashMap};
+use fc_spec::model::{Content, Direction, Exchange, Fact, Kind, Model, Operation, Side};
+use std::collections::HashMap;
 
 impl<'m> Judge<'m> {
     pub(super) fn operations(&mut self) {
@@ -297,83 +295,6 @@ impl<'m> Judge<'m> {
         self.claim(&["operations", &new.name, "sets_off"]);
     }
 
-    /// Judges the ranges of codes that a robot passes through.
-    fn ranges(&mut self) {
-        let (old, new) = (methods(self.old), methods(self.new));
-        let spans = |of: &BTreeMap<String, &CodeRange>| -> Vec<String> {
-            of.values().map(|it| span(it)).collect()
-        };
-        let values = [spans(&old), spans(&new)];
-        let is_lost = old.keys().any(|name| !new.contains_key(name));
-        if values[0] == values[1] && !is_lost {
-            return;
-        }
-        let values = values.map(|it| it.join(", "));
-        let subject = format!("codes.{}", RangeUse::PassThrough.name());
-        let finding = Finding::new(&rules::PASS_THROUGH, subject, both(&values));
-        let source = if is_lost {
-            rules::PASS_THROUGH.source
-        } else {
-            &[]
-        };
-        let all = |of: BTreeMap<String, &CodeRange>| -> Vec<CodeRange> {
-            of.into_values().cloned().collect()
-        };
-        let (old, new) = (all(old), all(new));
-        let mut finding = finding.source(source);
-        for range in &old {
-            finding = finding.was("range", span(range));
-        }
-        for range in &new {
-            finding = finding.is("range", span(range));
-        }
-        let is_in = |ranges: &[CodeRange], first: u16| ranges.iter().any(|it| it.first == first);
-        for range in old.iter().chain(&new) {
-            let first = range.first.to_string();
-            if is_in(&self.old.ranges, range.first) && is_in(&self.new.ranges, range.first) {
-                for key in ["to", "to_spelling", "use"] {
-                    self.claim(&["ranges", &first, key]);
-                }
-            } else {
-                self.claim(&["ranges", &first]);
-            }
-        }
-        self.report(finding);
-    }
-
-    fn code(&mut self, old: &'m Operation, new: &'m Operation) {
-        let name = new.name.as_str();
-        if old.code.value == new.code.value {
-            return;
-        }
-        let values = [old.code.spelling.as_str(), new.code.spelling.as_str()];
-        let finding = if old.code.value.is_none() {
-            // A robot without the code answers that it does not know it.
-            let asks = Senders {
-                app: old.sender == Side::App,
-                robot: false,
-            };
-            let source = asked_by(new, &rules::CODE_ASSIGNED);
-            let finding = Finding::new(&rules::CODE_ASSIGNED, name, values).source(source);
-            finding.on(asks, Wire::NewSender)
-        } else {
-            let is_sent = new.code.value.is_some();
-            let source = if is_sent {
-                &[]
-            } else {
-                rules::CODE_CHANGED.source
-            };
-            let finding = Finding::new(&rules::CODE_CHANGED, name, values).source(source);
-            finding.on(Senders::of(old.sender), Wire::of(true, is_sent))
-        };
-        self.report(finding.at(new.kind().name(), name));
-        self.claim(&["operations", name, "code"]);
-        self.claim(&["operations", name, "code_spelling"]);
-        if old.code.value.is_none() {
-            self.claim(&["operations", name, "code_state"]);
-        }
-    }
-
     /// Judges whether the facts of an operation are stated, inferred or open.
     fn facts(&mut self, old: &Operation, new: &Operation) {
         let name = new.name.as_str();
@@ -399,74 +320,6 @@ impl<'m> Judge<'m> {
         // The types of messages take their names from the operation. The rules for types judge their contents.
         for direction in Direction::ALL {
             self.claim(&["operations", name, direction.name(), "type"]);
-        }
-    }
-
-    /// Judges codes with a new meaning, removed entries of retired codes, and acknowledgement times.
-    fn codes(&mut self) {
-        let place = |it: &Operation| it.code.value.map(|code| (it.kind(), code));
-        let before: HashMap<_, &Operation> = self
-            .old
-            .operations
-            .iter()
-            .filter_map(|it| Some((place(it)?, it)))
-            .collect();
-        let retired = by(&self.old.retired, |it| it.code);
-        let names = by(&self.old.operations, |it| it.name.as_str());
-        let mut findings = Vec::new();
-        for operation in &self.new.operations {
-            let Some(code) = operation.code.value else {
-                continue;
-            };
-            let had = names
-                .get(operation.name.as_str())
-                .is_some_and(|it| it.code.value == Some(code));
-            let name = operation.name.as_str();
-            let spelling = operation.code.spelling.as_str();
-            let is_new = !had
-                && !before.get(&(operation.kind(), code)).is_some_and(|it| {
-                    self.account
-                        .renames
-                        .values()
-                        .any(|names| names.get(&it.name).is_some_and(|new| new == name))
-                });
-            let earlier = before
-                .get(&(operation.kind(), code))
-                .map(|it| it.name.as_str());
-            let earlier = earlier.or_else(|| retired.get(&code).map(|it| it.text.en.as_str()));
-            if let (true, Some(earlier)) = (is_new, earlier) {
-                let finding = Finding::new(&rules::CODE_REUSED, spelling, [earlier, name]);
-                let finding = finding.was("", earlier).was("retired code", spelling);
-                findings.push(
-                    finding
-                        .is(operation.kind().name(), name)
-                        .on(Senders::of(operation.sender), Wire::Both),
-                );
-            }
-        }
-        let kept = by(&self.new.retired, |it| it.code);
-        for tombstone in &self.old.retired {
-            if !kept.contains_key(&tombstone.code) {
-                let code = tombstone.code.to_string();
-                let spelling = tombstone.spelling.as_str();
-                let finding = Finding::new(
-                    &rules::TOMBSTONE_REMOVED,
-                    spelling,
-                    [&tombstone.text.en, ""],
-                );
-                findings.push(finding.was("retired code", spelling));
-                self.claim(&["retired_codes", &code]);
-            }
-        }
-        for finding in findings {
-            self.report(finding);
-        }
-        let (old, new) = (self.old.calls.ack, self.new.calls.ack);
-        if old != new {
-            let of = |it: &fc_spec::model::Ack| format!("{} ms × {}", it.timeout_ms, it.retries);
-            let finding = Finding::new(&ACK_TIMING, "ack", both(&[of(&old), of(&new)]));
-            self.report(finding.at("ack", "ack"));
-            self.claim(&["protocol", "calls", "ack"]);
         }
     }
 
@@ -511,7 +364,7 @@ impl<'m> Judge<'m> {
 
 /// Returns the languages in which a new operation breaks sources. A robot implements every command. A match covers all
 /// reports in Rust, C++ and TypeScript, and all streams in Rust.
-fn asked_by(operation: &Operation, rule: &Rule) -> Vec<Language> {
+pub(super) fn asked_by(operation: &Operation, rule: &Rule) -> Vec<Language> {
     if operation.code.value.is_none() {
         return Vec::new();
     }
@@ -530,27 +383,4 @@ fn unless(rule: &Rule, is_without_cpp: bool) -> Vec<Language> {
     source
         .filter(|it| !is_without_cpp || *it != Language::Cpp)
         .collect()
-}
-
-/// Returns the pass-through ranges by the names of their methods.
-fn methods(model: &Model) -> BTreeMap<String, &CodeRange> {
-    let ranges = model.ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
-    let mut named = BTreeMap::new();
-    for range in ranges {
-        let name = RangeUse::PassThrough.name().to_owned();
-        let is_taken = named.contains_key(&name) || model.operation(&name).is_some();
-        let name = if is_taken {
-            format!("{name}_{:04x}", range.first)
-        } else {
-            name
-        };
-        named.insert(name, range);
-    }
-    named
-}
-
-/// Formats a range.
-fn span(range: &CodeRange) -> String {
-    format!("{}–{}", range.first_spelling, range.last_spelling)
 }

@@ -12,6 +12,7 @@ mod dump;
 mod dump_check;
 mod entity;
 mod exchange_dump;
+mod frame;
 mod glossary;
 mod named;
 mod operation;
@@ -46,6 +47,7 @@ pub use condition::{Asked, Condition};
 pub use coordinates::{CoordinateSystem, Store};
 pub use dump::DumpError;
 pub use entity::Entity;
+pub use frame::{Encoding, Frame, FrameKind, FrameKinds, HeaderField, HeaderType};
 pub use glossary::Term;
 pub use operation::{
     Ack, Body, CallDefaults, Code, DeclaredError, Exchange, Group, Messages, Operation,
@@ -56,9 +58,8 @@ pub use process::{KeyPath, SetOff, Tie};
 pub(crate) use process::{enums, way};
 pub use projection::ProjectionError;
 pub use protocol::{
-    CodeRange, Conflict, Encoding, Envelope, EnvelopeField, Frame, FrameKind, FrameKinds,
-    HeaderField, HeaderType, Limits, MissingSection, Party, Port, Ports, Protocol, ResultCode,
-    RetiredCode, Table, Transport,
+    CodeRange, Conflict, Envelope, EnvelopeField, Limits, MissingSection, Party, Port, Ports,
+    Protocol, ResultCode, RetiredCode, Table, Transport,
 };
 pub use question::{Confirmation, Governed, Question};
 pub use reference::{StructRef, TypeId, TypeRef};

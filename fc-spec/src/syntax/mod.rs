@@ -6,6 +6,7 @@
 //!
 //! Line ends are LF or CRLF. A byte order mark at the start of a file is dropped, and spans do not count it.
 
+mod builder;
 mod comment;
 mod conflict;
 mod control;
@@ -27,8 +28,9 @@ pub(crate) mod width;
 
 pub(crate) use control::visible;
 pub use find::is_spec_file;
-pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style, Tree};
+pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style};
 pub use parse::parse;
 pub(crate) use parse::parse_parts;
 pub(crate) use quote::quoted;
 pub use read::{read_bytes, read_dir, read_files};
+pub use tree::Tree;

@@ -1,61 +1,18 @@
-//! The syntax tree, with the place and the spelling of every node.
+//! The nodes of a syntax tree, with the place and the spelling of each.
 
+use super::tree::{EMPTY, Form, Raw, Tree, widen};
 use super::{comment, slip};
 use crate::diagnostic::Diagnostic;
 use crate::model::Text;
-use crate::source::{FileId, Span};
+use crate::source::Span;
 use crate::text;
-use std::borrow::Cow;
 use std::fmt;
-use std::ops::Range;
-
-/// The tree of a file.
-///
-/// The nodes are in one list, ordered by their starts: a mapping or list before its content, a key before its value. A
-/// text that the file contains unchanged is not stored again.
-pub struct Tree<'s> {
-    file: FileId,
-    source: &'s str,
-    parts: Cow<'s, Parts>,
-}
-
-/// A tree without its source.
-#[derive(Clone)]
-struct Parts {
-    nodes: Vec<Raw>,
-    /// Texts with escapes, folded lines or indentation.
-    texts: Vec<Box<str>>,
-    comments: Vec<Range<usize>>,
-}
-
-/// A node in the list.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Raw {
-    start: u32,
-    end: u32,
-    form: Form,
-}
-
-/// The form of a node.
-#[derive(Clone, Copy, Debug)]
-enum Form {
-    Null,
-    /// The text is the whole span.
-    Plain,
-    /// The text is the span without its quotes.
-    Quoted,
-    /// The text is in `texts`, with this index.
-    Kept(Style, u32),
-    /// The number is that of the nodes in it, including itself.
-    Sequence(u32),
-    Mapping(u32),
-}
 
 /// A node of a tree.
 #[derive(Clone, Copy)]
 pub struct Node<'t> {
-    tree: &'t Tree<'t>,
-    at: usize,
+    pub(super) tree: &'t Tree<'t>,
+    pub(super) at: usize,
 }
 
 /// The kind of a node.
@@ -104,194 +61,13 @@ pub struct Entry<'t> {
 /// The items of a list.
 #[derive(Clone, Debug)]
 pub struct Items<'t> {
-    next: Node<'t>,
-    end: usize,
+    pub(super) next: Node<'t>,
+    pub(super) end: usize,
 }
 
 /// The entries of a mapping.
 #[derive(Clone, Debug)]
-pub struct Entries<'t>(Items<'t>);
-
-/// The number of bytes per node in a dense file.
-const BYTES_PER_NODE: usize = 8;
-
-/// A tree without nodes, for [`Node::nothing`].
-static EMPTY: Tree<'static> = Tree {
-    file: FileId(0),
-    source: "",
-    parts: Cow::Owned(Parts {
-        nodes: Vec::new(),
-        texts: Vec::new(),
-        comments: Vec::new(),
-    }),
-};
-
-impl<'s> Tree<'s> {
-    /// Creates an empty tree with room for the nodes of `bytes` bytes.
-    pub(super) fn new(file: FileId, source: &'s str, bytes: usize) -> Self {
-        Self {
-            file,
-            source,
-            parts: Cow::Owned(Parts {
-                nodes: Vec::with_capacity(bytes / BYTES_PER_NODE),
-                texts: Vec::new(),
-                comments: Vec::new(),
-            }),
-        }
-    }
-
-    /// Returns the outermost node.
-    #[must_use]
-    pub fn root(&self) -> Node<'_> {
-        self.node(0)
-    }
-
-    /// Returns the spans of all comments with their `#`, in their order.
-    pub fn comments(&self) -> impl Iterator<Item = Span> {
-        self.spans(&self.parts.comments)
-    }
-
-    pub(super) fn push_comment(&mut self, span: Span) {
-        self.parts.to_mut().comments.push(span.start..span.end);
-    }
-
-    fn spans(&self, ranges: &[Range<usize>]) -> impl Iterator<Item = Span> {
-        let spans = ranges.iter();
-        spans.map(|range| Span::new(self.file, range.start, range.end))
-    }
-
-    pub(super) fn node(&self, at: usize) -> Node<'_> {
-        Node { tree: self, at }
-    }
-
-    /// Returns the number of nodes, which is the index of the next one.
-    pub(super) fn len(&self) -> usize {
-        self.parts.nodes.len()
-    }
-
-    /// Returns all nodes, ordered by their starts.
-    pub(super) fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
-        (0..self.parts.nodes.len()).map(|at| self.node(at))
-    }
-
-    pub(super) fn push_null(&mut self, span: Span) {
-        self.push(span, Form::Null);
-    }
-
-    pub(super) fn push_scalar(&mut self, span: Span, style: Style, text: &str) {
-        let inside = match style {
-            Style::Plain => (span.start, span.end, Form::Plain),
-            Style::Quoted => (span.start + 1, span.end.saturating_sub(1), Form::Quoted),
-            Style::Block => (0, 0, Form::Null),
-        };
-        let (start, end, form) = inside;
-        let form = if style != Style::Block && self.source.get(start..end) == Some(text) {
-            form
-        } else {
-            self.parts.to_mut().texts.push(text.into());
-            Form::Kept(style, narrow(self.parts.texts.len() - 1))
-        };
-        self.push(span, form);
-    }
-
-    /// Adds a mapping or list with an unknown end.
-    pub(super) fn open(&mut self) {
-        self.parts.to_mut().nodes.push(Raw {
-            start: 0,
-            end: 0,
-            form: Form::Null,
-        });
-    }
-
-    /// Completes the opened node at `at`. All nodes after it become its content.
-    pub(super) fn close(&mut self, at: usize, span: Span, is_mapping: bool) {
-        let size = narrow(self.parts.nodes.len().saturating_sub(at));
-        if let Some(node) = self.parts.to_mut().nodes.get_mut(at) {
-            *node = Raw {
-                start: narrow(span.start),
-                end: narrow(span.end),
-                form: if is_mapping {
-                    Form::Mapping(size)
-                } else {
-                    Form::Sequence(size)
-                },
-            };
-        }
-    }
-
-    /// Returns the entries of the open mapping at `at`.
-    pub(super) fn open_entries(&self, at: usize) -> Entries<'_> {
-        Entries(Items {
-            next: self.node(at + 1),
-            end: self.parts.nodes.len(),
-        })
-    }
-
-    /// Removes entries of the open mapping at `at`, by the sorted indices of their keys.
-    pub(super) fn remove_entries(&mut self, at: usize, keys: &[usize]) {
-        let mut kept = Vec::new();
-        for entry in self.open_entries(at) {
-            if keys.binary_search(&entry.key.at).is_err() {
-                kept.push(entry.key.at..entry.value.behind());
-            }
-        }
-        let mut end = at + 1;
-        for range in kept {
-            let length = range.len();
-            self.parts.to_mut().nodes.copy_within(range, end);
-            end += length;
-        }
-        self.parts.to_mut().nodes.truncate(end);
-    }
-
-    /// Returns the same tree for another source, which is equal wherever the tree has a node.
-    pub(super) fn of_source(self, source: &str) -> Tree<'_> {
-        Tree {
-            source,
-            file: self.file,
-            parts: Cow::Owned(self.parts.into_owned()),
-        }
-    }
-
-    /// Returns the same tree for its source at another address.
-    pub(crate) fn over<'a>(&'a self, source: &'a str) -> Tree<'a> {
-        Tree {
-            source,
-            file: self.file,
-            parts: Cow::Borrowed(&self.parts),
-        }
-    }
-
-    /// Returns the tree without its source, so that both can be stored together.
-    pub(crate) fn bare(self) -> Tree<'static> {
-        self.of_source("")
-    }
-
-    /// Frees the unused capacity.
-    pub(super) fn finish(mut self) -> Self {
-        let parts = self.parts.to_mut();
-        parts.nodes.shrink_to_fit();
-        parts.comments.shrink_to_fit();
-        self
-    }
-
-    fn push(&mut self, span: Span, form: Form) {
-        self.parts.to_mut().nodes.push(Raw {
-            start: narrow(span.start),
-            end: narrow(span.end),
-            form,
-        });
-    }
-}
-
-/// Converts offsets and counts. They fit, because the size of a file is limited.
-fn narrow(number: usize) -> u32 {
-    u32::try_from(number).unwrap_or(u32::MAX)
-}
-
-fn widen(number: u32) -> usize {
-    usize::try_from(number).unwrap_or(usize::MAX)
-}
+pub struct Entries<'t>(pub(super) Items<'t>);
 
 impl<'t> Entry<'t> {
     /// Returns the text of the key.
@@ -328,7 +104,7 @@ impl<'t> Node<'t> {
     }
 
     /// Returns the index of the node after this one and its content.
-    fn behind(self) -> usize {
+    pub(super) fn behind(self) -> usize {
         match self.raw().form {
             Form::Sequence(size) | Form::Mapping(size) => self.at + widen(size).max(1),
             _ => self.at + 1,

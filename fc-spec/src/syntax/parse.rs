@@ -1,7 +1,7 @@
 //! Parses the text of a file into one tree.
 
-use super::node::Tree;
-use super::tree::{Builder, Outcome};
+use super::builder::{Builder, Outcome};
+use super::tree::Tree;
 use super::{conflict, control, limits, recover};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::source::{FileId, Span};

@@ -1,6 +1,7 @@
 //! Tabs that some parsers refuse.
 
-use super::node::{NodeKind, Style, Tree};
+use super::node::{NodeKind, Style};
+use super::tree::Tree;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::source::{FileId, Span};
 use crate::text;

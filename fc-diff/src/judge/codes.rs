@@ -1,0 +1,181 @@
+//! Judges command codes and ranges of codes.
+
+use super::frame::both;
+use super::operations::asked_by;
+use super::{Judge, by};
+use crate::finding::{Finding, Senders};
+use crate::rule::Wire;
+use crate::rules::operations as rules;
+use crate::rules::results::ACK_TIMING;
+use fc_spec::model::{CodeRange, Model, Operation, RangeUse, Side};
+use std::collections::{BTreeMap, HashMap};
+
+impl<'m> Judge<'m> {
+    /// Judges the ranges of codes that a robot passes through.
+    pub(super) fn ranges(&mut self) {
+        let (old, new) = (methods(self.old), methods(self.new));
+        let spans = |of: &BTreeMap<String, &CodeRange>| -> Vec<String> {
+            of.values().map(|it| span(it)).collect()
+        };
+        let values = [spans(&old), spans(&new)];
+        let is_lost = old.keys().any(|name| !new.contains_key(name));
+        if values[0] == values[1] && !is_lost {
+            return;
+        }
+        let values = values.map(|it| it.join(", "));
+        let subject = format!("codes.{}", RangeUse::PassThrough.name());
+        let finding = Finding::new(&rules::PASS_THROUGH, subject, both(&values));
+        let source = if is_lost {
+            rules::PASS_THROUGH.source
+        } else {
+            &[]
+        };
+        let all = |of: BTreeMap<String, &CodeRange>| -> Vec<CodeRange> {
+            of.into_values().cloned().collect()
+        };
+        let (old, new) = (all(old), all(new));
+        let mut finding = finding.source(source);
+        for range in &old {
+            finding = finding.was("range", span(range));
+        }
+        for range in &new {
+            finding = finding.is("range", span(range));
+        }
+        let is_in = |ranges: &[CodeRange], first: u16| ranges.iter().any(|it| it.first == first);
+        for range in old.iter().chain(&new) {
+            let first = range.first.to_string();
+            if is_in(&self.old.ranges, range.first) && is_in(&self.new.ranges, range.first) {
+                for key in ["to", "to_spelling", "use"] {
+                    self.claim(&["ranges", &first, key]);
+                }
+            } else {
+                self.claim(&["ranges", &first]);
+            }
+        }
+        self.report(finding);
+    }
+
+    pub(super) fn code(&mut self, old: &'m Operation, new: &'m Operation) {
+        let name = new.name.as_str();
+        if old.code.value == new.code.value {
+            return;
+        }
+        let values = [old.code.spelling.as_str(), new.code.spelling.as_str()];
+        let finding = if old.code.value.is_none() {
+            // A robot without the code answers that it does not know it.
+            let asks = Senders {
+                app: old.sender == Side::App,
+                robot: false,
+            };
+            let source = asked_by(new, &rules::CODE_ASSIGNED);
+            let finding = Finding::new(&rules::CODE_ASSIGNED, name, values).source(source);
+            finding.on(asks, Wire::NewSender)
+        } else {
+            let is_sent = new.code.value.is_some();
+            let source = if is_sent {
+                &[]
+            } else {
+                rules::CODE_CHANGED.source
+            };
+            let finding = Finding::new(&rules::CODE_CHANGED, name, values).source(source);
+            finding.on(Senders::of(old.sender), Wire::of(true, is_sent))
+        };
+        self.report(finding.at(new.kind().name(), name));
+        self.claim(&["operations", name, "code"]);
+        self.claim(&["operations", name, "code_spelling"]);
+        if old.code.value.is_none() {
+            self.claim(&["operations", name, "code_state"]);
+        }
+    }
+
+    /// Judges codes with a new meaning, removed entries of retired codes, and acknowledgement times.
+    pub(super) fn codes(&mut self) {
+        let place = |it: &Operation| it.code.value.map(|code| (it.kind(), code));
+        let before: HashMap<_, &Operation> = self
+            .old
+            .operations
+            .iter()
+            .filter_map(|it| Some((place(it)?, it)))
+            .collect();
+        let retired = by(&self.old.retired, |it| it.code);
+        let names = by(&self.old.operations, |it| it.name.as_str());
+        let mut findings = Vec::new();
+        for operation in &self.new.operations {
+            let Some(code) = operation.code.value else {
+                continue;
+            };
+            let had = names
+                .get(operation.name.as_str())
+                .is_some_and(|it| it.code.value == Some(code));
+            let name = operation.name.as_str();
+            let spelling = operation.code.spelling.as_str();
+            let is_new = !had
+                && !before.get(&(operation.kind(), code)).is_some_and(|it| {
+                    self.account
+                        .renames
+                        .values()
+                        .any(|names| names.get(&it.name).is_some_and(|new| new == name))
+                });
+            let earlier = before
+                .get(&(operation.kind(), code))
+                .map(|it| it.name.as_str());
+            let earlier = earlier.or_else(|| retired.get(&code).map(|it| it.text.en.as_str()));
+            if let (true, Some(earlier)) = (is_new, earlier) {
+                let finding = Finding::new(&rules::CODE_REUSED, spelling, [earlier, name]);
+                let finding = finding.was("", earlier).was("retired code", spelling);
+                findings.push(
+                    finding
+                        .is(operation.kind().name(), name)
+                        .on(Senders::of(operation.sender), Wire::Both),
+                );
+            }
+        }
+        let kept = by(&self.new.retired, |it| it.code);
+        for tombstone in &self.old.retired {
+            if !kept.contains_key(&tombstone.code) {
+                let code = tombstone.code.to_string();
+                let spelling = tombstone.spelling.as_str();
+                let finding = Finding::new(
+                    &rules::TOMBSTONE_REMOVED,
+                    spelling,
+                    [&tombstone.text.en, ""],
+                );
+                findings.push(finding.was("retired code", spelling));
+                self.claim(&["retired_codes", &code]);
+            }
+        }
+        for finding in findings {
+            self.report(finding);
+        }
+        let (old, new) = (self.old.calls.ack, self.new.calls.ack);
+        if old != new {
+            let of = |it: &fc_spec::model::Ack| format!("{} ms × {}", it.timeout_ms, it.retries);
+            let finding = Finding::new(&ACK_TIMING, "ack", both(&[of(&old), of(&new)]));
+            self.report(finding.at("ack", "ack"));
+            self.claim(&["protocol", "calls", "ack"]);
+        }
+    }
+}
+
+/// Returns the pass-through ranges by the names of their methods.
+fn methods(model: &Model) -> BTreeMap<String, &CodeRange> {
+    let ranges = model.ranges.iter();
+    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
+    let mut named = BTreeMap::new();
+    for range in ranges {
+        let name = RangeUse::PassThrough.name().to_owned();
+        let is_taken = named.contains_key(&name) || model.operation(&name).is_some();
+        let name = if is_taken {
+            format!("{name}_{:04x}", range.first)
+        } else {
+            name
+        };
+        named.insert(name, range);
+    }
+    named
+}
+
+/// Formats a range.
+fn span(range: &CodeRange) -> String {
+    format!("{}–{}", range.first_spelling, range.last_spelling)
+}
