@@ -1,8 +1,7 @@
 //! The assigned and the free codes of a spec, for people and as JSON.
 
-use crate::emit::markdown::{Lang, Word as _};
-use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode, Text};
-use fc_spec::text;
+use crate::emit::markdown::{Lang, Word as _, purpose};
+use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -244,21 +243,6 @@ impl Entry<'_> {
             ),
         }
     }
-}
-
-/// Returns the use of a range, and the groups that it names.
-pub(crate) fn purpose(range: &CodeRange, lang: Lang) -> String {
-    let usage = range.usage.word(lang);
-    if range.groups.is_empty() {
-        return usage.to_owned();
-    }
-    let groups = Text::listed(&range.groups);
-    lang.text(&text!(
-        "{usage}（{groups}）",
-        "{usage} ({groups})",
-        groups = groups
-    ))
-    .to_owned()
 }
 
 /// Returns a code as a spec writes it: `0x0A11`.

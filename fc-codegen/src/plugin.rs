@@ -1,8 +1,8 @@
 //! Targets that other programs generate.
 
 use crate::package::language as languages;
-use crate::product::Artifact;
-use crate::target::{TargetError, below};
+use crate::product::{Artifact, below};
+use crate::target_error::TargetError;
 use serde::Deserialize;
 use serde_yaml::Value as Options;
 use std::time::Duration;

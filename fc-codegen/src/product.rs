@@ -77,3 +77,11 @@ pub struct Artifact {
     /// The complete contents.
     pub contents: String,
 }
+
+/// Returns a path below a directory, which may be the root itself.
+pub(crate) fn below(directory: &str, path: &str) -> String {
+    match directory.trim_end_matches('/') {
+        "" | "." => path.to_owned(),
+        directory => format!("{directory}/{path}"),
+    }
+}

@@ -20,12 +20,12 @@
 //! - A plugin's `names: kotlin` requires that Kotlin can use the names of the spec.
 
 pub use crate::plugin::Plugin;
-pub use crate::target_error::TargetError;
+pub use crate::target_error::{FILE, TargetError};
 
 use crate::check::Requirements;
 use crate::package::language as languages;
 use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
-use crate::product::{Artifact, Product};
+use crate::product::{Artifact, Product, below};
 use crate::target_error::quoted;
 use fc_spec::model::{Lang, Languages, Model};
 use serde::Deserialize;
@@ -34,9 +34,6 @@ use serde_yaml::Value as Options;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Duration;
-
-/// The path of the file, relative to the project's root.
-pub const FILE: &str = "fc.yaml";
 
 /// The default name of the Rust package.
 const CRATE: &str = "fc_generated";
@@ -377,14 +374,6 @@ pub fn part<'m>(model: &'m Model, audience: Option<&str>) -> Result<Cow<'m, Mode
         Some(audience) => Cow::Owned(model.for_audience(audience)?),
         None => Cow::Borrowed(model),
     })
-}
-
-/// Returns a path below a directory, which may be the root itself.
-pub(crate) fn below(directory: &str, path: &str) -> String {
-    match directory.trim_end_matches('/') {
-        "" | "." => path.to_owned(),
-        directory => format!("{directory}/{path}"),
-    }
 }
 
 impl WrittenTarget {

@@ -2,8 +2,10 @@
 
 use crate::package::language::Language;
 use crate::product::Product;
-use crate::target::FILE;
 use fc_spec::model::{ProjectionError, Text};
+
+/// The path of the file, relative to the project's root.
+pub const FILE: &str = "fc.yaml";
 
 /// The reason why `fc.yaml` cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -3,7 +3,7 @@
 //! ```text
 //! old Model ─┐         ┌─ matching: pairs of operations, types and fields
 //!            ├──► diff ┼─ judge: the rules, by section; each claims the paths that it has judged
-//! new Model ─┘         └─ rest: all other differences between the two dumps
+//! new Model ─┘         └─ unjudged: all other differences between the two dumps
 //! ```
 //!
 //! Each message has a sender and a receiver. The app sends the request of a command and the acknowledgement of a
@@ -21,7 +21,6 @@ mod judge;
 mod matching;
 pub mod release;
 mod render;
-mod rest;
 mod rule;
 mod rules;
 mod sunset;

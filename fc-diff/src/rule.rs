@@ -1,6 +1,5 @@
 //! Rules: their codes, effects, mirrors and texts.
 
-use crate::rules;
 use fc_spec::model::Lang;
 use serde::{Serialize, Serializer};
 
@@ -122,27 +121,10 @@ pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
 }
 
 impl Rule {
-    /// Returns every rule by number. The rule for unjudged differences comes first.
-    pub fn all() -> impl Iterator<Item = &'static Self> {
-        let sections = rules::ALL.iter();
-        let mut rules: Vec<&Self> = sections.flat_map(|it| it.iter().copied()).collect();
-        rules.sort_by_key(|rule| rule.number);
-        rules.into_iter()
-    }
-
     /// Returns the code, such as `FC0701`.
     #[must_use]
     pub fn code(&self) -> String {
         format!("FC07{:02}", self.number)
-    }
-
-    /// Returns the rule with this code, in any case, with or without `FC` and leading zeros.
-    #[must_use]
-    pub fn parse(code: &str) -> Option<&'static Self> {
-        let upper = code.trim().to_ascii_uppercase();
-        let digits = upper.strip_prefix("FC").unwrap_or(&upper);
-        let padded = format!("FC{digits:0>4}");
-        Self::all().find(|rule| rule.code() == padded)
     }
 
     /// Returns the short title.

@@ -16,6 +16,7 @@ mod completion;
 mod definition;
 mod diagnostics;
 mod dispatch;
+mod event;
 mod formatting;
 mod hover;
 mod item;

@@ -2,6 +2,7 @@
 
 use crate::diagnostics::diagnostics;
 use crate::dispatch::{answer, capabilities, refusal, waits};
+use crate::event::Event;
 use crate::lens;
 use crate::project::Host;
 use crate::settings::Settings;
@@ -94,20 +95,6 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
     drop(events);
     server.worker.end();
     Ok(was_asked_to_end)
-}
-
-/// An event of the loop.
-pub(crate) enum Event {
-    /// A message of the client.
-    Message(Message),
-    /// The worker has checked a snapshot.
-    Checked(Arc<Snapshot>),
-    /// The worker has also compared the snapshot with the last release.
-    Compared(Arc<Snapshot>),
-    /// The worker has answered a request.
-    Answered(Response),
-    /// The client is gone, or the worker thread has ended.
-    End,
 }
 
 struct Server<'h> {

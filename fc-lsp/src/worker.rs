@@ -1,8 +1,8 @@
 //! The thread that checks snapshots, and answers the requests that need a check.
 
 use crate::dispatch::{answer, refusal};
+use crate::event::Event;
 use crate::queue::{Queue, Work};
-use crate::serve::Event;
 use crate::snapshot::Snapshot;
 use lsp_server::{ErrorCode, Request, RequestId};
 use std::panic::resume_unwind;

@@ -33,6 +33,7 @@ mod json_schema;
 mod load_property;
 mod names;
 mod output;
+mod rooms;
 mod target;
 mod vector_words;
 mod vocabulary;

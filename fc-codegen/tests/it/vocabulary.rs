@@ -108,7 +108,9 @@ fn words() -> Vec<&'static str> {
     let files = fs::read_dir(root().join(HOME)).expect("the vocabulary");
     let texts = files.map(|file| fs::read_to_string(file.unwrap().path()).unwrap());
     assert_eq!(
-        texts.map(|it| it.matches("\nwords! {").count()).sum::<usize>(),
+        texts
+            .map(|it| it.matches("\nwords! {").count())
+            .sum::<usize>(),
         sets.len(),
         "a set is not looked for"
     );

@@ -11,13 +11,13 @@ mod results;
 mod sources;
 mod states;
 mod types;
+mod unjudged;
 
 pub(crate) use process::unannounced;
 
 use crate::Packages;
 use crate::finding::Finding;
 use crate::matching::{self, Pair, TypePairs};
-use crate::rest;
 use fc_spec::model::{Model, Operation, TypeDef};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -50,8 +50,8 @@ struct Judge<'m> {
 pub(crate) fn judge(old: &Model, new: &Model, packages: Packages) -> Vec<Finding> {
     let mut judge = Judge::of(old, new, packages);
     judge.rules();
-    let rest = rest::rest(old, new, &judge.account);
-    judge.found.extend(rest);
+    let unjudged = unjudged::unjudged(old, new, &judge.account);
+    judge.found.extend(unjudged);
     judge.found
 }
 

@@ -22,6 +22,25 @@ pub(crate) const ALL: [&[&Rule]; 8] = [
     process::RULES,
 ];
 
+impl Rule {
+    /// Returns every rule by number. The rule for unjudged differences comes first.
+    pub fn all() -> impl Iterator<Item = &'static Self> {
+        let sections = ALL.iter();
+        let mut rules: Vec<&Self> = sections.flat_map(|it| it.iter().copied()).collect();
+        rules.sort_by_key(|rule| rule.number);
+        rules.into_iter()
+    }
+
+    /// Returns the rule with this code, in any case, with or without `FC` and leading zeros.
+    #[must_use]
+    pub fn parse(code: &str) -> Option<&'static Self> {
+        let upper = code.trim().to_ascii_uppercase();
+        let digits = upper.strip_prefix("FC").unwrap_or(&upper);
+        let padded = format!("FC{digits:0>4}");
+        Self::all().find(|rule| rule.code() == padded)
+    }
+}
+
 /// All languages.
 const EVERY: &[Language] = &[
     Language::Rust,

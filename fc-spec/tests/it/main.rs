@@ -32,7 +32,6 @@ mod load;
 mod merge;
 mod partial;
 mod patterns;
-mod rooms;
 mod schema;
 mod schema_misfits;
 mod settle;

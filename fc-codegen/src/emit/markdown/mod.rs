@@ -29,7 +29,7 @@ pub(crate) use book::Book;
 pub use fc_spec::model::Lang;
 pub(crate) use links::Page;
 pub(crate) use tabs::TabsOf;
-pub(crate) use words::{Word, confirmed};
+pub(crate) use words::{Word, confirmed, purpose};
 
 use crate::product::{Artifact, Product};
 use crate::target::Targets;

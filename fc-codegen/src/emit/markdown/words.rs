@@ -2,10 +2,11 @@
 
 use fc_spec::model::Lang;
 use fc_spec::model::{
-    AnswerKind, BodyState, ByteOrder, Confirmation, Direction, Effect, EncodingRole, EnvelopeRole,
-    HeaderRole, Impact, JsonRule, Kind, KindRole, Number, PortRole, Quirk, RangeUse, ResultRole,
-    Severity, Side, Type, TypeRef, Value, WireForm,
+    AnswerKind, BodyState, ByteOrder, CodeRange, Confirmation, Direction, Effect, EncodingRole,
+    EnvelopeRole, HeaderRole, Impact, JsonRule, Kind, KindRole, Number, PortRole, Quirk, RangeUse,
+    ResultRole, Severity, Side, Text, Type, TypeRef, Value, WireForm,
 };
+use fc_spec::text;
 
 /// The word for a value of the model on a page.
 pub(crate) trait Word {
@@ -220,4 +221,19 @@ pub(super) fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String
         (None, Some(max)) => Some(format!("≤ {}", number(max))),
         (None, None) => None,
     }
+}
+
+/// Returns the use of a range, and the groups that it names.
+pub(crate) fn purpose(range: &CodeRange, lang: Lang) -> String {
+    let usage = range.usage.word(lang);
+    if range.groups.is_empty() {
+        return usage.to_owned();
+    }
+    let groups = Text::listed(&range.groups);
+    lang.text(&text!(
+        "{usage}（{groups}）",
+        "{usage} ({groups})",
+        groups = groups
+    ))
+    .to_owned()
 }

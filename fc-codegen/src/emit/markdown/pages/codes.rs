@@ -1,8 +1,8 @@
 //! The codes of operations.
 
 use super::shared::{AnswerView, Desk, OperationEntry};
-use crate::codes::purpose;
 use crate::emit::markdown::links::{Anchor, Page};
+use crate::emit::markdown::purpose;
 use fc_spec::model::{CodeRange, Declared, Subject};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Reports all differences between two dumps that no rule has judged.
 
+use super::{Account, Path};
 use crate::finding::Finding;
-use crate::judge::{Account, Path};
 use crate::rules::UNJUDGED;
 use crate::rules::process::DOCS;
 use fc_spec::model::{Dump, Model};
@@ -27,7 +27,7 @@ const OF_QUESTIONS: &str = "questions";
 const SHOWN: usize = 60;
 
 /// Returns every difference that no claimed path covers.
-pub(crate) fn rest(old: &Model, new: &Model, account: &Account) -> Vec<Finding> {
+pub(super) fn unjudged(old: &Model, new: &Model, account: &Account) -> Vec<Finding> {
     let dump = |model: &Model| serde_json::to_value(Dump::from(model)).unwrap_or_default();
     let mut walk = Walk {
         account,

@@ -1,0 +1,261 @@
+//! The modules of a crate depend on each other in one direction.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A crate, and its modules, lowest first. A module may use earlier ones.
+struct Crate {
+    name: &'static str,
+    rooms: &'static [&'static str],
+    /// Uses of a later module. This list may only become shorter.
+    upwards: &'static [(&'static str, &'static str)],
+}
+
+const CRATES: &[Crate] = &[
+    Crate {
+        name: "fc-spec",
+        rooms: &[
+            "names",
+            "vocabulary",
+            "source",
+            "model",
+            "diagnostic",
+            "syntax",
+            "language",
+            "load",
+            "index",
+            "format",
+            "lint",
+            "fix",
+            "merge",
+            "scaffold",
+            "rename",
+            "retire",
+            "revision",
+        ],
+        upwards: &[
+            // An answer of the owner is written in the layout of the file.
+            ("load", "format"),
+        ],
+    },
+    Crate {
+        name: "fc-codegen",
+        rooms: &[
+            "product",
+            "yaml_error",
+            "package",
+            "check",
+            "target_error",
+            "plugin",
+            "target",
+            "emit",
+            "codes",
+            "output",
+            "questions",
+            "inspect",
+        ],
+        upwards: &[
+            // Comments link to the pages of the targets.
+            ("package", "target"),
+        ],
+    },
+    Crate {
+        name: "fc-runtime",
+        rooms: &[
+            "digest",
+            "message",
+            "json",
+            "preconditions",
+            "operation",
+            "envelope",
+            "wire",
+            "protocol",
+            "frame",
+            "content",
+            "condition",
+            "session",
+            "progress",
+            "refusal",
+            "open_message",
+            "clock",
+            "connection_settings",
+            "link",
+            "rate",
+            "stream",
+            "raw",
+            "sync",
+            "log_limiter",
+            "metrics",
+            "trace",
+            "client",
+            "blocking",
+            "server",
+        ],
+        upwards: &[
+            // The trait of messages names their reader.
+            ("message", "json"),
+        ],
+    },
+    Crate {
+        name: "fc-diff",
+        rooms: &[
+            "rule",
+            "rules",
+            "finding",
+            "release",
+            "changelog",
+            "matching",
+            "sunset",
+            "judge",
+            "version",
+            "history",
+            "waive",
+            "render",
+        ],
+        upwards: &[],
+    },
+    Crate {
+        name: "fc-reflect",
+        rooms: &[
+            "sample",
+            "tree",
+            "write",
+            "message",
+            "plan",
+            "constraint",
+            "limits",
+            "read",
+            "id",
+            "error",
+            "frame",
+        ],
+        upwards: &[],
+    },
+    Crate {
+        name: "fc-lsp",
+        rooms: &[
+            "project",
+            "position",
+            "uri",
+            "settings",
+            "snapshot",
+            "item",
+            "references",
+            "diagnostics",
+            "rename",
+            "actions",
+            "lens",
+            "workspace",
+            "symbols",
+            "language",
+            "completion",
+            "definition",
+            "formatting",
+            "hover",
+            "dispatch",
+            "event",
+            "queue",
+            "worker",
+            "serve",
+        ],
+        upwards: &[],
+    },
+    Crate {
+        name: "fc-derive",
+        rooms: &[
+            "errors",
+            "attr",
+            "span",
+            "codes",
+            "item",
+            "reports",
+            "id",
+            "process",
+            "new",
+            "json",
+            "one_of",
+            "declared",
+            "operation",
+            "redacted",
+            "envelope",
+            "defaults",
+            "header",
+            "dispatch",
+            "message",
+            "open_enum",
+        ],
+        upwards: &[],
+    },
+];
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder of sources");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths
+        .flat_map(|path| {
+            if path.is_dir() {
+                sources(&path)
+            } else {
+                vec![path]
+            }
+        })
+        .collect()
+}
+
+/// Names of the modules of a crate that a source file uses, outside of comments and tests.
+fn used(text: &str) -> BTreeSet<&str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let lines = code
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
+    let uses = lines.flat_map(|line| line.split("crate::").skip(1));
+    uses.map(|path| {
+        path.split(|c: char| !c.is_alphanumeric() && c != '_')
+            .next()
+            .unwrap_or_default()
+    })
+    .collect()
+}
+
+/// The uses of a later module in a crate.
+fn upwards(of: &Crate) -> BTreeSet<(&'static str, &'static str)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the root")
+        .join(of.name)
+        .join("src");
+    let rank = |name: &str| of.rooms.iter().position(|room| *room == name);
+    let mut upwards = BTreeSet::new();
+    let mut seen = BTreeSet::new();
+    for path in sources(&root) {
+        let relative = path.strip_prefix(&root).expect("a path below src");
+        let first = relative.iter().next().expect("a name").to_string_lossy();
+        let module = first.trim_end_matches(".rs");
+        if ["lib", "tests"].contains(&module) {
+            continue;
+        }
+        let own = rank(module)
+            .unwrap_or_else(|| panic!("`{module}` of {} has no place in CRATES", of.name));
+        seen.insert(own);
+        let text = fs::read_to_string(&path).expect("a source file");
+        let later = used(&text).into_iter().filter_map(rank);
+        let later = later.filter(|other| *other > own);
+        upwards.extend(later.map(|other| (of.rooms[own], of.rooms[other])));
+    }
+    assert_eq!(
+        seen.len(),
+        of.rooms.len(),
+        "a module of {} is gone",
+        of.name
+    );
+    upwards
+}
+
+#[test]
+fn modules_use_only_earlier_ones() {
+    for of in CRATES {
+        let known = of.upwards.iter().copied().collect();
+        assert_eq!(upwards(of), known, "in {}", of.name);
+    }
+}
