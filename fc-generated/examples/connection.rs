@@ -94,7 +94,10 @@ async fn once(client: &Client) -> Result<(), CallError> {
         repeat: Some(false),
     };
     let request = GetRechargeStatusRequest::default();
-    client.connection().call_with(&request, options).await?;
+    client
+        .get_recharge_status(&request)
+        .with_options(options)
+        .await?;
     Ok(())
 }
 // #endregion repeat

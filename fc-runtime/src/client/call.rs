@@ -284,6 +284,11 @@ impl<'a, P: Protocol, C: Command> Call<'a, P, C> {
         }
     }
 
+    /// Sets the options of this call: its timeout, and whether it is sent again after a loss.
+    pub fn with_options(self, options: CallOptions) -> Self {
+        Self::new(self.flight.inner, self.request, options)
+    }
+
     /// Waits for the response, and then follows the reports `R` that the command sets off, until a report with a final
     /// state or a failure.
     ///

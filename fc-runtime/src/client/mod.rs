@@ -154,20 +154,10 @@ impl<P: Protocol> Connection<P> {
 
     /// Calls a command and waits for its response.
     ///
-    /// The future resolves to a [`CallError`] if there is no such response in time.
+    /// The future resolves to a [`CallError`] if there is no such response in time. [`Call::with_options`] sets the
+    /// options of this call.
     pub fn call<'a, C: Command>(&'a self, request: &'a C) -> Call<'a, P, C> {
-        self.call_with(request, CallOptions::default())
-    }
-
-    /// Calls a command with these options.
-    ///
-    /// The future resolves to a [`CallError`] if there is no such response in time.
-    pub fn call_with<'a, C: Command>(
-        &'a self,
-        request: &'a C,
-        options: CallOptions,
-    ) -> Call<'a, P, C> {
-        Call::new(&self.handle, request, options)
+        Call::new(&self.handle, request, CallOptions::default())
     }
 
     /// Calls `code` with a JSON object of the request's keys. The envelope is added, unless `body` contains one. The

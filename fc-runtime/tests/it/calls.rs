@@ -396,7 +396,7 @@ async fn a_call_without_an_answer_times_out() {
         repeat: None,
     };
     let (default, request) = (echo("default"), echo("own"));
-    let (default, own) = tokio::join!(app.call(&default), app.call_with(&request, options));
+    let (default, own) = tokio::join!(app.call(&default), app.call(&request).with_options(options));
     assert_eq!(
         (default, own),
         (Err(CallError::Timeout), Err(CallError::Timeout))

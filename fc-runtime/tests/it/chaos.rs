@@ -98,7 +98,7 @@ async fn call(
     };
     match timeout(
         Duration::from_millis(patience),
-        app.call_with(&request, options),
+        app.call(&request).with_options(options),
     )
     .await
     {
@@ -205,7 +205,10 @@ async fn play(steps: Vec<Step>, lose: bool) {
             repeat: None,
         };
         for _ in 0..9 {
-            assert_eq!(app.call_with(&again, once).await, Err(CallError::Timeout));
+            assert_eq!(
+                app.call(&again).with_options(once).await,
+                Err(CallError::Timeout)
+            );
         }
     }
     app.close();

@@ -229,7 +229,11 @@ async fn a_lone_call_ends_at_its_own_deadline() {
     for seconds in [50, 1, 2, 1, 60, 1] {
         let request = echo("x");
         let at = Instant::now();
-        let error = app.call_with(&request, timeout(seconds)).await.unwrap_err();
+        let error = app
+            .call(&request)
+            .with_options(timeout(seconds))
+            .await
+            .unwrap_err();
         assert_eq!(error, CallError::Timeout);
         assert_eq!(at.elapsed().as_secs(), seconds);
         // The unanswered call.

@@ -93,8 +93,8 @@ async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
         app.call(&read),
         app.call(&motion),
         app.call(&unknown),
-        app.call_with(&forced, again(true)),
-        app.call_with(&held, again(false)),
+        app.call(&forced).with_options(again(true)),
+        app.call(&held).with_options(again(false)),
         script
     );
     assert_eq!(read.unwrap().text, "x");
@@ -176,9 +176,9 @@ async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
         }
     };
     let calls = async {
-        tokio::join!(app.call_with(&first, held), async {
+        tokio::join!(app.call(&first).with_options(held), async {
             turns.await;
-            tokio::join!(app.call_with(&second, held), app.call(&go))
+            tokio::join!(app.call(&second).with_options(held), app.call(&go))
         })
     };
     let lost = async {

@@ -206,7 +206,7 @@ async fn a_call_that_is_dropped_is_counted_once() {
     let request = Echo { text: "x".into() };
     let options = CallOptions::default();
     tokio::select! {
-        _ = app.call_with(&request, options) => panic!("answered"),
+        _ = app.call(&request).with_options(options) => panic!("answered"),
         _ = robot.recv() => {}
     }
     let dropped = "fc_client_calls_total{operation=\"echo\",result=\"dropped\"}";

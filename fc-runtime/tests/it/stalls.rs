@@ -47,7 +47,7 @@ async fn a_frame_that_stops_loses_its_connection_alone() {
     let whole = frame(report(Moved::CODE, 1), &[b'x'; 4000]);
     for received in [1, ToyHeader::LEN, 1000] {
         let request = echo();
-        let call = app.call_with(&request, patient());
+        let call = app.call(&request).with_options(patient());
         let (end, ()) = tokio::join!(call, async {
             robot.recv().await.unwrap();
             let start = Instant::now();
@@ -79,7 +79,7 @@ async fn a_frame_that_goes_on_is_waited_for() {
     let request = Echo {
         text: "x".repeat(1000),
     };
-    let (end, ()) = tokio::join!(app.call_with(&request, patient()), async {
+    let (end, ()) = tokio::join!(app.call(&request).with_options(patient()), async {
         let (id, _) = robot.recv().await.unwrap();
         let text = format!(r#"{{"result":7,"text":"{}"}}"#, "y".repeat(400_000));
         let answer = frame(answer_to(id), text.as_bytes());
@@ -122,7 +122,7 @@ async fn a_robot_that_does_not_read_is_left() {
         text: "x".repeat(1_000_000),
     };
     let start = Instant::now();
-    let end = app.call_with(&request, patient()).await;
+    let end = app.call(&request).with_options(patient()).await;
     assert_eq!(end, Err(CallError::Lost(Loss::Unread)));
     assert_eq!(start.elapsed(), STALL);
     drop(robot);
@@ -142,7 +142,7 @@ async fn a_robot_that_reads_slowly_is_waited_for() {
             read += stream.read(&mut piece).await.unwrap();
         }
     };
-    let call = app.call_with(&request, patient());
+    let call = app.call(&request).with_options(patient());
     tokio::select! {
         end = call => panic!("{end:?}"),
         () = reading => {}

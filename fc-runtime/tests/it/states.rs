@@ -236,7 +236,7 @@ async fn a_call_says_why_there_was_no_first_connection() {
             repeat: None,
         };
         let start = Instant::now();
-        let call = app.call_with(&Go { metres: 1 }, options).await;
+        let call = app.call(&Go { metres: 1 }).with_options(options).await;
         assert_eq!(call, Err(CallError::NotConnected(why)));
         assert_eq!(start.elapsed(), Duration::from_secs(2));
         app.close();

@@ -262,9 +262,9 @@ pub async fn call(app: Connection<Toy>, model: Shared, number: u32, mut random: 
     lock(&model).calls.insert(number, known);
     let calling = async {
         match effect {
-            "read" => app.call_with(&Look { number }, options).await,
-            "config" => app.call_with(&Tune { number }, options).await,
-            _ => app.call_with(&Drive { number }, options).await,
+            "read" => app.call(&Look { number }).with_options(options).await,
+            "config" => app.call(&Tune { number }).with_options(options).await,
+            _ => app.call(&Drive { number }).with_options(options).await,
         }
     };
     let end = match timeout(patience, calling).await {

@@ -128,10 +128,16 @@ impl App {
         let call = tokio::spawn(async move {
             let result = if reads {
                 let text = number.to_string();
-                app.call_with(&Echo { text }, options).await.map(drop)
+                app.call(&Echo { text })
+                    .with_options(options)
+                    .await
+                    .map(drop)
             } else {
                 let metres = i32::try_from(number).unwrap();
-                app.call_with(&Go { metres }, options).await.map(drop)
+                app.call(&Go { metres })
+                    .with_options(options)
+                    .await
+                    .map(drop)
             };
             let with = result.as_ref().err().map_or("success", CallError::name);
             let _ = results.send((number, with));
