@@ -274,7 +274,7 @@ impl<'m> Judge<'m> {
             let source: &[Language] = match followed.as_slice() {
                 _ if !follow.contains(&report) => &[],
                 // The method returns a call that can be followed.
-                [] => &[Language::Rust, Language::Python, Language::Typescript],
+                [] => &[Language::Python, Language::Typescript],
                 // The names of the methods get the name of the report.
                 [_] => &[Language::Kotlin, Language::JvmBinary, Language::Python],
                 _ => &[],

@@ -1,7 +1,7 @@
 //! Operations.
 
 use super::{BASE, EVERY, rules};
-use crate::rule::Language::{Cpp, Kotlin, Python, Rust, Typescript};
+use crate::rule::Language::{Cpp, JvmBinary, Kotlin, Python, Rust, Typescript};
 use crate::rule::{Rule, Wire};
 
 rules! {
@@ -173,13 +173,18 @@ rules! {
     SET_OFF_ADDED {
         number: 78,
         name: "set-off-added",
-        source: EVERY,
+        source: &[
+            Kotlin,
+            JvmBinary,
+            Python,
+            Typescript,
+        ],
         mirror: &[79],
         title: ["a command sets off another report", "指令新增引起的上报"],
         text: [
             "Programs can follow the report. After a first report, the names of the methods in Kotlin and Python include the \
-             report. After none, the return type in Rust, Python and TypeScript changes.",
-            "程序可以跟踪这种上报。原来有一种上报时，Kotlin 和 Python 的方法名会加上上报名。原来没有时，Rust、Python 和 TypeScript 的返回类型会变。",
+             report. After none, the return type in Python and TypeScript changes.",
+            "程序可以跟踪这种上报。原来有一种上报时，Kotlin 和 Python 的方法名会加上上报名。原来没有时，Python 和 TypeScript 的返回类型会变。",
         ],
     }
     SET_OFF_REMOVED {

@@ -248,11 +248,11 @@ impl crate::Client {
     /// - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
     /// - 文档：`docs-site/reference/commands/list_iot_devices.md`
     /// - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
-    pub async fn list_iot_devices(
-        &self,
-        request: &ListIotDevicesRequest,
-    ) -> Result<ListIotDevicesResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn list_iot_devices<'a>(
+        &'a self,
+        request: &'a ListIotDevicesRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, ListIotDevicesRequest> {
+        self.connection.call(request)
     }
 
     /// 获取楼层信息
@@ -268,11 +268,11 @@ impl crate::Client {
     /// - Spec: `commands.get_floors` in `spec/commands/building.yaml`
     /// - 文档：`docs-site/reference/commands/get_floors.md`
     /// - Docs: `docs-site/en/reference/commands/get_floors.md`
-    pub async fn get_floors(
-        &self,
-        request: &GetFloorsRequest,
-    ) -> Result<GetFloorsResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_floors<'a>(
+        &'a self,
+        request: &'a GetFloorsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetFloorsRequest> {
+        self.connection.call(request)
     }
 }
 

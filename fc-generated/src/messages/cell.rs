@@ -505,11 +505,11 @@ impl crate::Client {
     /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
     /// - 文档：`docs-site/reference/commands/get_cell_config.md`
     /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
-    pub async fn get_cell_config(
-        &self,
-        request: &GetCellConfigRequest,
-    ) -> Result<GetCellConfigResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_cell_config<'a>(
+        &'a self,
+        request: &'a GetCellConfigRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetCellConfigRequest> {
+        self.connection.call(request)
     }
 
     /// 设置机器人格口配置
@@ -535,11 +535,11 @@ impl crate::Client {
     /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
     /// - 文档：`docs-site/reference/commands/set_cell_config.md`
     /// - Docs: `docs-site/en/reference/commands/set_cell_config.md`
-    pub async fn set_cell_config(
-        &self,
-        request: &SetCellConfigRequest,
-    ) -> Result<SetCellConfigResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn set_cell_config<'a>(
+        &'a self,
+        request: &'a SetCellConfigRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, SetCellConfigRequest> {
+        self.connection.call(request)
     }
 }
 

@@ -141,11 +141,11 @@ impl crate::Client {
     /// - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
     /// - 文档：`docs-site/reference/commands/check_condition_0333.md`
     /// - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
-    pub async fn check_condition_0333(
-        &self,
-        request: &CheckCondition0333Request,
-    ) -> Result<CheckCondition0333Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn check_condition_0333<'a>(
+        &'a self,
+        request: &'a CheckCondition0333Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, CheckCondition0333Request> {
+        self.connection.call(request)
     }
 }
 

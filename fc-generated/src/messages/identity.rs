@@ -156,11 +156,11 @@ impl crate::Client {
     /// - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
     /// - 文档：`docs-site/reference/commands/get_robot_sn.md`
     /// - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
-    pub async fn get_robot_sn(
-        &self,
-        request: &GetRobotSnRequest,
-    ) -> Result<GetRobotSnResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_robot_sn<'a>(
+        &'a self,
+        request: &'a GetRobotSnRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetRobotSnRequest> {
+        self.connection.call(request)
     }
 
     /// 获取固件版本
@@ -179,11 +179,11 @@ impl crate::Client {
     /// - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     /// - 文档：`docs-site/reference/commands/get_firmware_versions.md`
     /// - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
-    pub async fn get_firmware_versions(
-        &self,
-        request: &GetFirmwareVersionsRequest,
-    ) -> Result<GetFirmwareVersionsResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_firmware_versions<'a>(
+        &'a self,
+        request: &'a GetFirmwareVersionsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetFirmwareVersionsRequest> {
+        self.connection.call(request)
     }
 }
 

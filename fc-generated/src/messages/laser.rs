@@ -78,11 +78,11 @@ impl crate::Client {
     /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
     /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
     /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
-    pub async fn get_laser_scan(
-        &self,
-        request: &GetLaserScanRequest,
-    ) -> Result<GetLaserScanResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_laser_scan<'a>(
+        &'a self,
+        request: &'a GetLaserScanRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetLaserScanRequest> {
+        self.connection.call(request)
     }
 }
 

@@ -897,11 +897,11 @@ impl crate::Client {
     /// - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
     /// - 文档：`docs-site/reference/commands/get_map_image.md`
     /// - Docs: `docs-site/en/reference/commands/get_map_image.md`
-    pub async fn get_map_image(
-        &self,
-        request: &GetMapImageRequest,
-    ) -> Result<GetMapImageResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_map_image<'a>(
+        &'a self,
+        request: &'a GetMapImageRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetMapImageRequest> {
+        self.connection.call(request)
     }
 
     /// 获取地图列表
@@ -916,11 +916,11 @@ impl crate::Client {
     /// - Spec: `commands.list_maps` in `spec/commands/map.yaml`
     /// - 文档：`docs-site/reference/commands/list_maps.md`
     /// - Docs: `docs-site/en/reference/commands/list_maps.md`
-    pub async fn list_maps(
-        &self,
-        request: &ListMapsRequest,
-    ) -> Result<ListMapsResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn list_maps<'a>(
+        &'a self,
+        request: &'a ListMapsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, ListMapsRequest> {
+        self.connection.call(request)
     }
 
     /// 获取地图信息
@@ -931,11 +931,11 @@ impl crate::Client {
     /// - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
     /// - 文档：`docs-site/reference/commands/get_map_info.md`
     /// - Docs: `docs-site/en/reference/commands/get_map_info.md`
-    pub async fn get_map_info(
-        &self,
-        request: &GetMapInfoRequest,
-    ) -> Result<GetMapInfoResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_map_info<'a>(
+        &'a self,
+        request: &'a GetMapInfoRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetMapInfoRequest> {
+        self.connection.call(request)
     }
 
     /// 保存地图
@@ -950,11 +950,11 @@ impl crate::Client {
     /// - Spec: `commands.save_map` in `spec/commands/map.yaml`
     /// - 文档：`docs-site/reference/commands/save_map.md`
     /// - Docs: `docs-site/en/reference/commands/save_map.md`
-    pub async fn save_map(
-        &self,
-        request: &SaveMapRequest,
-    ) -> Result<SaveMapResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn save_map<'a>(
+        &'a self,
+        request: &'a SaveMapRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, SaveMapRequest> {
+        self.connection.call(request)
     }
 
     /// 下载地图
@@ -1037,11 +1037,11 @@ impl crate::Client {
     /// - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
     /// - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
     /// - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
-    pub async fn get_map_sync_progress(
-        &self,
-        request: &GetMapSyncProgressRequest,
-    ) -> Result<GetMapSyncProgressResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_map_sync_progress<'a>(
+        &'a self,
+        request: &'a GetMapSyncProgressRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetMapSyncProgressRequest> {
+        self.connection.call(request)
     }
 }
 

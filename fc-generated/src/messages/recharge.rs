@@ -395,11 +395,11 @@ impl crate::Client {
     /// - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
     /// - 文档：`docs-site/reference/commands/cancel_recharge.md`
     /// - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
-    pub async fn cancel_recharge(
-        &self,
-        request: &CancelRechargeRequest,
-    ) -> Result<CancelRechargeResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn cancel_recharge<'a>(
+        &'a self,
+        request: &'a CancelRechargeRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, CancelRechargeRequest> {
+        self.connection.call(request)
     }
 
     /// 获取回充状态
@@ -415,11 +415,11 @@ impl crate::Client {
     /// - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
     /// - 文档：`docs-site/reference/commands/get_recharge_status.md`
     /// - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
-    pub async fn get_recharge_status(
-        &self,
-        request: &GetRechargeStatusRequest,
-    ) -> Result<GetRechargeStatusResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_recharge_status<'a>(
+        &'a self,
+        request: &'a GetRechargeStatusRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetRechargeStatusRequest> {
+        self.connection.call(request)
     }
 }
 

@@ -327,11 +327,11 @@ impl crate::Client {
     /// - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
     /// - 文档：`docs-site/reference/commands/switch_0a08.md`
     /// - Docs: `docs-site/en/reference/commands/switch_0a08.md`
-    pub async fn switch_0a08(
-        &self,
-        request: &Switch0a08Request,
-    ) -> Result<Switch0a08Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn switch_0a08<'a>(
+        &'a self,
+        request: &'a Switch0a08Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, Switch0a08Request> {
+        self.connection.call(request)
     }
 
     /// 语音提醒的开关
@@ -354,11 +354,11 @@ impl crate::Client {
     #[deprecated(
         note = "The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code."
     )]
-    pub async fn set_voice_reminder(
-        &self,
-        request: &SetVoiceReminderRequest,
-    ) -> Result<SetVoiceReminderResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn set_voice_reminder<'a>(
+        &'a self,
+        request: &'a SetVoiceReminderRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, SetVoiceReminderRequest> {
+        self.connection.call(request)
     }
 
     /// 切换业务环境
@@ -373,11 +373,11 @@ impl crate::Client {
     /// - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
     /// - 文档：`docs-site/reference/commands/switch_environment.md`
     /// - Docs: `docs-site/en/reference/commands/switch_environment.md`
-    pub async fn switch_environment(
-        &self,
-        request: &SwitchEnvironmentRequest,
-    ) -> Result<SwitchEnvironmentResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn switch_environment<'a>(
+        &'a self,
+        request: &'a SwitchEnvironmentRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, SwitchEnvironmentRequest> {
+        self.connection.call(request)
     }
 }
 

@@ -277,11 +277,11 @@ impl crate::Client {
     /// - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
     /// - 文档：`docs-site/reference/commands/set_standby_position.md`
     /// - Docs: `docs-site/en/reference/commands/set_standby_position.md`
-    pub async fn set_standby_position(
-        &self,
-        request: &SetStandbyPositionRequest,
-    ) -> Result<SetStandbyPositionResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn set_standby_position<'a>(
+        &'a self,
+        request: &'a SetStandbyPositionRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, SetStandbyPositionRequest> {
+        self.connection.call(request)
     }
 
     /// 获取机器人待命时的位置
@@ -292,11 +292,11 @@ impl crate::Client {
     /// - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
     /// - 文档：`docs-site/reference/commands/get_standby_position.md`
     /// - Docs: `docs-site/en/reference/commands/get_standby_position.md`
-    pub async fn get_standby_position(
-        &self,
-        request: &GetStandbyPositionRequest,
-    ) -> Result<GetStandbyPositionResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_standby_position<'a>(
+        &'a self,
+        request: &'a GetStandbyPositionRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetStandbyPositionRequest> {
+        self.connection.call(request)
     }
 
     /// 设置点位（0x0313，用途不详）
@@ -307,11 +307,11 @@ impl crate::Client {
     /// - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
     /// - 文档：`docs-site/reference/commands/set_positions_0313.md`
     /// - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
-    pub async fn set_positions_0313(
-        &self,
-        request: &SetPositions0313Request,
-    ) -> Result<SetPositions0313Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn set_positions_0313<'a>(
+        &'a self,
+        request: &'a SetPositions0313Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, SetPositions0313Request> {
+        self.connection.call(request)
     }
 
     /// 获取点位（0x0314，用途不详）
@@ -327,11 +327,11 @@ impl crate::Client {
     /// - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
     /// - 文档：`docs-site/reference/commands/get_positions_0314.md`
     /// - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
-    pub async fn get_positions_0314(
-        &self,
-        request: &GetPositions0314Request,
-    ) -> Result<GetPositions0314Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_positions_0314<'a>(
+        &'a self,
+        request: &'a GetPositions0314Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetPositions0314Request> {
+        self.connection.call(request)
     }
 }
 

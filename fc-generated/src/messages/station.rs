@@ -731,11 +731,11 @@ impl crate::Client {
     /// - Spec: `commands.get_station` in `spec/commands/station.yaml`
     /// - 文档：`docs-site/reference/commands/get_station.md`
     /// - Docs: `docs-site/en/reference/commands/get_station.md`
-    pub async fn get_station(
-        &self,
-        request: &GetStationRequest,
-    ) -> Result<GetStationResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_station<'a>(
+        &'a self,
+        request: &'a GetStationRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetStationRequest> {
+        self.connection.call(request)
     }
 
     /// 一键上报地图点位信息
@@ -752,11 +752,11 @@ impl crate::Client {
     /// - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
     /// - 文档：`docs-site/reference/commands/upload_map_stations.md`
     /// - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
-    pub async fn upload_map_stations(
-        &self,
-        request: &UploadMapStationsRequest,
-    ) -> Result<UploadMapStationsResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn upload_map_stations<'a>(
+        &'a self,
+        request: &'a UploadMapStationsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, UploadMapStationsRequest> {
+        self.connection.call(request)
     }
 
     /// 添加站点信息
@@ -771,11 +771,11 @@ impl crate::Client {
     /// - Spec: `commands.add_station` in `spec/commands/station.yaml`
     /// - 文档：`docs-site/reference/commands/add_station.md`
     /// - Docs: `docs-site/en/reference/commands/add_station.md`
-    pub async fn add_station(
-        &self,
-        request: &AddStationRequest,
-    ) -> Result<AddStationResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn add_station<'a>(
+        &'a self,
+        request: &'a AddStationRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, AddStationRequest> {
+        self.connection.call(request)
     }
 
     /// 删除站点信息
@@ -786,11 +786,11 @@ impl crate::Client {
     /// - Spec: `commands.delete_station` in `spec/commands/station.yaml`
     /// - 文档：`docs-site/reference/commands/delete_station.md`
     /// - Docs: `docs-site/en/reference/commands/delete_station.md`
-    pub async fn delete_station(
-        &self,
-        request: &DeleteStationRequest,
-    ) -> Result<DeleteStationResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn delete_station<'a>(
+        &'a self,
+        request: &'a DeleteStationRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, DeleteStationRequest> {
+        self.connection.call(request)
     }
 
     /// 重命名站点
@@ -801,11 +801,11 @@ impl crate::Client {
     /// - Spec: `commands.rename_station` in `spec/commands/station.yaml`
     /// - 文档：`docs-site/reference/commands/rename_station.md`
     /// - Docs: `docs-site/en/reference/commands/rename_station.md`
-    pub async fn rename_station(
-        &self,
-        request: &RenameStationRequest,
-    ) -> Result<RenameStationResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn rename_station<'a>(
+        &'a self,
+        request: &'a RenameStationRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, RenameStationRequest> {
+        self.connection.call(request)
     }
 }
 

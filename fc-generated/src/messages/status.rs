@@ -511,11 +511,11 @@ impl crate::Client {
     /// - Spec: `commands.list_faults` in `spec/commands/status.yaml`
     /// - 文档：`docs-site/reference/commands/list_faults.md`
     /// - Docs: `docs-site/en/reference/commands/list_faults.md`
-    pub async fn list_faults(
-        &self,
-        request: &ListFaultsRequest,
-    ) -> Result<ListFaultsResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn list_faults<'a>(
+        &'a self,
+        request: &'a ListFaultsRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, ListFaultsRequest> {
+        self.connection.call(request)
     }
 
     /// 获取自检结果
@@ -531,11 +531,11 @@ impl crate::Client {
     /// - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
     /// - 文档：`docs-site/reference/commands/get_self_check.md`
     /// - Docs: `docs-site/en/reference/commands/get_self_check.md`
-    pub async fn get_self_check(
-        &self,
-        request: &GetSelfCheckRequest,
-    ) -> Result<GetSelfCheckResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_self_check<'a>(
+        &'a self,
+        request: &'a GetSelfCheckRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetSelfCheckRequest> {
+        self.connection.call(request)
     }
 }
 

@@ -573,11 +573,11 @@ impl crate::Client {
     /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
     /// - 文档：`docs-site/reference/commands/create_task.md`
     /// - Docs: `docs-site/en/reference/commands/create_task.md`
-    pub async fn create_task(
-        &self,
-        request: &CreateTaskRequest,
-    ) -> Result<CreateTaskResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn create_task<'a>(
+        &'a self,
+        request: &'a CreateTaskRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, CreateTaskRequest> {
+        self.connection.call(request)
     }
 
     /// 获取任务状态
@@ -588,11 +588,11 @@ impl crate::Client {
     /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
     /// - 文档：`docs-site/reference/commands/get_task_status.md`
     /// - Docs: `docs-site/en/reference/commands/get_task_status.md`
-    pub async fn get_task_status(
-        &self,
-        request: &GetTaskStatusRequest,
-    ) -> Result<GetTaskStatusResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_task_status<'a>(
+        &'a self,
+        request: &'a GetTaskStatusRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetTaskStatusRequest> {
+        self.connection.call(request)
     }
 }
 

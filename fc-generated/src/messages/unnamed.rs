@@ -118,11 +118,11 @@ impl crate::Client {
     /// - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
     /// - 文档：`docs-site/reference/commands/unnamed_0309.md`
     /// - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
-    pub async fn unnamed_0309(
-        &self,
-        request: &Unnamed0309Request,
-    ) -> Result<Unnamed0309Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn unnamed_0309<'a>(
+        &'a self,
+        request: &'a Unnamed0309Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, Unnamed0309Request> {
+        self.connection.call(request)
     }
 
     /// 未命名指令（0x0460）
@@ -138,11 +138,11 @@ impl crate::Client {
     /// - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
     /// - 文档：`docs-site/reference/commands/unnamed_0460.md`
     /// - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
-    pub async fn unnamed_0460(
-        &self,
-        request: &Unnamed0460Request,
-    ) -> Result<Unnamed0460Response, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn unnamed_0460<'a>(
+        &'a self,
+        request: &'a Unnamed0460Request,
+    ) -> fc_runtime::Call<'a, crate::Fc, Unnamed0460Request> {
+        self.connection.call(request)
     }
 }
 

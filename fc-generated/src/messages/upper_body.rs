@@ -173,11 +173,11 @@ impl crate::Client {
     /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
     /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
     /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
-    pub async fn get_upper_body_status(
-        &self,
-        request: &GetUpperBodyStatusRequest,
-    ) -> Result<GetUpperBodyStatusResponse, fc_runtime::CallError> {
-        self.connection.call(request).await
+    pub fn get_upper_body_status<'a>(
+        &'a self,
+        request: &'a GetUpperBodyStatusRequest,
+    ) -> fc_runtime::Call<'a, crate::Fc, GetUpperBodyStatusRequest> {
+        self.connection.call(request)
     }
 }
 

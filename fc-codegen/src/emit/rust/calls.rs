@@ -8,7 +8,6 @@ use super::source::Source;
 use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::{Call, Module};
-use crate::package::process;
 use fc_spec::model::Kind;
 
 /// Writes the stub methods for the messages of a module.
@@ -69,20 +68,13 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     out.docs(&docs);
     deprecation(out, command);
     let request = &command.request.ty.name;
-    if process::is_followed(context, command.operation) {
-        // Returns the call, which can be awaited or followed.
-        let protocol = &context.package.name;
-        out.list(
-            &format!("pub fn {}<'a>(", command.method),
-            &["&'a self".to_owned(), format!("request: &'a {request}")],
-            &format!(") -> fc_runtime::Call<'a, crate::{protocol}, {request}> {{"),
-        );
-        out.line("    self.connection.call(request)");
-        out.line("}");
-        return;
-    }
-    signature(out, "async fn", command);
-    out.line("    self.connection.call(request).await");
+    let protocol = &context.package.name;
+    out.list(
+        &format!("pub fn {}<'a>(", command.method),
+        &["&'a self".to_owned(), format!("request: &'a {request}")],
+        &format!(") -> fc_runtime::Call<'a, crate::{protocol}, {request}> {{"),
+    );
+    out.line("    self.connection.call(request)");
     out.line("}");
 }
 
@@ -94,19 +86,15 @@ fn blocking_call(out: &mut Source, command: &Call<'_>) {
     ));
     out.docs(&docs);
     deprecation(out, command);
-    signature(out, "fn", command);
-    out.line("    self.connection.call(request)");
-    out.line("}");
-}
-
-fn signature(out: &mut Source, function: &str, command: &Call<'_>) {
     let request = format!("request: &{}", command.request.ty.name);
     let response = &command.response.ty.name;
     out.list(
-        &format!("pub {function} {}(", command.method),
+        &format!("pub fn {}(", command.method),
         &["&self".to_owned(), request],
         &format!(") -> Result<{response}, fc_runtime::CallError> {{"),
     );
+    out.line("    self.connection.call(request)");
+    out.line("}");
 }
 
 fn deprecation(out: &mut Source, command: &Call<'_>) {
