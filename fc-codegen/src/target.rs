@@ -62,7 +62,8 @@ pub struct Targets {
 #[derive(Clone, Debug)]
 struct Settings {
     out: String,
-    languages: Vec<Lang>,
+    /// The languages of the pages or of the comments.
+    languages: Languages,
     /// The name of the Rust package.
     krate: String,
     /// The audience whose part of the protocol the product contains; `None` for the whole protocol.
@@ -111,10 +112,9 @@ impl Default for Targets {
 
 impl Settings {
     fn usual(product: Product, texts: Languages) -> Self {
-        let languages = Lang::ALL.into_iter();
         Self {
             out: product.usual_place().to_owned(),
-            languages: languages.filter(|it| texts.include(*it)).collect(),
+            languages: texts,
             krate: CRATE.to_owned(),
             audience: None,
         }
@@ -148,12 +148,9 @@ impl Targets {
     /// Returns a [`TargetError`] with the position in the file, or with the target and the key.
     pub fn read(yaml: &str) -> Result<Self, TargetError> {
         let written: Written = serde_yaml::from_str(yaml)?;
-        let texts = match written.languages.as_deref() {
-            Some([]) => return Err(TargetError::NoLanguage),
-            Some([first, others @ ..]) if others.iter().all(|other| other == first) => {
-                Languages::Only(*first)
-            }
-            Some(_) | None => Languages::All,
+        let texts = match &written.languages {
+            Some(languages) => set_of(languages)?,
+            None => Languages::All,
         };
         let usual = match written.targets {
             None => Product::ALL.as_slice(),
@@ -266,7 +263,14 @@ impl Targets {
     #[must_use]
     pub fn speaks(&self, language: Lang) -> bool {
         let settings = self.products.get(&Product::Markdown);
-        settings.is_none_or(|settings| settings.languages.contains(&language))
+        settings.is_none_or(|settings| settings.languages.include(language))
+    }
+
+    /// Returns the languages of a product's texts.
+    #[must_use]
+    pub fn texts_of(&self, product: Product) -> Languages {
+        let settings = self.settings(product);
+        settings.map_or(self.texts, |settings| settings.languages)
     }
 
     /// Returns the folders of the project's docs, one for each language.
@@ -376,6 +380,17 @@ pub fn part<'m>(model: &'m Model, audience: Option<&str>) -> Result<Cow<'m, Mode
     })
 }
 
+/// Returns a list of languages from `fc.yaml` as a set.
+fn set_of(languages: &[Lang]) -> Result<Languages, TargetError> {
+    match languages {
+        [] => Err(TargetError::NoLanguage),
+        [first, others @ ..] if others.iter().all(|other| other == first) => {
+            Ok(Languages::Only(*first))
+        }
+        _ => Ok(Languages::All),
+    }
+}
+
 impl WrittenTarget {
     fn settings(
         self,
@@ -389,9 +404,10 @@ impl WrittenTarget {
             ("options", self.options.is_some()),
             (TIMEOUT_MS.key, self.timeout_ms.is_some()),
             (OUTPUT_BYTES.key, self.output_bytes.is_some()),
+            // Their files are the same in every language.
             (
                 "languages",
-                self.languages.is_some() && product != Product::Markdown,
+                self.languages.is_some() && matches!(product, Product::Vectors | Product::Schema),
             ),
             ("crate", self.krate.is_some() && product != Product::Rust),
             (
@@ -407,13 +423,11 @@ impl WrittenTarget {
         if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
             return Err(TargetError::Misplaced { name, key });
         }
-        if self.languages.as_ref().is_some_and(Vec::is_empty) {
-            return Err(TargetError::NoLanguage);
-        }
         let usual = Settings::usual(product, texts);
+        let languages = self.languages.as_deref().map(set_of).transpose()?;
         Ok(Settings {
             out: self.out.unwrap_or(usual.out),
-            languages: self.languages.unwrap_or(usual.languages),
+            languages: languages.unwrap_or(usual.languages),
             krate: self.krate.unwrap_or(usual.krate),
             audience: self.audience,
         })

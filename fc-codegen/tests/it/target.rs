@@ -140,8 +140,8 @@ fn what_the_file_cannot_say_is_refused_by_name() {
             "the target `schema` cannot have `audience`",
         ),
         (
-            "targets: { rust: { languages: [zh] } }",
-            "the target `rust` cannot have `languages`",
+            "targets: { vectors: { languages: [zh] } }",
+            "the target `vectors` cannot have `languages`",
         ),
         (
             "targets: { mine: { plugin: x } }",

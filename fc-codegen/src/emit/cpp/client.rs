@@ -32,7 +32,7 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
 }
 
 fn reports(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "任意一个上报；功能码不在规范中的，原样保留。",
         "Any report. A report with a code that is not in the spec is kept unchanged.",
     ]));
@@ -140,7 +140,7 @@ fn client(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 
 /// Writes the commands of a group as methods of the client.
 pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组指令，是 `Client`（`Self`）的方法。",
         "The commands of a group as methods of `Client` (`Self`).",
     ]));
@@ -236,7 +236,7 @@ fn each(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     for (what, zh, lists) in [("command", "请求", commands), ("report", "上报", reports)] {
         let zh = format!("对每一种{zh}调用一次 `visit`，参数是该类型的一个值。");
         let en = format!("Calls `visit` once for each {what}, with a value of its type.");
-        out.documented(&Docs::named(zh, en));
+        out.documented(&Docs::said([zh, en]));
         out.line("template <class Visitor>");
         let visit = if lists.is_empty() {
             "/*visit*/"

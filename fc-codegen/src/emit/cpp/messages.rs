@@ -17,7 +17,7 @@ use crate::package::language::Case;
 use crate::package::process::has_states;
 use crate::package::source::Source;
 use fc_spec::model::{
-    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Type, Value, Variant,
+    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Text, Type, Value, Variant,
 };
 
 /// Generates a header, with the groups whose operations are in it.
@@ -27,7 +27,7 @@ pub fn header(
     groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
-    let mut body = Source::cpp();
+    let mut body = context.source();
     let mut includes = Includes::default();
     includes.standard("iosfwd");
     includes.own("fc_runtime/message.hpp");
@@ -38,7 +38,7 @@ pub fn header(
         types(&mut body, &mut includes, context, header);
     }
     groups::declare(&mut body, &mut includes, context, groups);
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line("#pragma once");
     out.blank();
     includes.lines(&mut out);
@@ -239,12 +239,11 @@ fn enumeration(
     values: &[Spelled<'_, EnumValue>],
 ) {
     let name = &item.ty.name;
-    let open = if shape.closed {
-        ""
-    } else {
-        "其他值原样保留。Any other value is kept unchanged."
-    };
-    out.docs(&about::enumeration(context, item.ty.of, open));
+    out.docs(&about::enumeration(context, item.ty.of, |docs| {
+        if !shape.closed {
+            docs.sentences(["其他值原样保留。", "Any other value is kept unchanged."]);
+        }
+    }));
     let each = |out: &mut Source| {
         for value in values {
             out.docs(&facts::value_docs(value));
@@ -341,12 +340,12 @@ fn choice(
     includes.standard("variant");
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
-        docs.paragraph(format!(
-            "- `{}`：{} {}",
-            context.name_of(&variant.ty),
-            variant.text.zh,
-            variant.text.en
-        ));
+        let (ty, Text { zh, en }) = (context.name_of(&variant.ty), &variant.text);
+        docs.joined([
+            format!("- `{ty}`：{zh}"),
+            format!("- `{ty}`: {en}"),
+            format!("- `{ty}`：{zh} {en}"),
+        ]);
         facts::variant_end(&mut docs, variant);
     }
     out.docs(&docs);

@@ -58,8 +58,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
         return;
     }
     out.blank();
-    let what = ["数据流的功能码。", "Codes of streams."];
-    out.docs(&Docs::said(&what));
+    out.docs(&Docs::said(["数据流的功能码。", "Codes of streams."]));
     out.enclose("enum class StreamCode : std::uint16_t {", "};", |out| {
         for stream in &context.package.streams {
             let mut docs = facts::operation_docs(stream);

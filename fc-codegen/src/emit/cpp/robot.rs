@@ -78,7 +78,7 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>])
 /// Writes the class with the handlers of a group's commands.
 pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let name = group.part("Robot");
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组指令，由 `Robot` 处理。",
         "The commands of a group as `Robot` handles them.",
     ]));
@@ -107,7 +107,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
 
 /// Writes the class with the responses of `PartialRobot` and `ExampleRobot` to a group's commands.
 pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
         "The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.",
     ]));
@@ -235,7 +235,7 @@ fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 
 /// Writes the reports of a group as methods of the reporter.
 pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
         "The reports of a group as methods of `Reporter` (`Self`).",
     ]));

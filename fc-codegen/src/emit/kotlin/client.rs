@@ -4,7 +4,6 @@ use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::messages::both;
 use super::operations::{deprecated, way};
 use super::streams;
-use super::text::STYLE;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -15,10 +14,10 @@ use crate::package::source::Source;
 
 /// Generates `Client.kt`.
 pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     let protocol = &context.package.name;
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。",
         "A robot as seen from the app: one method per command, `suspend` for coroutines and `Async` for Java.",
     ]));
@@ -138,23 +137,31 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &format!("): {response} ="),
         &format!("connection.call(Operations.{method}, request)"),
     );
-    let docs = Docs::linked(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-    let mut for_java = |parameter: &str, body: &str| {
+    let docs = for_java(method);
+    let mut twin = |parameter: &str, body: &str| {
         out.documented(&docs);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
         function(out, &open, parameter, &close, body);
     };
-    for_java(
+    twin(
         &given,
         &format!("connection.callAsync(Operations.{method}, request)"),
     );
     // `@JvmOverloads` does not work in an interface.
     if let Some(bare) = bare {
-        for_java("", &format!("{method}Async({bare})"));
+        twin("", &format!("{method}Async({bare})"));
     }
     followed(out, context, command, &parameter);
+}
+
+/// Creates the comment on the form of a method for Java.
+pub fn for_java(method: &str) -> Docs<'static> {
+    Docs::line([
+        format!("[{method}]，供 Java 使用。"),
+        format!("[{method}] for Java."),
+    ])
 }
 
 /// Writes a method for each kind of report that a command sets off.
@@ -167,10 +174,11 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
             continue;
         };
         let reported_type = &reported.request.ty.name;
-        let mut docs = Docs::linked(format!(
-            "[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。\n\
-             [{method}]: returns the response, and then each [{reported_type}] that the command sets off.",
-        ));
+        let mut docs = Docs::default();
+        docs.raw_lines([
+            format!("[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。"),
+            format!("[{method}]: returns the response, and then each [{reported_type}] that the command sets off."),
+        ]);
         ending(&mut docs, context, set_off, report, messages);
         docs.raw("@throws fc.runtime.CallError if the response is not a success");
         let ties = set_off.tied.iter().map(|tie| {

@@ -12,7 +12,9 @@ use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::FieldMarks;
 use crate::package::process::{has_states, next_values};
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
+use fc_spec::model::{
+    EnumRepr, EnumType, EnumValue, Field, StateOrder, Text, Type, Value, Variant,
+};
 
 /// Writes message types.
 pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
@@ -115,9 +117,10 @@ fn spelled(value: &Expr<'_>) -> String {
 /// Creates a comment of the generator, on one line if it is short.
 pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
     if columns_of(zh) + en.len() <= SHORT {
-        return Docs::linked([zh, en].concat());
+        Docs::line([zh, en])
+    } else {
+        Docs::said([zh, en])
     }
-    Docs::said(&[zh, en])
 }
 
 /// The maximum width of a comment on one line, in columns.
@@ -133,9 +136,10 @@ fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>)
 }
 
 fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
-    out.docs(&Docs::linked(format!(
-        "逐项设置 [{name}] 的字段。Collects the fields of a [{name}]."
-    )));
+    out.docs(&Docs::line([
+        format!("逐项设置 [{name}] 的字段。"),
+        format!("Collects the fields of a [{name}]."),
+    ]));
     let head = "public class Builder internal constructor(from: ";
     let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
     let head = heading(out, &format!("{head}{name}?)"), &supers);
@@ -254,7 +258,7 @@ fn enumeration(
     values: &[Spelled<'_, EnumValue>],
 ) {
     let name = &item.ty.name;
-    let docs = about::enumeration(context, item.ty.of, "");
+    let docs = about::enumeration(context, item.ty.of, |_| ());
     let (wire, base, kind) = match shape.repr {
         EnumRepr::Int(kind) => ("Long", "Int", Some(plain_codec(&Type::Int(kind)))),
         EnumRepr::String => ("String", "Text", None),
@@ -345,10 +349,12 @@ fn choice(
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
         let ty = context.name_of(&variant.ty);
-        docs.raw(format!(
-            "- [{ty}]：{}\n  {}",
-            variant.text.zh, variant.text.en
-        ));
+        let Text { zh, en } = &variant.text;
+        docs.raw_joined([
+            format!("- [{ty}]：{zh}"),
+            format!("- [{ty}]: {en}"),
+            format!("- [{ty}]：{zh}\n  {en}"),
+        ]);
         facts::variant_end(&mut docs, variant);
     }
     out.docs(&docs);

@@ -2,7 +2,7 @@
 
 use super::group::{heading, part_name, part_of, parts};
 use super::messages::both;
-use super::text::{STYLE, literal};
+use super::text::literal;
 use crate::package::context::{Context, page_of};
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -13,9 +13,9 @@ use crate::package::source::Source;
 use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
 
 /// Generates `Operations.kt`.
-pub fn operations_file(groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
-    out.docs(&Docs::said(&[
+pub fn operations_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
+    let mut out = context.source();
+    out.docs(&Docs::said([
         "每条指令和每个上报。",
         "Every command and every report.",
     ]));

@@ -2,7 +2,7 @@
 
 use super::group::parts;
 use super::messages::both;
-use super::text::{STYLE, integer, literal, plain_codec, type_of};
+use super::text::{integer, literal, plain_codec, type_of};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -15,18 +15,18 @@ use fc_spec::model::{DigestAlgorithm, EnvelopeField, HeaderField, HeaderRole};
 
 /// Generates `Protocol.kt`.
 pub fn protocol_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     protocol(&mut out, context, groups);
     let package = &context.package;
     for (name, said, fields) in [
         (
             "RequestEnvelope",
-            &about::REQUEST_ENVELOPE,
+            about::REQUEST_ENVELOPE,
             &package.request_envelope,
         ),
         (
             "ResponseEnvelope",
-            &about::RESPONSE_ENVELOPE,
+            about::RESPONSE_ENVELOPE,
             &package.response_envelope,
         ),
     ] {

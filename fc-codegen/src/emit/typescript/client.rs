@@ -16,10 +16,13 @@ use fc_spec::model::{Operation, Side};
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_streams = groups.iter().any(|it| it.has(What::Streams));
-    let mut out = head([
-        "app 端：每条指令一个方法。",
-        "The app's side: one method per command.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "app 端：每条指令一个方法。",
+            "The app's side: one method per command.",
+        ],
+    );
     let mut names = vec!["Connection", "dial", "dialLater"];
     names.extend(has_commands.then_some("addCalls"));
     names.extend(has_streams.then_some("addAppStreams"));

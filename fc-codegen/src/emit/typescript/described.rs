@@ -11,10 +11,13 @@ use crate::sample::{Profile, Samples};
 use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head([
-        "协议及其文字和示例，供显示任意帧的工具使用。",
-        "The protocol with its texts and examples, for tools that show any frame.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "协议及其文字和示例，供显示任意帧的工具使用。",
+            "The protocol with its texts and examples, for tools that show any frame.",
+        ],
+    );
     named(&mut out, "import type", ["Protocol"], "../src/protocol.ts");
     let operations = &context.model().operations;
     if operations

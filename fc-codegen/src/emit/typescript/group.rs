@@ -107,8 +107,14 @@ pub fn has_default(field: &Spelled<'_, Field>) -> bool {
 }
 
 /// Generates a module that re-exports the files of one kind from all groups.
-pub fn index(about: [&str; 2], groups: &[Group<'_, '_>], file: &str, what: What) -> String {
-    let mut out = head(about);
+pub fn index(
+    context: &Context<'_>,
+    about: [&str; 2],
+    groups: &[Group<'_, '_>],
+    file: &str,
+    what: What,
+) -> String {
+    let mut out = head(context, about);
     let mut names: Vec<&str> = groups
         .iter()
         .filter(|it| it.has(what))

@@ -6,7 +6,7 @@
 use super::constants::wire;
 use super::context::{Context, field_type, imported, imports, own, page_of, parts, repr_is_large};
 use super::group::Group;
-use super::source::{self, Source, alternatives, literal, named, property, tag_text};
+use super::source::{Source, alternatives, literal, named, property, tag_text};
 use super::{client, robot};
 use crate::package::about;
 use crate::package::conditions::sentence;
@@ -26,7 +26,7 @@ pub const ABOUT: [&str; 2] = [
 
 /// Generates `messages.ts` of a group: its message types, and its parts of the stubs.
 pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
-    let mut out = source::file();
+    let mut out = context.source();
     let mut docs = Docs::default();
     about::group(&mut docs, group.of);
     docs.raw("@module");

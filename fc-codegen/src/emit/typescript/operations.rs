@@ -23,7 +23,7 @@ pub const COMMANDS: [&str; 2] = ["每条指令的描述数据。", "Every comman
 
 pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let commands = &group.commands;
-    let mut out = head(COMMANDS);
+    let mut out = head(context, COMMANDS);
     let mut names = vec!["AnyCommand"];
     for call in commands {
         names.push(command_type(context, call.operation));
@@ -254,7 +254,7 @@ pub const REPORTS: [&str; 2] = ["每种上报的描述数据。", "Every report 
 
 pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let reports = &group.reports;
-    let mut out = head(REPORTS);
+    let mut out = head(context, REPORTS);
     let names = ["AnyReportOf", "Report"];
     named(&mut out, "import type", names, "../../../src/runtime.ts");
     out.line("import * as messages from '../../messages.ts'");
@@ -332,7 +332,7 @@ pub const STREAMS: [&str; 2] = ["每个数据流的描述数据。", "Every stre
 
 pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let streams = &group.streams;
-    let mut out = head(STREAMS);
+    let mut out = head(context, STREAMS);
     let names = ["AnyStream", "Stream"];
     named(&mut out, "import type", names, "../../../src/runtime.ts");
     if streams

@@ -10,10 +10,13 @@ use crate::package::ranges::{self, UNKNOWN};
 use fc_spec::model::CodeRange;
 
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
-    let mut out = head([
-        "协议：数值和全部接口。",
-        "The protocol: its numbers and all of its operations.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "协议：数值和全部接口。",
+            "The protocol: its numbers and all of its operations.",
+        ],
+    );
     let names = [
         "AnyCommand",
         "AnyReportOf",

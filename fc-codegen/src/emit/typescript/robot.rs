@@ -18,10 +18,13 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_reports = groups.iter().any(|it| it.has(What::Reports));
     let has_streams = groups.iter().any(|it| it.has(What::RobotStreams));
-    let mut out = head([
-        "机器人端：每条指令一个方法，以及上报的发送端。",
-        "The robot's side: one method per command, and the sender of reports.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "机器人端：每条指令一个方法，以及上报的发送端。",
+            "The robot's side: one method per command, and the sender of reports.",
+        ],
+    );
     let mut names = vec!["serveRobot"];
     names.extend(has_commands.then_some("addExamples"));
     names.extend(has_reports.then_some("addReports"));
@@ -127,19 +130,20 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
             ));
             raw(out, docs, &name);
         }
-        let mut docs = Docs::default();
-        docs.paragraph("功能码不在规范中的指令。");
-        docs.paragraph("Commands with a code that is not in the spec.");
+        let docs = Docs::said([
+            "功能码不在规范中的指令。",
+            "Commands with a code that is not in the spec.",
+        ]);
         raw(out, docs, UNKNOWN);
     });
 }
 
 /// Writes an optional method for requests without a type. A new range in the spec therefore breaks no robot.
 fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
-    docs.paragraph("报文是 JSON 文本。不实现此方法时，按未知指令拒绝。");
-    docs.paragraph(
+    docs.both([
+        "报文是 JSON 文本。不实现此方法时，按未知指令拒绝。",
         "Messages are JSON texts. Without this method, the robot refuses them as unknown commands.",
-    );
+    ]);
     out.blank();
     out.docs(&docs);
     out.line(format!(

@@ -127,7 +127,7 @@ pub fn file(context: &Context<'_>) -> String {
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut names = Names::new(context);
-    let mut body = Source::new(&TYPESCRIPT);
+    let mut body = context.source();
     let head = format!("class {robot} implements Robot");
     if run.answers.is_empty() {
         body.line([&head, " {}"].concat());
@@ -148,10 +148,13 @@ pub fn file(context: &Context<'_>) -> String {
     body.blank();
     run_all(&mut body, context, &robot, run);
 
-    let mut out = source::head([
-        "文档中的示例代码：随软件包编译，由测试运行。",
-        "The samples of the documentation: compiled with the package, and run by a test of it.",
-    ]);
+    let mut out = source::head(
+        context,
+        [
+            "文档中的示例代码：随软件包编译，由测试运行。",
+            "The samples of the documentation: compiled with the package, and run by a test of it.",
+        ],
+    );
     let mut runtime = vec!["Platform", "ServerPlatform"];
     if run.has(Verb::Call) {
         runtime.extend(["Answer", "Context"]);

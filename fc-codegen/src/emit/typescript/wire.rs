@@ -20,7 +20,7 @@ const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 <<
 
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
-    let mut out = head(about::WIRE);
+    let mut out = head(context, about::WIRE);
     named(
         &mut out,
         "import type",
@@ -31,14 +31,14 @@ pub fn file(context: &Context<'_>) -> String {
         &mut out,
         context,
         "RequestEnvelope",
-        &about::REQUEST_ENVELOPE,
+        about::REQUEST_ENVELOPE,
         &package.request_envelope,
     );
     envelope(
         &mut out,
         context,
         "ResponseEnvelope",
-        &about::RESPONSE_ENVELOPE,
+        about::RESPONSE_ENVELOPE,
         &package.response_envelope,
     );
     results(&mut out, context);
@@ -52,7 +52,7 @@ fn envelope(
     out: &mut Source,
     context: &Context<'_>,
     name: &str,
-    docs: &[&'static str],
+    docs: [&'static str; 2],
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     out.blank();
