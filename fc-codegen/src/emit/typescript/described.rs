@@ -7,6 +7,7 @@ use super::layout::Layout;
 use super::operations::{code, languages};
 use super::source::{head, named};
 use super::wire::header;
+use crate::package::docs::Docs;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
@@ -28,7 +29,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     }
     out.line("import { wire } from './wire.ts'");
     out.blank();
-    out.line("/** 规范中的协议。The protocol of the spec. */");
+    out.docs(&Docs::line(["规范中的协议。", "The protocol of the spec."]));
     protocol(context, samples).write(&mut out, "export const protocol: Protocol = ", "");
     out.finish()
 }

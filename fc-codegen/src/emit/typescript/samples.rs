@@ -5,6 +5,7 @@
 use super::constants::Constants;
 use super::context::{Context, imported, own, spelled};
 use super::source::{self, Source, TYPESCRIPT, named};
+use crate::package::docs::Docs;
 use crate::package::expr::Record;
 use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
 use crate::package::name::free;
@@ -204,13 +205,10 @@ fn run_all(out: &mut Source, context: &Context<'_>, robot: &str, run: &SampleRun
         out.list(&format!("const {name} = Promise.all(["), &calls, "])");
     };
     let [app, server] = ["Platform", "ServerPlatform"].map(|it| own(context, it));
-    out.line(
-        "\
-/**
- * 一个 app 和一个机器人在本机上运行全部示例。
- * Runs all samples, with an app and a robot on this machine.
- */",
-    );
+    out.docs(&Docs::said([
+        "一个 app 和一个机器人在本机上运行全部示例。",
+        "Runs all samples, with an app and a robot on this machine.",
+    ]));
     let head = format!("export async function run(app: {app}, robot: {server}): Promise<void>");
     out.block(head, |out| {
         out.line(format!(

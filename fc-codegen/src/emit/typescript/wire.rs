@@ -43,7 +43,10 @@ pub fn file(context: &Context<'_>) -> String {
     );
     results(&mut out, context);
     out.blank();
-    out.line("/** 消息之下各层的全部数值。All numbers of the layers below the messages. */");
+    out.docs(&Docs::line([
+        "消息之下各层的全部数值。",
+        "All numbers of the layers below the messages.",
+    ]));
     wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }
@@ -105,7 +108,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     let codes: Vec<String> = codes.chain(["(number & {})".to_owned()]).collect();
     super::messages::union(out, "ResultCode", &codes);
     out.blank();
-    out.line("/** {@link ResultCode}：各个值。Its values. */");
+    out.docs(&Docs::line(["{@link ResultCode}：各个值。", "Its values."]));
     out.enclose("export const ResultCode = {", "} as const", |out| {
         for result in results {
             let mut docs = Docs::titled(&result.text);
