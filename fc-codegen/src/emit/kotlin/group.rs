@@ -67,14 +67,14 @@ pub fn heading(head: &str, supers: &[String]) -> String {
 }
 
 /// Writes the head of a class with one property, which its parts use.
-pub fn wrapper(out: &mut Source, name: &str, property: &str, docs: &str, parts: &[String]) {
+pub fn wrapper(out: &mut Source, name: &str, property: &str, about: [&str; 2], parts: &[String]) {
     let modifier = if parts.is_empty() {
         "public"
     } else {
         "override"
     };
     out.enclose(&format!("public class {name}("), "", |out| {
-        out.line(docs);
+        out.docs(&Docs::line(about));
         out.line(format!("{modifier} val {property},"));
     });
 }

@@ -5,7 +5,7 @@ use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::docs::{Docs, columns_of};
+use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
@@ -59,10 +59,10 @@ fn message(
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
                 let (property, ty) = (&field.name, type_of(context, &field.ty));
-                out.documented(&both(
+                out.documented(&Docs::line([
                     "同上；没有时为默认值。",
                     "The same, or the default if it is absent.",
-                ));
+                ]));
                 out.line(format!(
                     "public val {property}OrDefault: {ty} get() = {property} ?: {default}"
                 ));
@@ -72,10 +72,10 @@ fn message(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.documented(&both(
+        out.documented(&Docs::line([
             "以此消息的内容为起点的构造器。",
             "A builder that starts with the content of this message.",
-        ));
+        ]));
         out.line("public fun toBuilder(): Builder = Builder(this)");
         out.blank();
         builder(out, context, name, fields);
@@ -113,18 +113,6 @@ fn choices_of(context: &Context<'_>, item: &Item<'_>) -> Vec<String> {
 fn spelled(value: &Expr<'_>) -> String {
     expr::expression(value, &Type::Json)
 }
-
-/// Creates a comment of the generator, on one line if it is short.
-pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
-    if columns_of(zh) + en.len() <= SHORT {
-        Docs::line([zh, en])
-    } else {
-        Docs::said([zh, en])
-    }
-}
-
-/// The maximum width of a comment on one line, in columns.
-const SHORT: usize = 100;
 
 fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>) {
     let (name, constant) = (&field.name, constant(context, field));
@@ -176,7 +164,7 @@ fn companion(
     if example != "{}" {
         arguments.push(literal(&example));
     }
-    let docs = both("此类型。", "The type.");
+    let docs = Docs::line(["此类型。", "The type."]);
     out.docs(&docs);
     let joined = arguments.join(", ");
     let head = format!("public companion object : MessageType<{name}>(");
@@ -208,16 +196,16 @@ fn companion(
             out.line(format!("private val {} = {made}", constant(context, field)));
         }
         conditions(out, context, fields);
-        out.documented(&both(
+        out.documented(&Docs::line([
             "一个空的构造器，供 Java 使用。",
             "An empty builder, for Java.",
-        ));
+        ]));
         out.line("@JvmStatic");
         out.line("public fun builder(): Builder = Builder(null)");
-        out.documented(&both(
+        out.documented(&Docs::line([
             "用 `build` 设置字段，构造消息。",
             "Builds a message with the fields that `build` sets.",
-        ));
+        ]));
         out.line("@JvmSynthetic");
         out.line(format!(
             "public inline operator fun invoke(build: Builder.() -> Unit): {name} ="
@@ -288,7 +276,7 @@ override val isError: Boolean get() = steps.isError(wire)
 override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
             ));
         }
-        out.documented(&both("规范中的全部取值。", "The values of the spec."));
+        out.documented(&Docs::line(["规范中的全部取值。", "The values of the spec."]));
         let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
         out.block(head, |out| {
             for value in values {
@@ -301,10 +289,7 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
                 out.blank();
                 steps(out, shape, values);
             }
-            out.documented(&both(
-                "`wire` 对应的取值；规范中没有的值原样保留。",
-                "The value for `wire`. A value that is not in the spec is kept unchanged.",
-            ));
+            out.documented(&Docs::said(["`wire` 对应的取值；规范中没有的值原样保留。", "The value for `wire`. A value that is not in the spec is kept unchanged."]));
             out.line("@JvmStatic");
             out.line(format!("override fun of(wire: {wire}): {name} = super.of(wire)"));
             out.blank();
@@ -359,7 +344,7 @@ fn choice(
     }
     out.docs(&docs);
     out.block(format!("public sealed interface {name}"), |out| {
-        out.docs(&both("全部形式。", "Its forms."));
+        out.docs(&Docs::line(["全部形式。", "Its forms."]));
         let head = format!(
             "public companion object : ChoiceType<{name}>({})",
             literal(name)

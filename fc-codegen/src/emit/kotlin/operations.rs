@@ -1,7 +1,6 @@
 //! `Operations`: every command and report as a value, with the facts that the runtime needs.
 
 use super::group::{heading, part_name, part_of, parts};
-use super::messages::both;
 use super::text::literal;
 use crate::package::context::{Context, page_of};
 use crate::package::docs::Docs;
@@ -49,10 +48,10 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.enclose(&head, "", |out| out.line(getter));
             }
         }
-        out.documented(&both(
+        out.documented(&Docs::line([
             "这些常量供 Java 使用。",
             "The same as constants, for Java.",
-        ));
+        ]));
         out.block("public companion object", |out| {
             for command in &group.commands {
                 command_value(out, context, command);

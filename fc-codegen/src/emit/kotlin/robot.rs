@@ -2,7 +2,6 @@
 
 use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
-use super::messages::both;
 use super::streams::{self, SERVER, SERVER_DOCS};
 use crate::package::about;
 use crate::package::context::Context;
@@ -39,10 +38,10 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
         }
         raw(out, &unknown, &about::unknown());
     });
-    out.documented(&both(
+    out.documented(&Docs::said([
         "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
-    ));
+    ]));
     let partial = parts(groups, "Partial", has_commands);
     out.line(heading(
         "public interface PartialRobot",
@@ -50,10 +49,10 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     ));
     out.blank();
     example(&mut out, groups);
-    out.documented(&both(
+    out.documented(&Docs::said([
         "由此机器人处理规范中的指令，供 [Server.bind] 使用。",
         "A service that handles the commands with this robot, for [Server.bind].",
-    ));
+    ]));
     out.enclose("public fun Robot.service(): Service =", "", |out| {
         out.line("Service()");
         for group in groups.iter().filter(|it| has_commands(it)) {
@@ -178,9 +177,12 @@ fn example(out: &mut Source, groups: &[Group<'_, '_>]) {
         &robot_and(answers),
     ));
     out.blank();
+    out.docs(&Docs::line([
+        "各分组的示例共有的部分。",
+        "The common part of the examples of all groups.",
+    ]));
     out.line(
         "\
-/** 各分组的示例共有的部分。The common part of the examples of all groups. */
 internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
     /** The response to a command that may move the robot. */
     protected fun <A : Message> pretended(context: Context, response: MessageType<A>): A =
@@ -224,10 +226,10 @@ fn signature(head: &str, command: &Call<'_>) -> String {
 
 fn reporter(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Reporter", |it| !it.reports.is_empty());
-    out.docs(&both(
+    out.docs(&Docs::said([
         "发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。",
         "Pushes reports: one method per report, which waits for the outcome at each app.",
-    ));
+    ]));
     wrapper(out, "Reporter", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -239,7 +241,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         "Reporter",
         &part_name(group, "Reporter"),
         |out| {
-            out.line(SERVER_DOCS);
+            out.docs(&Docs::line(SERVER_DOCS));
             out.line(format!("public val {SERVER}"));
             for report in &group.reports {
                 let mut docs = facts::method_docs(context, report.operation, |_| ());
