@@ -15,7 +15,7 @@ use crate::package::language::Case;
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::name::free;
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, Field, Scalar, Type, TypeShape, Value, Variant};
+use fc_spec::model::{EnumRepr, Field, Scalar, Text, Type, TypeShape, Value, Variant};
 
 /// Writes message types. Enums come first, and choices last.
 pub fn types<'m>(
@@ -319,8 +319,8 @@ fn choice<'m>(
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
         let ty = context.name_of(&variant.of.ty);
-        docs.paragraph(format!("`{ty}`：{}", variant.text.zh));
-        docs.paragraph(format!("`{ty}`: {}", variant.text.en));
+        let Text { zh, en } = &variant.text;
+        docs.both([format!("`{ty}`：{zh}"), format!("`{ty}`: {en}")]);
         facts::variant_end(&mut docs, variant);
     }
     out.docstring(&docs);

@@ -18,9 +18,13 @@ const COMMENT: Comment = Comment {
 };
 
 fn lines(docs: &Docs<'_>, width: usize) -> Vec<String> {
+    lines_in(Languages::All, docs, width)
+}
+
+fn lines_in(languages: Languages, docs: &Docs<'_>, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
-    docs.lines(Languages::All, &COMMENT, width, |line| {
-        lines.push(line.to_owned())
+    docs.lines(languages, &COMMENT, width, |line| {
+        lines.push(line.to_owned());
     });
     lines
 }
@@ -94,5 +98,25 @@ fn a_text_of_several_lines_is_a_paragraph_of_its_own() {
         };
         let lines = lines(&Docs::titled(&text), 80);
         assert!(lines.iter().any(String::is_empty), "{lines:?}");
+    }
+}
+
+#[test]
+fn languages_select_the_texts() {
+    let mut docs = Docs::said(["站点", "Station"]);
+    docs.both(["说明", "A description"]);
+    docs.paragraph("Since 1.");
+    docs.sentences(["原样。", "Unchanged."]);
+    docs.raw_lines(["先", "First"]);
+    docs.joined(["甲", "A", "甲 A"].map(str::to_owned));
+    let all = "站点\nStation\n\n说明\n\nA description\n\nSince 1.\n\n原样。Unchanged.\n\n先\nFirst\n\n甲 A";
+    let zh = "站点\n\n说明\n\nSince 1.\n\n原样。\n\n先\n\n甲";
+    let en = "Station\n\nA description\n\nSince 1.\n\nUnchanged.\n\nFirst\n\nA";
+    for (languages, expected) in [
+        (Languages::All, all),
+        (Languages::Only(Lang::Zh), zh),
+        (Languages::Only(Lang::En), en),
+    ] {
+        assert_eq!(lines_in(languages, &docs, 80).join("\n"), expected);
     }
 }
