@@ -74,97 +74,8 @@ pub struct Client {{
     ));
     out.blank();
     out.block("impl Client", |out| {
-        out.docs(&Docs::written([
-            "连接机器人；`config` 中没有设置的项使用规范的默认值。",
-            "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
-        ]));
-        out.line(
-            "\
-pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
-    let connection = Connection::connect(config).await?;
-    Ok(Self { connection })
-}",
-        );
-        out.documented(&Docs::written([
-            "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
-            "Returns at once and connects in the background. Calls made before that wait for the connection\n\
-             within their timeout.",
-        ]));
-        out.line(
-            "\
-#[must_use]
-pub fn connect_lazy(config: ClientConfig) -> Self {
-    Connection::connect_lazy(config).into()
-}",
-        );
-        out.documented(&Docs::written([
-            "此刻的连接状态；没有连接时说明原因。",
-            "Returns the present state of the connection, with the reason if there is none.",
-        ]));
-        out.line(
-            "\
-#[must_use]
-pub fn state(&self) -> ConnectionState {
-    self.connection.state()
-}",
-        );
-        out.documented(&Docs::written([
-            "连接状态的变化：先是此刻的状态，之后是每一次变化。每次收到 `Connected` 都重新查询机器人的状态：机器人可能重启过。",
-            "The states of the connection: the present one first, then each change. Query the state of the robot\n\
-             at each `Connected`: the robot may have restarted.",
-        ]));
-        out.line(
-            "\
-#[must_use]
-pub fn states(&self) -> ConnectionStates {
-    self.connection.states()
-}",
-        );
-        out.documented(&Docs::written([
-            "等到连接永久关闭，返回原因。",
-            "Waits until the connection is closed for good, and returns the reason.",
-        ]));
-        out.line(
-            "\
-pub async fn closed(&self) -> Loss {
-    self.connection.closed().await
-}",
-        );
-        out.documented(&Docs::written([
-            "连接数据端口：在后台建立，断线后重连，随指令连接一起结束。",
-            "Connects to the data port in the background and reconnects after a loss. It ends with this\n\
-             connection.",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn data(&self) -> DataConnection<{protocol}> {{
-    self.connection.data()
-}}"
-        ));
-        out.documented(&Docs::written([
-            "底层连接：原始指令和单次调用的选项。",
-            "The underlying connection: raw commands and options of a single call.",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn connection(&self) -> &Connection<{protocol}> {{
-    &self.connection
-}}"
-        ));
-        out.documented(&Docs::written([
-            "返回此后全部上报的接收端。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。",
-            "Returns a receiver of all reports from now on. Each receiver gets all of them and has its own\n\
-             queue. Without a receiver, reports are not acknowledged.",
-        ]));
-        out.line(
-            "\
-#[must_use]
-pub fn reports(&self) -> Reports {
-    Reports(self.connection.reports())
-}",
-        );
+        constructors(out);
+        connection(out, protocol);
     });
     out.blank();
     out.line(format!(
@@ -175,6 +86,105 @@ impl From<Connection<{protocol}>> for Client {{
     }}
 }}"
     ));
+}
+
+/// Writes the methods that connect to a robot.
+fn constructors(out: &mut Source) {
+    out.docs(&Docs::written([
+        "连接机器人；`config` 中没有设置的项使用规范的默认值。",
+        "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
+    ]));
+    out.line(
+        "\
+pub async fn connect(config: ClientConfig) -> Result<Self, ConnectError> {
+    let connection = Connection::connect(config).await?;
+    Ok(Self { connection })
+}",
+    );
+    out.documented(&Docs::written([
+        "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
+        "Returns at once and connects in the background. Calls made before that wait for the connection\n\
+         within their timeout.",
+    ]));
+    out.line(
+        "\
+#[must_use]
+pub fn connect_lazy(config: ClientConfig) -> Self {
+    Connection::connect_lazy(config).into()
+}",
+    );
+}
+
+/// Writes the methods that give access to the connection.
+fn connection(out: &mut Source, protocol: &str) {
+    out.documented(&Docs::written([
+        "此刻的连接状态；没有连接时说明原因。",
+        "Returns the present state of the connection, with the reason if there is none.",
+    ]));
+    out.line(
+        "\
+#[must_use]
+pub fn state(&self) -> ConnectionState {
+    self.connection.state()
+}",
+    );
+    out.documented(&Docs::written([
+        "连接状态的变化：先是此刻的状态，之后是每一次变化。每次收到 `Connected` 都重新查询机器人的状态：机器人可能重启过。",
+        "The states of the connection: the present one first, then each change. Query the state of the robot\n\
+         at each `Connected`: the robot may have restarted.",
+    ]));
+    out.line(
+        "\
+#[must_use]
+pub fn states(&self) -> ConnectionStates {
+    self.connection.states()
+}",
+    );
+    out.documented(&Docs::written([
+        "等到连接永久关闭，返回原因。",
+        "Waits until the connection is closed for good, and returns the reason.",
+    ]));
+    out.line(
+        "\
+pub async fn closed(&self) -> Loss {
+    self.connection.closed().await
+}",
+    );
+    out.documented(&Docs::written([
+        "连接数据端口：在后台建立，断线后重连，随指令连接一起结束。",
+        "Connects to the data port in the background and reconnects after a loss. It ends with this\n\
+         connection.",
+    ]));
+    out.line(format!(
+        "\
+#[must_use]
+pub fn data(&self) -> DataConnection<{protocol}> {{
+    self.connection.data()
+}}"
+    ));
+    out.documented(&Docs::written([
+        "底层连接：原始指令和单次调用的选项。",
+        "The underlying connection: raw commands and options of a single call.",
+    ]));
+    out.line(format!(
+        "\
+#[must_use]
+pub fn connection(&self) -> &Connection<{protocol}> {{
+    &self.connection
+}}"
+    ));
+    out.documented(&Docs::written([
+        "返回此后全部上报的接收端。每个接收端都收到全部上报，各有自己的队列；没有接收端时，上报不会得到应答。",
+        "Returns a receiver of all reports from now on. Each receiver gets all of them and has its own\n\
+         queue. Without a receiver, reports are not acknowledged.",
+    ]));
+    out.line(
+        "\
+#[must_use]
+pub fn reports(&self) -> Reports {
+    Reports(self.connection.reports())
+}",
+    );
 }
 
 fn stream(out: &mut Source, protocol: &str) {
