@@ -260,13 +260,6 @@ impl Targets {
         Some(self.settings(product)?.out.as_str())
     }
 
-    /// Returns `true` if the docs are generated in this language.
-    #[must_use]
-    pub fn speaks(&self, language: Lang) -> bool {
-        let settings = self.products.get(&Product::Markdown);
-        settings.is_none_or(|settings| settings.languages.include(language))
-    }
-
     /// Returns the languages of a product's texts.
     #[must_use]
     pub fn texts_of(&self, product: Product) -> Languages {
@@ -280,12 +273,14 @@ impl Targets {
         let Some(out) = self.place(Product::Markdown) else {
             return Vec::new();
         };
-        let spoken = Lang::ALL.into_iter().filter(|it| self.speaks(*it));
+        let languages = self.texts_of(Product::Markdown);
         let folder = |language| match language {
             Lang::Zh => out.to_owned(),
             Lang::En => format!("{out}/en"),
         };
-        spoken
+        Lang::ALL
+            .into_iter()
+            .filter(|language| languages.include(*language))
             .map(|language| (language, folder(language)))
             .collect()
     }
