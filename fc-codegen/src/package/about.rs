@@ -34,14 +34,13 @@ pub fn group<'m>(docs: &mut Docs<'m>, group: Option<&'m Group>) {
         docs.text(&group.title);
         docs.texts(group.about.as_ref());
     } else {
-        docs.paragraph("各分组共用的类型。");
-        docs.paragraph("Types that several groups share.");
+        docs.both(["各分组共用的类型。", "Types that several groups share."]);
     }
 }
 
 /// Returns the description of the result codes.
 pub fn results(context: &Context<'_>) -> Docs<'static> {
-    let mut docs = Docs::said(&[
+    let mut docs = Docs::said([
         "结果码。用结果码判断成败，不要用随附的文字。",
         "Result codes. Use the code to detect success, not the text that comes with it.",
     ]);
@@ -62,7 +61,7 @@ pub fn result(result: &ResultCode) -> Docs<'_> {
 pub fn errors(context: &Context<'_>, command: &Operation) -> Docs<'static> {
     let title = &command.title;
     let zh = format!("{}：声明的错误", title.zh);
-    let mut docs = Docs::named(zh, format!("{}: its declared errors", title.en));
+    let mut docs = Docs::said([zh, format!("{}: its declared errors", title.en)]);
     docs.paragraph(context.links(&command.location, &page_of(command)));
     docs
 }
@@ -80,6 +79,15 @@ pub fn protocol(model: &Model) -> Docs<'_> {
     docs
 }
 
+/// Adds the version of the spec.
+pub fn version(docs: &mut Docs<'_>, model: &Model) {
+    let version = &model.protocol.version;
+    docs.sentences([
+        format!("规范版本 {version}。"),
+        format!("Version {version} of the spec."),
+    ]);
+}
+
 /// Returns the description of a table of constants.
 pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
     let mut docs = Docs::titled(&table.title);
@@ -93,16 +101,20 @@ pub fn table<'m>(context: &Context<'_>, table: &'m Table) -> Docs<'m> {
 pub fn id(context: &Context<'_>, entity: &Entity) -> Docs<'static> {
     let title = &entity.title;
     let zh = format!("{}：ID", title.zh);
-    let mut docs = Docs::named(zh, format!("{}: its ID", title.en));
+    let mut docs = Docs::said([zh, format!("{}: its ID", title.en)]);
     docs.paragraph(context.links(&entity.location, "reference/entities.md"));
     docs
 }
 
-/// Returns the description of an enum, with the paragraph `open` about values that are not in the spec.
-pub fn enumeration<'m>(context: &Context<'_>, ty: &'m TypeDef, open: &'static str) -> Docs<'m> {
+/// Returns the description of an enum. `open` adds a paragraph about values that are not in the spec.
+pub fn enumeration<'m>(
+    context: &Context<'_>,
+    ty: &'m TypeDef,
+    open: impl FnOnce(&mut Docs<'m>),
+) -> Docs<'m> {
     let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
-    docs.paragraph(open);
+    open(&mut docs);
     if let Some(since) = &ty.since {
         docs.paragraph(format!("Since {since}."));
     }
@@ -123,7 +135,7 @@ pub fn range(range: &CodeRange) -> Docs<'_> {
 
 /// Returns the description of the method for codes that are not in the spec.
 pub fn unknown() -> Docs<'static> {
-    let mut docs = Docs::said(&[
+    let mut docs = Docs::said([
         "功能码不在规范中的指令。",
         "Commands with a code that is not in the spec.",
     ]);
@@ -133,6 +145,8 @@ pub fn unknown() -> Docs<'static> {
 
 /// Adds the default behaviour of a method for requests without a type.
 fn refused(docs: &mut Docs<'_>) {
-    docs.paragraph("不实现此方法时，按未知指令拒绝。");
-    docs.paragraph("Without this method, the robot refuses them as unknown commands.");
+    docs.both([
+        "不实现此方法时，按未知指令拒绝。",
+        "Without this method, the robot refuses them as unknown commands.",
+    ]);
 }

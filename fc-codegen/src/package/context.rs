@@ -1,37 +1,53 @@
 //! The package, its style, and links from comments to the spec and to the pages.
 
+use super::source::Source;
 use super::style::Style;
 use crate::package::items::{Call, Item, Package, Shape, Spelled};
 use crate::package::language::Language;
+use crate::product::Product;
 use crate::sample::{Profile, Samples};
 use crate::target::Targets;
 use fc_spec::model::{
-    Accepted, Direction, EnumType, EnumValue, Kind, Lang, Location, Model, Operation, StructRef,
-    Type, TypeRef,
+    Accepted, Direction, EnumType, EnumValue, Kind, Lang, Languages, Location, Model, Operation,
+    StructRef, Type, TypeRef,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The package, its style and the location of its documentation.
+/// The package, its style and languages, and the location of its documentation.
 pub struct Context<'m> {
     pub package: Package<'m>,
     pub style: &'static Style,
+    /// The languages of the comments.
+    languages: Languages,
     /// The folder of the pages in each language; empty if the project has no pages.
     docs: Vec<(Lang, String)>,
 }
 
 impl<'m> Context<'m> {
-    /// Creates a context whose comments link to the pages of these targets.
-    pub fn new(
-        model: &'m Model,
-        language: &Language,
-        style: &'static Style,
-        targets: Option<&Targets>,
-    ) -> Self {
+    /// Creates a context whose comments are in both languages and link to no pages.
+    pub fn new(model: &'m Model, language: &Language, style: &'static Style) -> Self {
         Self {
             package: Package::build(model, language),
             style,
-            docs: targets.map_or_else(Vec::new, Targets::docs),
+            languages: Languages::All,
+            docs: Vec::new(),
         }
+    }
+
+    /// Sets the languages of the comments, and the pages to which they link, for a product of these targets.
+    pub fn of_target(self, targets: &Targets, product: Product) -> Self {
+        let languages = targets.texts_of(product);
+        let docs = targets.docs().into_iter();
+        Self {
+            languages,
+            docs: docs.filter(|(it, _)| languages.include(*it)).collect(),
+            ..self
+        }
+    }
+
+    /// Creates an empty file, or a part of one.
+    pub fn source(&self) -> Source {
+        Source::new(self.style, self.languages)
     }
 
     /// Returns the protocol.

@@ -1,20 +1,55 @@
 //! Turns prose of the spec into documentation comments that compilers and documentation tools accept.
 
 use super::style::Comment;
-use fc_spec::model::{Text, has_unprintable, is_hidden};
+use fc_spec::model::{Lang, Languages, Text, has_unprintable, is_hidden};
 use std::borrow::Cow;
 
-/// Paragraphs of a documentation comment, in the Markdown of the spec.
+/// A documentation comment: paragraphs of the spec's Markdown and of the generator's text.
 #[derive(Clone, Debug, Default)]
 pub struct Docs<'t>(Vec<Block<'t>>);
 
 /// A part of a comment between empty lines.
 #[derive(Clone, Debug)]
 enum Block<'t> {
-    /// Markdown of the spec, which is escaped.
-    Prose(Cow<'t, str>),
-    /// Text of the generator, which may link to items.
-    Raw(String),
+    /// Markdown of the spec, which is escaped and wrapped.
+    Prose(Words<'t>),
+    /// Text of the generator, which may link to items and is written unchanged.
+    Raw(Words<'t>),
+}
+
+/// The text of a block, and the languages in which it is emitted.
+#[derive(Clone, Debug)]
+enum Words<'t> {
+    /// A text that does not depend on the language.
+    Any(Cow<'t, str>),
+    /// A text in one language.
+    In(Lang, Cow<'t, str>),
+    /// A text that has one form for both languages together.
+    Joined {
+        zh: Cow<'t, str>,
+        en: Cow<'t, str>,
+        both: String,
+    },
+}
+
+impl<'t> Words<'t> {
+    fn joined<T: Into<Cow<'t, str>>>(pair: [T; 2], both: String) -> Self {
+        let [zh, en] = pair.map(Into::into);
+        Self::Joined { zh, en, both }
+    }
+
+    /// Returns the text in these languages; `None` if they leave it out.
+    fn in_languages(&self, languages: Languages) -> Option<&str> {
+        match self {
+            Self::Any(text) => Some(text),
+            Self::In(language, text) => languages.include(*language).then_some(text),
+            Self::Joined { zh, en, both } => Some(match languages {
+                Languages::Only(Lang::Zh) => zh,
+                Languages::Only(Lang::En) => en,
+                Languages::All | Languages::Any => both,
+            }),
+        }
+    }
 }
 
 impl<'t> Docs<'t> {
@@ -25,20 +60,31 @@ impl<'t> Docs<'t> {
         docs
     }
 
-    /// Creates a comment from the generator's paragraphs.
-    pub fn said(texts: &[&'static str]) -> Self {
+    /// Creates a comment that starts with a Chinese and an English paragraph.
+    pub fn said<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
         let mut docs = Self::default();
-        for text in texts {
-            docs.paragraph(*text);
-        }
+        docs.both(pair);
         docs
     }
 
-    /// Creates a comment from a Chinese and an English paragraph.
-    pub fn named(zh: String, en: String) -> Self {
+    /// Creates a comment that starts with a Chinese and an English text, written unchanged.
+    pub fn written<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
         let mut docs = Self::default();
-        docs.paragraph(zh);
-        docs.paragraph(en);
+        docs.raw_both(pair);
+        docs
+    }
+
+    /// Creates a comment of one line, with the Chinese text before the English one. It is written unchanged.
+    pub fn line<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
+        let mut docs = Self::default();
+        docs.sentences(pair);
+        docs
+    }
+
+    /// Creates a comment that starts with a Chinese line and an English line, written unchanged.
+    pub fn two_lines<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
+        let mut docs = Self::default();
+        docs.raw_lines(pair);
         docs
     }
 
@@ -51,10 +97,7 @@ impl<'t> Docs<'t> {
 
     /// Adds a Chinese and an English paragraph. Adds one paragraph if both are equal.
     pub fn text(&mut self, text: &'t Text) {
-        self.paragraph(text.zh.as_str());
-        if text.en != text.zh {
-            self.paragraph(text.en.as_str());
-        }
+        self.both([text.zh.as_str(), text.en.as_str()]);
     }
 
     /// Adds a text in both languages, if `text` is present.
@@ -64,57 +107,117 @@ impl<'t> Docs<'t> {
         }
     }
 
-    /// Adds a paragraph, unless it is empty.
-    pub fn paragraph(&mut self, text: impl Into<Cow<'t, str>>) {
-        let text = text.into();
-        if !text.trim().is_empty() {
-            self.0.push(Block::Prose(text));
+    /// Adds a Chinese and an English paragraph. Adds one paragraph if both are equal, and none that is empty.
+    pub fn both<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2]) {
+        self.pair(pair, Block::Prose);
+    }
+
+    /// Adds a Chinese and an English text, written unchanged.
+    pub fn raw_both<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2]) {
+        self.pair(pair, Block::Raw);
+    }
+
+    fn pair<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2], block: fn(Words<'t>) -> Block<'t>) {
+        let [zh, en] = pair.map(Into::into);
+        if zh == en {
+            return self.add(block, Words::Any(zh));
         }
+        self.add(block, Words::In(Lang::Zh, zh));
+        self.add(block, Words::In(Lang::En, en));
+    }
+
+    /// Adds a Chinese and an English sentence on one line, written unchanged.
+    pub fn sentences<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2]) {
+        let pair = pair.map(Into::into);
+        let both = pair.concat();
+        self.add(Block::Raw, Words::joined(pair, both));
+    }
+
+    /// Adds a Chinese line and an English line as one paragraph, written unchanged.
+    pub fn raw_lines<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2]) {
+        let pair = pair.map(Into::into);
+        let both = pair.join("\n");
+        self.add(Block::Raw, Words::joined(pair, both));
+    }
+
+    /// Adds a paragraph in Chinese, in English, or in the form for both languages.
+    pub fn joined(&mut self, [zh, en, both]: [String; 3]) {
+        self.add(Block::Prose, Words::joined([zh, en], both));
+    }
+
+    /// Adds a paragraph like [`joined`](Self::joined), written unchanged.
+    pub fn raw_joined(&mut self, [zh, en, both]: [String; 3]) {
+        self.add(Block::Raw, Words::joined([zh, en], both));
+    }
+
+    /// Adds a paragraph that does not depend on the language, unless it is empty.
+    pub fn paragraph(&mut self, text: impl Into<Cow<'t, str>>) {
+        self.add(Block::Prose, Words::Any(text.into()));
     }
 
     /// Adds a short paragraph unchanged, links included, unless it is empty.
-    pub fn raw(&mut self, text: impl Into<String>) {
-        let text = text.into();
-        if !text.is_empty() {
-            self.0.push(Block::Raw(text));
+    pub fn raw(&mut self, text: impl Into<Cow<'t, str>>) {
+        self.add(Block::Raw, Words::Any(text.into()));
+    }
+
+    fn add(&mut self, block: fn(Words<'t>) -> Block<'t>, words: Words<'t>) {
+        let is_empty = match &words {
+            Words::Any(text) | Words::In(_, text) => text.trim().is_empty(),
+            Words::Joined { .. } => false,
+        };
+        if !is_empty {
+            self.0.push(block(words));
         }
     }
 
-    /// Returns `true` if the first two paragraphs are a one-line Chinese title and its English translation.
-    fn starts_with_a_title(&self, width: usize) -> bool {
-        let [Block::Prose(zh), Block::Prose(en), ..] = self.0.as_slice() else {
-            return false;
-        };
-        let is_short = |text: &str, lines: usize| {
-            let text = text.trim();
-            !text.contains('\n') && !starts_block(text) && columns_of(text) <= lines * width
-        };
-        !zh.is_ascii()
-            && en.starts_with(|c: char| c.is_ascii())
-            && is_short(zh, 1)
-            && is_short(en, 2)
-    }
-
-    /// Passes each line of the comment to `line`, without comment marks.
+    /// Passes each line of the comment to `line`, without comment marks. Leaves out texts in other languages.
     ///
     /// Lines have at most `width` columns where a space allows a break. Chinese is not broken, because a line break in
     /// it would show as a space.
     ///
     /// A title in both languages forms one paragraph, because documentation tools list only the first paragraph.
-    pub fn lines(&self, comment: &Comment, width: usize, mut line: impl FnMut(&str)) {
-        for (index, block) in self.0.iter().enumerate() {
-            if index > 1 || index == 1 && !self.starts_with_a_title(width) {
+    pub fn lines(
+        &self,
+        languages: Languages,
+        comment: &Comment,
+        width: usize,
+        mut line: impl FnMut(&str),
+    ) {
+        let blocks = self.0.iter().filter_map(|block| {
+            let (Block::Prose(words) | Block::Raw(words)) = block;
+            Some((block, words.in_languages(languages)?))
+        });
+        let blocks: Vec<_> = blocks.collect();
+        for (index, (block, text)) in blocks.iter().enumerate() {
+            if index > 1 || index == 1 && !starts_with_a_title(&blocks, width) {
                 line("");
             }
             match block {
-                Block::Prose(text) => prose(text.trim(), comment, width, &mut line),
+                Block::Prose(_) => prose(text.trim(), comment, width, &mut line),
                 // Names and keys of the spec must not end the comment either.
-                Block::Raw(text) => (text.lines()).for_each(|text| {
+                Block::Raw(_) => (text.lines()).for_each(|text| {
                     line(&(comment.code)(&clean(text)));
                 }),
             }
         }
     }
+}
+
+/// Returns `true` if the first two paragraphs are a one-line Chinese title and its English translation.
+fn starts_with_a_title(blocks: &[(&Block<'_>, &str)], width: usize) -> bool {
+    let [
+        (Block::Prose(Words::In(Lang::Zh, _)), zh),
+        (Block::Prose(Words::In(Lang::En, _)), en),
+        ..,
+    ] = blocks
+    else {
+        return false;
+    };
+    let is_short = |text: &str, lines: usize| {
+        let text = text.trim();
+        !text.contains('\n') && !starts_block(text) && columns_of(text) <= lines * width
+    };
+    is_short(zh, 1) && is_short(en, 2)
 }
 
 /// Writes one block of Markdown. Fenced code stays unchanged, other text is escaped, and paragraphs are wrapped.
@@ -311,101 +414,4 @@ fn address_length(text: &str) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Plain Markdown, in which a fence without a language is `text`.
-    const COMMENT: Comment = Comment {
-        open: "",
-        mark: "",
-        close: "",
-        begins_at_once: false,
-        prose: escape_links,
-        code: |line| Cow::Borrowed(line),
-        fence: |language| {
-            if language.is_empty() {
-                "text"
-            } else {
-                language
-            }
-        },
-    };
-
-    fn lines(docs: &Docs<'_>, width: usize) -> Vec<String> {
-        let mut lines = Vec::new();
-        docs.lines(&COMMENT, width, |line| lines.push(line.to_owned()));
-        lines
-    }
-
-    fn shown(text: &str, width: usize) -> String {
-        let mut docs = Docs::default();
-        docs.paragraph(text);
-        lines(&docs, width).join("\n")
-    }
-
-    #[test]
-    fn prose_has_no_links_of_its_own() {
-        for (text, expected) in [
-            ("a [b] <T> `[c] <T>`", r"a \[b\] \<T> `[c] <T>`"),
-            ("见 https://a.example/x。完", "见 <https://a.example/x>。完"),
-            ("see <https://a.example/x>.", "see <https://a.example/x>."),
-            ("see (https://a.example/x).", "see (<https://a.example/x>)."),
-            (r"kept \[ as \\ it is", r"kept \[ as \\ it is"),
-            ("lone ` tick [x]", r"lone ` tick \[x\]"),
-            ("a\u{202e}b\tc\rd", "ab cd"),
-        ] {
-            assert_eq!(shown(text, 80), expected, "{text:?}");
-        }
-    }
-
-    #[test]
-    fn code_stands_as_it_is() {
-        assert_eq!(shown("a\n\n```\nx[0]\n```", 80), "a\n\n```text\nx[0]\n```");
-        assert_eq!(shown("```json\n{}\n", 80), "```json\n{}\n```");
-        assert_eq!(shown("a\n\n      b", 80), "a\n\n   b");
-    }
-
-    #[test]
-    fn english_is_wrapped_and_chinese_is_not() {
-        assert_eq!(shown("one two three", 7), "one two\nthree");
-        assert_eq!(shown("one two - three", 7), "one two -\nthree");
-        assert_eq!(
-            shown("返回此刻回充进行到哪一步", 8),
-            "返回此刻回充进行到哪一步"
-        );
-        assert_eq!(
-            shown("- one two\n  1. three four", 8),
-            "- one\n  two\n  1. three\n     four"
-        );
-    }
-
-    #[test]
-    fn a_text_that_needs_no_translation_stands_once() {
-        let same = Text {
-            zh: "MD5".into(),
-            en: "MD5".into(),
-        };
-        assert_eq!(lines(&Docs::titled(&same), 80), ["MD5"]);
-        let both = Text {
-            zh: "站点".into(),
-            en: "Station".into(),
-        };
-        assert_eq!(lines(&Docs::titled(&both), 80), ["站点", "Station"]);
-    }
-
-    #[test]
-    fn a_text_of_several_lines_is_a_paragraph_of_its_own() {
-        for (zh, en) in [
-            ("站点\n编号", "Station"),
-            ("站点", "1. Station"),
-            ("站点", "two\nlines"),
-        ] {
-            let text = Text {
-                zh: zh.into(),
-                en: en.into(),
-            };
-            let lines = lines(&Docs::titled(&text), 80);
-            assert!(lines.iter().any(String::is_empty), "{lines:?}");
-        }
-    }
-}
+mod tests;

@@ -214,8 +214,8 @@ pub fn operation_end<'m>(style: &Style, docs: &mut Docs<'m>, operation: &'m Oper
     );
     for DeclaredError { code, cause } in &operation.errors {
         if let Some(cause) = cause {
-            docs.paragraph(format!("`{code}`：{}", cause.zh));
-            docs.paragraph(format!("`{code}`: {}", cause.en));
+            let zh = format!("`{code}`：{}", cause.zh);
+            docs.both([zh, format!("`{code}`: {}", cause.en)]);
         }
     }
 }
@@ -319,22 +319,21 @@ pub fn body_state(docs: &mut Docs<'_>, body: &Body) {
     };
     match (&body.note, body.state) {
         (Some(note), _) => {
-            docs.paragraph(format!("{zh}{}", note.zh));
-            docs.paragraph(format!("{en}{}", note.en));
+            docs.both([format!("{zh}{}", note.zh), format!("{en}{}", note.en)]);
         }
         (None, BodyState::Stated | BodyState::Confirmed) => {}
-        (None, BodyState::Free) => {
-            docs.paragraph("有意不限定键，所有键原样保留。");
-            docs.paragraph("Any keys, by design; every key is kept unchanged.");
-        }
-        (None, BodyState::Inferred) => {
-            docs.paragraph("推断：依据源文档的其他部分。");
-            docs.paragraph("Inferred: from other parts of the source document.");
-        }
-        (None, BodyState::Open) => {
-            docs.paragraph("待定：源文档缺失，所有键原样保留。");
-            docs.paragraph("Open: missing from the source document; every key is kept unchanged.");
-        }
+        (None, BodyState::Free) => docs.both([
+            "有意不限定键，所有键原样保留。",
+            "Any keys, by design; every key is kept unchanged.",
+        ]),
+        (None, BodyState::Inferred) => docs.both([
+            "推断：依据源文档的其他部分。",
+            "Inferred: from other parts of the source document.",
+        ]),
+        (None, BodyState::Open) => docs.both([
+            "待定：源文档缺失，所有键原样保留。",
+            "Open: missing from the source document; every key is kept unchanged.",
+        ]),
     }
 }
 
@@ -347,20 +346,13 @@ pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
         (_, Direction::Response) => ("：应答", ": acknowledgement"),
     };
     let title = &operation.title;
-    let (zh, en) = (format!("{}{zh}", title.zh), format!("{}{en}", title.en));
-    let is_same = zh == en;
-    let mut docs = Docs::default();
-    docs.paragraph(zh);
-    if !is_same {
-        docs.paragraph(en);
-    }
-    docs
+    Docs::said([format!("{}{zh}", title.zh), format!("{}{en}", title.en)])
 }
 
 /// Adds the reason for a deprecation, and the replacement.
 pub fn withdrawn(docs: &mut Docs<'_>, deprecation: &Deprecation) {
-    docs.paragraph(format!("已弃用：{}", deprecation.note.zh));
-    docs.paragraph(format!("Deprecated: {}", withdrawn_note(deprecation)));
+    let zh = format!("已弃用：{}", deprecation.note.zh);
+    docs.both([zh, format!("Deprecated: {}", withdrawn_note(deprecation))]);
 }
 
 /// Returns the deprecation as one English line, for an attribute.

@@ -60,10 +60,12 @@ pub fn state<'m>(
 pub fn docs(docs: &mut Docs<'_>, context: &Context<'_>, command: &Operation) {
     for (set_off, report, messages) in set_off(context, command) {
         let ty = (context.style.link)(context.name_of(&messages.request.ty));
-        docs.raw(format!(
-            "`.follow()`：先返回响应，再逐个返回它引起的 {ty}。\n\
-             `.follow()` returns the response, and then each {ty} that the command sets off.",
-        ));
+        docs.raw_lines([
+            format!("`.follow()`：先返回响应，再逐个返回它引起的 {ty}。"),
+            format!(
+                "`.follow()` returns the response, and then each {ty} that the command sets off."
+            ),
+        ]);
         ending(docs, context, set_off, report, messages);
     }
 }
@@ -124,20 +126,21 @@ pub fn ending(
             "The spec marks no state as final. The app stops it.".to_owned(),
         ),
     };
-    docs.paragraph(zh);
-    docs.paragraph(en);
+    docs.both([zh, en]);
     if set_off.tied.is_empty() {
-        docs.paragraph("报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。");
-        docs.paragraph(
+        docs.both([
+            "报文中没有字段把上报与调用对应起来：由别的调用引起的同类上报也会收到。",
             "No key ties a report to a call: reports of this kind from other calls arrive as well.",
-        );
+        ]);
     } else {
         let ties = set_off.tied.iter().map(|tie| {
             let (command, report) = (tie.command.join("."), tie.report.join("."));
             format!("`{}.{command}` = `{report}`", tie.side.name())
         });
         let ties = ties.collect::<Vec<_>>().join(", ");
-        docs.paragraph(format!("只收到属于这次调用的上报：{ties}。"));
-        docs.paragraph(format!("Only reports of this call arrive: {ties}."));
+        docs.both([
+            format!("只收到属于这次调用的上报：{ties}。"),
+            format!("Only reports of this call arrive: {ties}."),
+        ]);
     }
 }

@@ -4,11 +4,14 @@
 
 use super::docs::{Docs, columns_of};
 use super::style::{Comment, Style};
+use fc_spec::model::Languages;
 
 /// A file, or a part of one.
 #[derive(Clone, Debug)]
 pub struct Source {
     style: &'static Style,
+    /// The languages of the comments.
+    languages: Languages,
     text: String,
     level: usize,
     /// `true` if a block was just opened.
@@ -16,14 +19,25 @@ pub struct Source {
 }
 
 impl Source {
-    /// Creates an empty file in this style.
-    pub fn new(style: &'static Style) -> Self {
+    /// Creates an empty file in this style, with comments in these languages.
+    pub fn new(style: &'static Style, languages: Languages) -> Self {
         Self {
             style,
+            languages,
             text: String::new(),
             level: 0,
             opened: true,
         }
+    }
+
+    /// Creates an empty part of this file.
+    pub fn part(&self) -> Self {
+        Self::new(self.style, self.languages)
+    }
+
+    /// Returns the languages of the comments.
+    pub fn languages(&self) -> Languages {
+        self.languages
     }
 
     /// Returns the text written so far.
@@ -74,10 +88,15 @@ impl Source {
     pub fn comment(&mut self, comment: &Comment, docs: &Docs<'_>) {
         let width = self.room().saturating_sub(comment.mark.len() + 1);
         if comment.open.is_empty() {
-            return docs.lines(comment, width, |line| self.marked(comment.mark, line));
+            let languages = self.languages;
+            return docs.lines(languages, comment, width, |line| {
+                self.marked(comment.mark, line);
+            });
         }
         let mut lines = Vec::new();
-        docs.lines(comment, width, |line| lines.push(line.to_owned()));
+        docs.lines(self.languages, comment, width, |line| {
+            lines.push(line.to_owned());
+        });
         let gap = if comment.begins_at_once { "" } else { " " };
         let close = comment.close.trim_start();
         match lines.as_slice() {
@@ -245,7 +264,7 @@ mod tests {
 
     #[test]
     fn lists_break_when_they_are_too_long() {
-        let mut out = Source::new(&BRACES);
+        let mut out = Source::new(&BRACES, Languages::All);
         out.list("short(", &["a", "b"], ")");
         let long = ["a".repeat(20), "b".repeat(20)];
         out.list("long(", &long, ")");
@@ -258,7 +277,7 @@ mod tests {
 
     #[test]
     fn blank_lines_stand_alone() {
-        let mut out = Source::new(&BRACES);
+        let mut out = Source::new(&BRACES, Languages::All);
         out.blank();
         out.block("mod a", |out| {
             out.blank();
@@ -274,7 +293,7 @@ mod tests {
 
     #[test]
     fn comments_open_and_close() {
-        let mut out = Source::new(&BRACES);
+        let mut out = Source::new(&BRACES, Languages::All);
         out.docs(&docs(&[]));
         out.docs(&docs(&["one"]));
         out.block("a", |out| out.docs(&docs(&["one two", "three"])));
@@ -282,7 +301,7 @@ mod tests {
             "/** one */\na {\n    /**\n     * one two\n     *\n     * three\n     */\n}\n";
         assert_eq!(out.finish(), expected);
 
-        let mut out = Source::new(&INDENTED);
+        let mut out = Source::new(&INDENTED, Languages::All);
         out.enclose("class A:", "", |out| {
             out.docs(&docs(&["one"]));
             out.docs(&docs(&["one", "two"]));

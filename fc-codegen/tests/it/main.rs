@@ -11,6 +11,7 @@
 )]
 
 mod churn;
+mod comments;
 mod conditions;
 mod constructions;
 mod docs_support;

@@ -51,15 +51,14 @@ fn docs_are_made_in_the_languages_asked_for() {
     );
 }
 
-/// Comments link to the pages in the languages of the docs, and to none without docs.
+/// Comments link to the pages that have a language of the comments, and to none without docs.
 #[test]
 fn comments_name_the_docs_where_they_are() {
     let comments = |yaml: &str| {
         let targets = Targets::read(yaml).expect("sound");
+        let targets = targets.only(&["rust".to_owned()]).expect("there");
         let artifacts = generate(&good_spec::model(), &targets).expect("made");
-        let rust = artifacts
-            .into_iter()
-            .filter(|artifact| artifact.target == "rust");
+        let rust = artifacts.into_iter();
         rust.map(|artifact| artifact.contents).collect::<String>()
     };
     let without = comments("targets: { rust: }");
@@ -67,15 +66,18 @@ fn comments_name_the_docs_where_they_are() {
     assert!(!without.contains("Docs: "));
     let zh = "- 文档：`handbook/reference/commands/get_thing.md`";
     let en = "- Docs: `handbook/en/reference/commands/get_thing.md`";
-    for (languages, links) in [
-        ("", [true, true]),
-        (", languages: [zh]", [true, false]),
-        (", languages: [en]", [false, true]),
+    for (of_docs, of_rust, links) in [
+        ("[zh, en]", "[zh, en]", [true, true]),
+        ("[zh]", "[zh, en]", [true, false]),
+        ("[en]", "[zh, en]", [false, true]),
+        ("[zh, en]", "[zh]", [true, false]),
+        ("[zh]", "[en]", [false, false]),
     ] {
-        let docs = format!("markdown: {{ out: handbook{languages} }}");
-        let elsewhere = comments(&format!("targets: {{ rust: , {docs} }}"));
+        let docs = format!("markdown: {{ out: handbook, languages: {of_docs} }}");
+        let rust = format!("rust: {{ languages: {of_rust} }}");
+        let elsewhere = comments(&format!("targets: {{ {rust}, {docs} }}"));
         let found = [zh, en].map(|link| elsewhere.contains(link));
-        assert_eq!(found, links, "{docs}");
+        assert_eq!(found, links, "{rust}, {docs}");
     }
 }
 
@@ -140,8 +142,8 @@ fn what_the_file_cannot_say_is_refused_by_name() {
             "the target `schema` cannot have `audience`",
         ),
         (
-            "targets: { rust: { languages: [zh] } }",
-            "the target `rust` cannot have `languages`",
+            "targets: { vectors: { languages: [zh] } }",
+            "the target `vectors` cannot have `languages`",
         ),
         (
             "targets: { mine: { plugin: x } }",

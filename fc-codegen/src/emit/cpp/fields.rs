@@ -20,7 +20,7 @@ pub fn source(
     groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line(format!("#include \"{space}/groups/{}.hpp\"", header.id));
     out.blank();
     out.line("#include <ostream>");

@@ -101,7 +101,7 @@ pub fn header_file(
     includes: &Includes,
     body: impl FnOnce(&mut Source),
 ) -> String {
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line("#pragma once");
     out.blank();
     includes.lines(&mut out);
@@ -118,7 +118,7 @@ pub fn source_file(
     body: impl FnOnce(&mut Source),
 ) -> String {
     let space = &namespace(context);
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line(format!("#include \"{space}/{header}\""));
     out.blank();
     out.line(before);
@@ -129,11 +129,6 @@ pub fn source_file(
 }
 
 impl Source {
-    /// Creates an empty C++ file.
-    pub fn cpp() -> Self {
-        Self::new(&CPP)
-    }
-
     /// Writes `open(a, b)close` on one line if it fits.
     ///
     /// Otherwise the parameters are aligned below the first, as many to a line as fit.
@@ -180,9 +175,9 @@ impl Source {
             return self.line(format!("{using} {of}<{all}>;"));
         }
         // Uses the layout with fewer lines.
-        let mut beside = Self::cpp();
+        let mut beside = self.part();
         beside.parameters(&format!("{using} {of}<"), types, ">;");
-        let mut below = Self::cpp();
+        let mut below = self.part();
         below.line(using);
         below.parameters(&format!("    {of}<"), types, ">;");
         let (beside, below) = (beside.finish(), below.finish());

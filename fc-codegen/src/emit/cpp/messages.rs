@@ -10,6 +10,7 @@ use super::types::{Header, integer_type, name_of, namespace};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
+use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Call, Item, Shape, Spelled};
@@ -17,7 +18,7 @@ use crate::package::language::Case;
 use crate::package::process::has_states;
 use crate::package::source::Source;
 use fc_spec::model::{
-    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Type, Value, Variant,
+    EnumRepr, EnumType, EnumValue, Field, Kind, Number, Scalar, Text, Type, Value, Variant,
 };
 
 /// Generates a header, with the groups whose operations are in it.
@@ -27,7 +28,7 @@ pub fn header(
     groups: &[&NamedGroup<'_, '_>],
 ) -> String {
     let space = &namespace(context);
-    let mut body = Source::cpp();
+    let mut body = context.source();
     let mut includes = Includes::default();
     includes.standard("iosfwd");
     includes.own("fc_runtime/message.hpp");
@@ -38,7 +39,7 @@ pub fn header(
         types(&mut body, &mut includes, context, header);
     }
     groups::declare(&mut body, &mut includes, context, groups);
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line("#pragma once");
     out.blank();
     includes.lines(&mut out);
@@ -125,7 +126,10 @@ fn structure(
             }
             out.line(format!("{ty} {};", field.name));
         }
-        out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
+        out.docs(&Docs::line([
+            "其他键，原样保留。",
+            "Other keys, kept unchanged.",
+        ]));
         out.line("fc_runtime::Extra extra;");
         for field in fields {
             let Some(default) = field.details().default.as_ref().filter(|_| field.optional) else {
@@ -136,9 +140,10 @@ fn structure(
             let value = tables::spelled(context, &value, &field.ty);
             let name = &field.name;
             out.blank();
-            out.line(format!(
-                "/// `{name}`，没有时为规范的默认值。`{name}`, or its default."
-            ));
+            out.docs(&Docs::line([
+                format!("`{name}`，没有时为规范的默认值。"),
+                format!("`{name}`, or its default."),
+            ]));
             // A C++ name must not have two underscores in a row.
             let stem = name.trim_end_matches('_');
             let open = format!("[[nodiscard]] {ty} {stem}_or_default() const {{");
@@ -223,7 +228,10 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item
         },
     );
     out.blank();
-    out.line("/// 以此错误拒绝。A refusal with this error.");
+    out.docs(&Docs::line([
+        "以此错误拒绝。",
+        "A refusal with this error.",
+    ]));
     out.line(format!(
         "[[nodiscard]] fc_runtime::Refusal refusal({name} error);"
     ));
@@ -239,12 +247,11 @@ fn enumeration(
     values: &[Spelled<'_, EnumValue>],
 ) {
     let name = &item.ty.name;
-    let open = if shape.closed {
-        ""
-    } else {
-        "其他值原样保留。Any other value is kept unchanged."
-    };
-    out.docs(&about::enumeration(context, item.ty.of, open));
+    out.docs(&about::enumeration(context, item.ty.of, |docs| {
+        if !shape.closed {
+            docs.sentences(["其他值原样保留。", "Any other value is kept unchanged."]);
+        }
+    }));
     let each = |out: &mut Source| {
         for value in values {
             out.docs(&facts::value_docs(value));
@@ -272,7 +279,10 @@ fn enumeration(
         }
     };
     out.blank();
-    out.line("/// 是否为规范中的值。Returns `true` for a value of the spec.");
+    out.docs(&Docs::line([
+        "是否为规范中的值。",
+        "Returns `true` for a value of the spec.",
+    ]));
     out.line(format!(
         "[[nodiscard]] bool is_known({by_value} value) noexcept;"
     ));
@@ -288,20 +298,26 @@ fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
     out.line(format!("class {name} {{"));
     out.line(" public:");
     out.enclose("", "", |out| {
-        out.line("/// 规范中的值。The values of the spec.");
+        out.docs(&Docs::line(["规范中的值。", "The values of the spec."]));
         out.enclose("enum class Value {", "};", each);
         out.blank();
         out.line(format!("{name}() = default;"));
         out.line("// NOLINTNEXTLINE(google-explicit-constructor): a value is one of these");
         out.line(format!("{name}(Value value);"));
-        out.line("/// 其他文字，原样保留。Any text, kept unchanged.");
+        out.docs(&Docs::line([
+            "其他文字，原样保留。",
+            "Any text, kept unchanged.",
+        ]));
         out.line(format!(
             "explicit {name}(std::string wire) : wire_(std::move(wire)) {{}}"
         ));
         out.blank();
-        out.line("/// 规范中的值；其他文字没有。The value of the spec; empty for any other text.");
+        out.docs(&Docs::line([
+            "规范中的值；其他文字没有。",
+            "The value of the spec; empty for any other text.",
+        ]));
         out.line("[[nodiscard]] std::optional<Value> value() const;");
-        out.line("/// 报文中的文字。The text that is sent.");
+        out.docs(&Docs::line(["报文中的文字。", "The text that is sent."]));
         out.line("[[nodiscard]] const std::string& wire() const noexcept { return wire_; }");
         out.blank();
         for (operator, not) in [("==", ""), ("!=", "!")] {
@@ -341,12 +357,12 @@ fn choice(
     includes.standard("variant");
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
-        docs.paragraph(format!(
-            "- `{}`：{} {}",
-            context.name_of(&variant.ty),
-            variant.text.zh,
-            variant.text.en
-        ));
+        let (ty, Text { zh, en }) = (context.name_of(&variant.ty), &variant.text);
+        docs.joined([
+            format!("- `{ty}`：{zh}"),
+            format!("- `{ty}`: {en}"),
+            format!("- `{ty}`：{zh} {en}"),
+        ]);
         facts::variant_end(&mut docs, variant);
     }
     out.docs(&docs);

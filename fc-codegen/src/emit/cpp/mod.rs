@@ -28,7 +28,7 @@ const SOURCES: &str = "sources.cmake";
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, &CPP, &layout::CPP, Some(targets));
+    let context = &Context::new(model, &CPP, &layout::CPP).of_target(targets, Product::Cpp);
     let space = &types::namespace(context);
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);

@@ -3,6 +3,7 @@
 use super::fields::enumerators;
 use super::types::namespace;
 use crate::package::context::{Context, Step};
+use crate::package::docs::Docs;
 use crate::package::items::{Call, Item, Shape, Spelled};
 use crate::package::process::{has_states, next_values, set_off, state};
 use crate::package::source::Source;
@@ -24,27 +25,31 @@ pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
             "is_error",
         ),
     ] {
-        out.line(format!("/// {zh}{en}"));
+        out.docs(&Docs::line([zh, en]));
         out.line(format!(
             "[[nodiscard]] bool {name}({by_value} value) noexcept;"
         ));
     }
     let parameters = [format!("{by_value} value"), format!("{by_value} previous")];
     if shape.order.is_some() {
-        if is_complete(shape) {
-            out.line("/// 规范列出的全部切换中，是否可以直接跟在 `previous` 之后。");
-            out.line(
-                "/// Returns `true` if the spec lists the change from `previous`. No other change occurs.",
-            );
+        out.docs(&Docs::two_lines(if is_complete(shape) {
+            [
+                "规范列出的全部切换中，是否可以直接跟在 `previous` 之后。",
+                "Returns `true` if the spec lists the change from `previous`. No other change occurs.",
+            ]
         } else {
-            out.line("/// 正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。");
-            out.line("/// Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.");
-        }
+            [
+                "正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。",
+                "Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.",
+            ]
+        }));
         let open = format!("[[nodiscard]] bool {}(", follows(shape));
         out.parameters(&open, &parameters, ") noexcept;");
     }
-    out.line("/// 规范是否允许 `previous` 之后出现此状态。");
-    out.line("/// Returns `true` if the spec allows this state after `previous`.");
+    out.docs(&Docs::said([
+        "规范是否允许 `previous` 之后出现此状态。",
+        "Returns `true` if the spec allows this state after `previous`.",
+    ]));
     out.parameters(
         "[[nodiscard]] bool is_in_order(",
         &parameters,

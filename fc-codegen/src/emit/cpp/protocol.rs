@@ -46,9 +46,15 @@ fn results(out: &mut Source, context: &Context<'_>) {
         }
     });
     out.blank();
-    out.line("/// 随结果码发送的文字。The text sent with the code.");
+    out.docs(&Docs::line([
+        "随结果码发送的文字。",
+        "The text sent with the code.",
+    ]));
     out.line("[[nodiscard]] std::string_view text(ResultCode code) noexcept;");
-    out.line("/// 以此结果码拒绝。A refusal with this code.");
+    out.docs(&Docs::line([
+        "以此结果码拒绝。",
+        "A refusal with this code.",
+    ]));
     out.line("[[nodiscard]] fc_runtime::Refusal refusal(ResultCode code);");
 }
 
@@ -58,8 +64,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
         return;
     }
     out.blank();
-    let what = ["数据流的功能码。", "Codes of streams."];
-    out.docs(&Docs::said(&what));
+    out.docs(&Docs::said(["数据流的功能码。", "Codes of streams."]));
     out.enclose("enum class StreamCode : std::uint16_t {", "};", |out| {
         for stream in &context.package.streams {
             let mut docs = facts::operation_docs(stream);
@@ -230,8 +235,10 @@ fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
 
 /// Declares the function that adds a group's operations to the protocol.
 pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    out.line("/// 把这一组的指令、上报和数据流加到 `protocol().operations` 中。");
-    out.line("/// Adds the operations of the group to those of `protocol()`.");
+    out.docs(&Docs::said([
+        "把这一组的指令、上报和数据流加到 `protocol().operations` 中。",
+        "Adds the operations of the group to those of `protocol()`.",
+    ]));
     let open = format!("void add_{}(", group.id);
     let parameters = ["std::vector<fc_runtime::OperationInfo>& operations".to_owned()];
     out.parameters(&open, &parameters, ");");

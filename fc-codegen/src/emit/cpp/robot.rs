@@ -26,37 +26,35 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         out.blank();
         example(out, groups);
         out.blank();
-        out.line(
-            "\
-/// 包装一个机器人，交给 `fc_runtime::Server::bind`。
-///
-/// Wraps a robot for `fc_runtime::Server::bind`.
-[[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);",
-        );
+        out.docs(&Docs::written([
+            "包装一个机器人，交给 `fc_runtime::Server::bind`。",
+            "Wraps a robot for `fc_runtime::Server::bind`.",
+        ]));
+        out.line("[[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);");
         out.blank();
         reporter(out, groups);
     })
 }
 
 fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) {
-    out.line(
-        "\
-/// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
-/// reports a missing method.
-///
-/// 只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。指令齐全之后，改为继承 `Robot`。
-///
-/// A robot with some of the commands derives from `PartialRobot`, which refuses the others as not
-/// implemented. Once the robot has all commands, change `PartialRobot` to `Robot`.
-///
-/// 各个方法可能同时被多个线程调用。处理超时后，机器人替它返回超时，方法仍运行到结束；
-/// 方法用 `Context::is_abandoned` 得知调用方不再等待。
-///
-/// Several threads can call methods at the same time. After a timeout, the robot responds with a timeout,
-/// and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any
-/// more.",
-    );
+    let mut docs = Docs::two_lines([
+        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。",
+        "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler\n\
+         reports a missing method.",
+    ]);
+    docs.raw_both([
+        "只实现了一部分指令的机器人，先继承 `PartialRobot`：没有写的指令以“未实现”拒绝。指令齐全之后，改为继承 `Robot`。",
+        "A robot with some of the commands derives from `PartialRobot`, which refuses the others as not\n\
+         implemented. Once the robot has all commands, change `PartialRobot` to `Robot`.",
+    ]);
+    docs.raw_both([
+        "各个方法可能同时被多个线程调用。处理超时后，机器人替它返回超时，方法仍运行到结束；\n\
+         方法用 `Context::is_abandoned` 得知调用方不再等待。",
+        "Several threads can call methods at the same time. After a timeout, the robot responds with a timeout,\n\
+         and the method runs to its end. It can check `Context::is_abandoned`: the caller does not wait any\n\
+         more.",
+    ]);
+    out.docs(&docs);
     let bases = with_commands(groups, "Robot").into_iter();
     let bases: Vec<String> = bases.map(|it| format!("public {it}")).collect();
     out.class("Robot", &bases);
@@ -78,7 +76,7 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>])
 /// Writes the class with the handlers of a group's commands.
 pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
     let name = group.part("Robot");
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组指令，由 `Robot` 处理。",
         "The commands of a group as `Robot` handles them.",
     ]));
@@ -107,7 +105,7 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
 
 /// Writes the class with the responses of `PartialRobot` and `ExampleRobot` to a group's commands.
 pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组指令，`PartialRobot` 和 `ExampleRobot` 由 `Base` 响应。",
         "The commands of a group in `PartialRobot` and `ExampleRobot`. `Base` responds to them.",
     ]));
@@ -124,10 +122,11 @@ pub fn defaults(out: &mut Source, group: &NamedGroup<'_, '_>) {
                 "const fc_runtime::Context& /*context*/".to_owned(),
                 format!("const {}& request", command.request.ty.name),
             ];
-            out.line(format!(
-                "/// 见 `Robot::{0}`。See `Robot::{0}`.",
-                command.method
-            ));
+            let method = command.method;
+            out.docs(&Docs::line([
+                format!("见 `Robot::{method}`。"),
+                format!("See `Robot::{method}`."),
+            ]));
             out.parameters(&open, &parameters, ") override {");
             out.line("  return Base::answer_(request);");
             out.line("}");
@@ -159,7 +158,7 @@ fn serve_raw(name: &str) -> String {
 /// Writes a robot class with a part for each group, one per line.
 fn of_parts(
     out: &mut Source,
-    docs: &str,
+    about: [&str; 2],
     name: &str,
     answers: &str,
     constructor: &str,
@@ -170,7 +169,7 @@ fn of_parts(
     let parts: Vec<String> = [answers].into_iter().chain(parts).collect();
     // The formatter would fill the lines, and a new group would change all of them.
     out.line("// clang-format off");
-    out.line(docs);
+    out.docs(&Docs::two_lines(about));
     out.line(format!("class {name} : public fc_runtime::Stacked<"));
     out.line(format!("    {}> {{", parts.join(",\n    ")));
     out.line(" public:");
@@ -183,9 +182,10 @@ fn of_parts(
 fn partial(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
-        "\
-/// 只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。
-/// A robot with some of the commands. It refuses the others as not implemented. It is a `Robot`.",
+        [
+            "只实现了一部分指令的机器人：其余的以“未实现”拒绝。它是一个 `Robot`。",
+            "A robot with some of the commands. It refuses the others as not implemented. It is a `Robot`.",
+        ],
         "PartialRobot",
         "Refusing",
         "PartialRobot()",
@@ -196,12 +196,13 @@ fn partial(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 fn example(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     of_parts(
         out,
-        "\
-/// 用规范中的示例响应指令，只用于演示和测试。它不执行运动指令和影响不详的指令，以“未实现”拒绝；
-/// `pretend_motion` 为真时假装成功。它是一个 `Robot`。
-/// Responds with the examples of the spec, only for demos and tests. It does not execute commands that move
-/// the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion`, it
-/// pretends success. It is a `Robot`.",
+        [
+            "用规范中的示例响应指令，只用于演示和测试。它不执行运动指令和影响不详的指令，以“未实现”拒绝；\n\
+             `pretend_motion` 为真时假装成功。它是一个 `Robot`。",
+            "Responds with the examples of the spec, only for demos and tests. It does not execute commands that move\n\
+             the robot or have an unknown effect, and refuses them as not implemented. With `pretend_motion`, it\n\
+             pretends success. It is a `Robot`.",
+        ],
         "ExampleRobot",
         "Exemplary",
         "explicit ExampleRobot(bool pretend_motion = false)",
@@ -210,32 +211,32 @@ fn example(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
 }
 
 fn reporter(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
-    out.line(
-        "\
-/// 发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。
-///
-/// Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,
-/// the report goes to all connected apps. The server must outlive this object.",
-    );
+    out.docs(&Docs::written([
+        "发送上报：每种上报一个方法，等到每个 app 都有结果才返回。不指定连接时，发给此刻连接的全部 app。",
+        "Pushes reports: one method per report, which waits for the outcome at each app. Without a connection,\n\
+         the report goes to all connected apps. The server must outlive this object.",
+    ]));
     let bases = with_reports(groups, "Reporter").into_iter();
     let bases: Vec<String> = bases.map(|it| format!("public {it}<Reporter>")).collect();
     out.class("Reporter", &bases);
-    out.line(
-        " public:
-  explicit Reporter(const fc_runtime::Server& server) : robot_server_(&server) {}
-
-  /// 发送上报的服务端。The server that sends the reports.
-  [[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }
-
- private:
-  const fc_runtime::Server* robot_server_;
-};",
-    );
+    out.line(" public:");
+    out.enclose("", "", |out| {
+        out.line("explicit Reporter(const fc_runtime::Server& server) : robot_server_(&server) {}");
+        out.documented(&Docs::line([
+            "发送上报的服务端。",
+            "The server that sends the reports.",
+        ]));
+        out.line(
+            "[[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }",
+        );
+    });
+    out.blank();
+    out.line(" private:\n  const fc_runtime::Server* robot_server_;\n};");
 }
 
 /// Writes the reports of a group as methods of the reporter.
 pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一组主动上报，是 `Reporter` 的方法；`Self` 就是它。",
         "The reports of a group as methods of `Reporter` (`Self`).",
     ]));
@@ -262,8 +263,10 @@ pub fn reporters(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_,
 
 /// Declares the function that passes a request to its method.
 pub fn declare_serve(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    out.line("/// 由机器人处理这一组的指令；其他指令没有结果。");
-    out.line("/// Has a robot handle a command of the group; none if it is of another.");
+    out.docs(&Docs::said([
+        "由机器人处理这一组的指令；其他指令没有结果。",
+        "Has a robot handle a command of the group; none if it is of another.",
+    ]));
     let open = format!(
         "[[nodiscard]] std::optional<fc_runtime::Handled> serve_{}(",
         group.id

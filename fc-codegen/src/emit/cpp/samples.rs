@@ -217,7 +217,7 @@ pub fn samples_file(context: &Context<'_>) -> String {
     let writer = Writer::new(context);
     let run = &SampleRun::build(context);
     let space = &namespace(context);
-    let mut out = Source::cpp();
+    let mut out = context.source();
     out.line("// The samples of the documentation. They call every command and receive every report and stream.");
     let mut includes = Includes::default();
     for name in [

@@ -1,10 +1,8 @@
 //! The app's side: one method per command, and methods that follow its reports.
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
-use super::messages::both;
 use super::operations::{deprecated, way};
 use super::streams;
-use super::text::STYLE;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -15,68 +13,84 @@ use crate::package::source::Source;
 
 /// Generates `Client.kt`.
 pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     let protocol = &context.package.name;
     let parts = parts(groups, "Client", |it| !it.commands.is_empty());
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "一个机器人，从 app 一侧看：每条指令一个方法。协程用 `suspend` 方法，Java 用 `Async` 方法。",
         "A robot as seen from the app: one method per command, `suspend` for coroutines and `Async` for Java.",
     ]));
     wrapper(&mut out, "Client", PROPERTY, CONNECTION, &parts);
     let supers: Vec<String> = [vec!["AutoCloseable".to_owned()], parts].concat();
     out.block(heading(")", &supers), |out| {
+        out.docs(&Docs::line([
+            "此刻的连接状态。",
+            "The present state of the connection.",
+        ]));
+        out.line("public val state: ConnectionState get() = connection.state");
+        out.documented(&Docs::line([
+            "连接状态的变化，先是此刻的状态。",
+            "The states of the connection, the present one first.",
+        ]));
+        out.line("public fun states(): Flow<ConnectionState> = connection.states()");
+        out.documented(&Docs::line([
+            "等到连接永久关闭，返回原因。",
+            "Waits until the connection is closed for good, and returns the reason.",
+        ]));
         out.line(
             "\
-/** 此刻的连接状态。The present state of the connection. */
-public val state: ConnectionState get() = connection.state
-
-/** 连接状态的变化，先是此刻的状态。The states of the connection, the present one first. */
-public fun states(): Flow<ConnectionState> = connection.states()
-
-/** 等到连接永久关闭，返回原因。Waits until the connection is closed for good, and returns the reason. */
 @JvmSynthetic
-public suspend fun closed(): Loss = connection.closed()
-
-/**
- * 返回此后全部上报的接收端。没有接收端时，上报不会得到应答。
- *
- * Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged. The `message` of a report has
- * one of the types of [Operations]; distinguish them with `when` and `is`.
- */
-public fun reports(): Reports = connection.reports()
-
-/** 连接数据端口。Connects to the data port in the background, and reconnects after a loss. */
-public fun data(): DataConnection = connection.data()
-
-/** 关闭连接。Closes the connection. */
-override fun close(): Unit = connection.close()",
+public suspend fun closed(): Loss = connection.closed()",
         );
-        out.documented(&both("建立连接。", "Makes connections."));
+        out.documented(&Docs::written([
+            "返回此后全部上报的接收端。没有接收端时，上报不会得到应答。",
+            "Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged. The `message` of a report has\n\
+             one of the types of [Operations]; distinguish them with `when` and `is`.",
+        ]));
+        out.line("public fun reports(): Reports = connection.reports()");
+        out.documented(&Docs::line([
+            "连接数据端口。",
+            "Connects to the data port in the background, and reconnects after a loss.",
+        ]));
+        out.line("public fun data(): DataConnection = connection.data()");
+        out.documented(&Docs::line([
+            "关闭连接。",
+            "Closes the connection.",
+        ]));
+        out.line("override fun close(): Unit = connection.close()");
+        out.documented(&Docs::line(["建立连接。", "Makes connections."]));
         out.block("public companion object", |out| {
+            let mut docs = Docs::written([
+                "连接机器人；`config` 中没有设置的项使用规范的默认值。",
+                "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
+            ]);
+            docs.raw(
+                "@throws fc.runtime.ConnectError if the first attempt fails",
+            );
+            out.docs(&docs);
             out.line(format!(
                 "\
-/**
- * 连接机器人；`config` 中没有设置的项使用规范的默认值。
- *
- * Connects to a robot. Settings missing from `config` have the defaults of the spec.
- *
- * @throws fc.runtime.ConnectError if the first attempt fails
- */
 @JvmSynthetic
 public suspend fun connect(config: ClientConfig = ClientConfig()): Client =
-    Client(Connection.connect({protocol}, config))
-
-/** [connect]，供 Java 使用。[connect] for Java. */
+    Client(Connection.connect({protocol}, config))"
+            ));
+            out.documented(&Docs::line([
+                "[connect]，供 Java 使用。",
+                "[connect] for Java.",
+            ]));
+            out.line(format!(
+                "\
 @JvmStatic
 @JvmOverloads
 public fun connectAsync(config: ClientConfig = ClientConfig()): CompletableFuture<Client> =
-    Connection.connectAsync({protocol}, config).thenApply {{ Client(it) }}
-
-/**
- * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
- *
- * Returns at once and connects in the background. Calls made before that wait within their timeout.
- */
+    Connection.connectAsync({protocol}, config).thenApply {{ Client(it) }}"
+            ));
+            out.documented(&Docs::written([
+                "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
+                "Returns at once and connects in the background. Calls made before that wait within their timeout.",
+            ]));
+            out.line(format!(
+                "\
 @JvmStatic
 @JvmOverloads
 public fun connectLazy(config: ClientConfig = ClientConfig()): Client = Client(Connection.connectLazy({protocol}, config))"
@@ -89,8 +103,10 @@ public fun connectLazy(config: ClientConfig = ClientConfig()): Client = Client(C
 
 const PROPERTY: &str = "connection: Connection";
 
-const CONNECTION: &str =
-    "/** 底层连接。The underlying connection: raw commands and options of a call. */";
+const CONNECTION: [&str; 2] = [
+    "底层连接。",
+    "The underlying connection: raw commands and options of a call.",
+];
 
 /// Writes a group's part of `Client`: a method for each command.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
@@ -98,7 +114,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         return;
     }
     part_of(out, group, "Client", &part_name(group, "Client"), |out| {
-        out.line(CONNECTION);
+        out.docs(&Docs::line(CONNECTION));
         out.line(format!("public val {PROPERTY}"));
         for command in &group.commands {
             call(out, context, command);
@@ -138,23 +154,31 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &format!("): {response} ="),
         &format!("connection.call(Operations.{method}, request)"),
     );
-    let docs = Docs::linked(format!("[{method}]，供 Java 使用。[{method}] for Java."));
-    let mut for_java = |parameter: &str, body: &str| {
+    let docs = for_java(method);
+    let mut twin = |parameter: &str, body: &str| {
         out.documented(&docs);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
         function(out, &open, parameter, &close, body);
     };
-    for_java(
+    twin(
         &given,
         &format!("connection.callAsync(Operations.{method}, request)"),
     );
     // `@JvmOverloads` does not work in an interface.
     if let Some(bare) = bare {
-        for_java("", &format!("{method}Async({bare})"));
+        twin("", &format!("{method}Async({bare})"));
     }
     followed(out, context, command, &parameter);
+}
+
+/// Creates the comment on the form of a method for Java.
+pub fn for_java(method: &str) -> Docs<'static> {
+    Docs::line([
+        format!("[{method}]，供 Java 使用。"),
+        format!("[{method}] for Java."),
+    ])
 }
 
 /// Writes a method for each kind of report that a command sets off.
@@ -167,10 +191,11 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
             continue;
         };
         let reported_type = &reported.request.ty.name;
-        let mut docs = Docs::linked(format!(
-            "[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。\n\
-             [{method}]: returns the response, and then each [{reported_type}] that the command sets off.",
-        ));
+        let mut docs = Docs::default();
+        docs.raw_lines([
+            format!("[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。"),
+            format!("[{method}]: returns the response, and then each [{reported_type}] that the command sets off."),
+        ]);
         ending(&mut docs, context, set_off, report, messages);
         docs.raw("@throws fc.runtime.CallError if the response is not a success");
         let ties = set_off.tied.iter().map(|tie| {

@@ -2,7 +2,6 @@
 //!
 //! Public classes such as `Client` combine one part from each group. Their files list groups and name no operation.
 
-use super::text::STYLE;
 use super::{client, messages, operations, robot, streams};
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -26,8 +25,10 @@ pub fn part_of(
 ) {
     let mut docs = Docs::default();
     if let Some(of) = group.of {
-        docs.paragraph(format!("{}：`{whole}` 中的一部分。", of.title.zh));
-        docs.paragraph(format!("{}: its part of `{whole}`.", of.title.en));
+        docs.both([
+            format!("{}：`{whole}` 中的一部分。", of.title.zh),
+            format!("{}: its part of `{whole}`.", of.title.en),
+        ]);
     }
     out.documented(&docs);
     out.block(["public interface ", head].concat(), body);
@@ -35,7 +36,7 @@ pub fn part_of(
 
 /// Generates the file of a group, or of the types that several groups share.
 pub fn group_file(context: &Context<'_>, group: &Group<'_, '_>) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     operations::part(&mut out, context, group);
     client::part(&mut out, context, group);
     robot::part(&mut out, context, group);
@@ -66,14 +67,14 @@ pub fn heading(head: &str, supers: &[String]) -> String {
 }
 
 /// Writes the head of a class with one property, which its parts use.
-pub fn wrapper(out: &mut Source, name: &str, property: &str, docs: &str, parts: &[String]) {
+pub fn wrapper(out: &mut Source, name: &str, property: &str, about: [&str; 2], parts: &[String]) {
     let modifier = if parts.is_empty() {
         "public"
     } else {
         "override"
     };
     out.enclose(&format!("public class {name}("), "", |out| {
-        out.line(docs);
+        out.docs(&Docs::line(about));
         out.line(format!("{modifier} val {property},"));
     });
 }

@@ -5,14 +5,16 @@ use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::docs::{Docs, columns_of};
+use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::FieldMarks;
 use crate::package::process::{has_states, next_values};
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, StateOrder, Type, Value, Variant};
+use fc_spec::model::{
+    EnumRepr, EnumType, EnumValue, Field, StateOrder, Text, Type, Value, Variant,
+};
 
 /// Writes message types.
 pub fn types(out: &mut Source, context: &Context<'_>, items: &[Item<'_>]) {
@@ -57,10 +59,10 @@ fn message(
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
                 let (property, ty) = (&field.name, type_of(context, &field.ty));
-                out.documented(&both(
+                out.documented(&Docs::line([
                     "同上；没有时为默认值。",
                     "The same, or the default if it is absent.",
-                ));
+                ]));
                 out.line(format!(
                     "public val {property}OrDefault: {ty} get() = {property} ?: {default}"
                 ));
@@ -70,10 +72,10 @@ fn message(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.documented(&both(
+        out.documented(&Docs::line([
             "以此消息的内容为起点的构造器。",
             "A builder that starts with the content of this message.",
-        ));
+        ]));
         out.line("public fun toBuilder(): Builder = Builder(this)");
         out.blank();
         builder(out, context, name, fields);
@@ -112,17 +114,6 @@ fn spelled(value: &Expr<'_>) -> String {
     expr::expression(value, &Type::Json)
 }
 
-/// Creates a comment of the generator, on one line if it is short.
-pub fn both(zh: &'static str, en: &'static str) -> Docs<'static> {
-    if columns_of(zh) + en.len() <= SHORT {
-        return Docs::linked([zh, en].concat());
-    }
-    Docs::said(&[zh, en])
-}
-
-/// The maximum width of a comment on one line, in columns.
-const SHORT: usize = 100;
-
 fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>) {
     let (name, constant) = (&field.name, constant(context, field));
     let mark = if field.optional { "?" } else { "" };
@@ -133,9 +124,10 @@ fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>)
 }
 
 fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
-    out.docs(&Docs::linked(format!(
-        "逐项设置 [{name}] 的字段。Collects the fields of a [{name}]."
-    )));
+    out.docs(&Docs::line([
+        format!("逐项设置 [{name}] 的字段。"),
+        format!("Collects the fields of a [{name}]."),
+    ]));
     let head = "public class Builder internal constructor(from: ";
     let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
     let head = heading(out, &format!("{head}{name}?)"), &supers);
@@ -172,7 +164,7 @@ fn companion(
     if example != "{}" {
         arguments.push(literal(&example));
     }
-    let docs = both("此类型。", "The type.");
+    let docs = Docs::line(["此类型。", "The type."]);
     out.docs(&docs);
     let joined = arguments.join(", ");
     let head = format!("public companion object : MessageType<{name}>(");
@@ -204,16 +196,16 @@ fn companion(
             out.line(format!("private val {} = {made}", constant(context, field)));
         }
         conditions(out, context, fields);
-        out.documented(&both(
+        out.documented(&Docs::line([
             "一个空的构造器，供 Java 使用。",
             "An empty builder, for Java.",
-        ));
+        ]));
         out.line("@JvmStatic");
         out.line("public fun builder(): Builder = Builder(null)");
-        out.documented(&both(
+        out.documented(&Docs::line([
             "用 `build` 设置字段，构造消息。",
             "Builds a message with the fields that `build` sets.",
-        ));
+        ]));
         out.line("@JvmSynthetic");
         out.line(format!(
             "public inline operator fun invoke(build: Builder.() -> Unit): {name} ="
@@ -254,7 +246,7 @@ fn enumeration(
     values: &[Spelled<'_, EnumValue>],
 ) {
     let name = &item.ty.name;
-    let docs = about::enumeration(context, item.ty.of, "");
+    let docs = about::enumeration(context, item.ty.of, |_| ());
     let (wire, base, kind) = match shape.repr {
         EnumRepr::Int(kind) => ("Long", "Int", Some(plain_codec(&Type::Int(kind)))),
         EnumRepr::String => ("String", "Text", None),
@@ -284,7 +276,7 @@ override val isError: Boolean get() = steps.isError(wire)
 override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
             ));
         }
-        out.documented(&both("规范中的全部取值。", "The values of the spec."));
+        out.documented(&Docs::line(["规范中的全部取值。", "The values of the spec."]));
         let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
         out.block(head, |out| {
             for value in values {
@@ -297,10 +289,7 @@ override fun mayFollow(previous: State): Boolean = previous is {name} && steps.m
                 out.blank();
                 steps(out, shape, values);
             }
-            out.documented(&both(
-                "`wire` 对应的取值；规范中没有的值原样保留。",
-                "The value for `wire`. A value that is not in the spec is kept unchanged.",
-            ));
+            out.documented(&Docs::said(["`wire` 对应的取值；规范中没有的值原样保留。", "The value for `wire`. A value that is not in the spec is kept unchanged."]));
             out.line("@JvmStatic");
             out.line(format!("override fun of(wire: {wire}): {name} = super.of(wire)"));
             out.blank();
@@ -345,15 +334,17 @@ fn choice(
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
         let ty = context.name_of(&variant.ty);
-        docs.raw(format!(
-            "- [{ty}]：{}\n  {}",
-            variant.text.zh, variant.text.en
-        ));
+        let Text { zh, en } = &variant.text;
+        docs.raw_joined([
+            format!("- [{ty}]：{zh}"),
+            format!("- [{ty}]: {en}"),
+            format!("- [{ty}]：{zh}\n  {en}"),
+        ]);
         facts::variant_end(&mut docs, variant);
     }
     out.docs(&docs);
     out.block(format!("public sealed interface {name}"), |out| {
-        out.docs(&both("全部形式。", "Its forms."));
+        out.docs(&Docs::line(["全部形式。", "Its forms."]));
         let head = format!(
             "public companion object : ChoiceType<{name}>({})",
             literal(name)

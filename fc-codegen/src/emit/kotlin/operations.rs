@@ -1,8 +1,7 @@
 //! `Operations`: every command and report as a value, with the facts that the runtime needs.
 
 use super::group::{heading, part_name, part_of, parts};
-use super::messages::both;
-use super::text::{STYLE, literal};
+use super::text::literal;
 use crate::package::context::{Context, page_of};
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -13,9 +12,9 @@ use crate::package::source::Source;
 use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
 
 /// Generates `Operations.kt`.
-pub fn operations_file(groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
-    out.docs(&Docs::said(&[
+pub fn operations_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
+    let mut out = context.source();
+    out.docs(&Docs::said([
         "每条指令和每个上报。",
         "Every command and every report.",
     ]));
@@ -49,10 +48,10 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.enclose(&head, "", |out| out.line(getter));
             }
         }
-        out.documented(&both(
+        out.documented(&Docs::line([
             "这些常量供 Java 使用。",
             "The same as constants, for Java.",
-        ));
+        ]));
         out.block("public companion object", |out| {
             for command in &group.commands {
                 command_value(out, context, command);

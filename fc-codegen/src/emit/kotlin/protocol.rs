@@ -1,8 +1,7 @@
 //! The protocol: header, envelopes, result codes, ports and limits.
 
 use super::group::parts;
-use super::messages::both;
-use super::text::{STYLE, integer, literal, plain_codec, type_of};
+use super::text::{integer, literal, plain_codec, type_of};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -15,18 +14,18 @@ use fc_spec::model::{DigestAlgorithm, EnvelopeField, HeaderField, HeaderRole};
 
 /// Generates `Protocol.kt`.
 pub fn protocol_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     protocol(&mut out, context, groups);
     let package = &context.package;
     for (name, said, fields) in [
         (
             "RequestEnvelope",
-            &about::REQUEST_ENVELOPE,
+            about::REQUEST_ENVELOPE,
             &package.request_envelope,
         ),
         (
             "ResponseEnvelope",
-            &about::RESPONSE_ENVELOPE,
+            about::RESPONSE_ENVELOPE,
             &package.response_envelope,
         ),
     ] {
@@ -191,7 +190,7 @@ fn envelope(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.documented(&both("此类型。", "The type."));
+        out.documented(&Docs::line(["此类型。", "The type."]));
         out.block(
             format!("public companion object : MessageType<{name}>(\"{name}\")"),
             |out| {
@@ -223,14 +222,20 @@ fn results(out: &mut Source, context: &Context<'_>) {
         "public class ResultCode private constructor(wire: Long) : IntValue(wire)",
         |out| {
             out.line("override val enumType: EnumType<ResultCode> get() = ResultCode");
-            out.documented(&both(
+            out.documented(&Docs::line([
                 "随结果码发送的文字。",
                 "The text sent with the code.",
-            ));
+            ]));
             out.line("public val text: String get() = texts[wire] ?: \"\"");
-            out.documented(&both("以此结果码拒绝。", "The refusal with this code."));
+            out.documented(&Docs::line([
+                "以此结果码拒绝。",
+                "The refusal with this code.",
+            ]));
             out.line("public fun refusal(): Refusal = Refusal(wire, text)");
-            out.documented(&both("规范中的全部结果码。", "The codes of the spec."));
+            out.documented(&Docs::line([
+                "规范中的全部结果码。",
+                "The codes of the spec.",
+            ]));
             out.block(
                 "public companion object : IntEnumType<ResultCode>(\"ResultCode\", Types.I64)",
                 |out| {
@@ -250,7 +255,10 @@ fn results(out: &mut Source, context: &Context<'_>) {
                         .collect();
                     out.blank();
                     out.lines("private val texts: Map<Long, String> = mapOf(", &texts, ")");
-                    out.documented(&both("`wire` 对应的结果码。", "The code for `wire`."));
+                    out.documented(&Docs::line([
+                        "`wire` 对应的结果码。",
+                        "The code for `wire`.",
+                    ]));
                     out.line("@JvmStatic");
                     out.line("override fun of(wire: Long): ResultCode = super.of(wire)");
                     out.blank();

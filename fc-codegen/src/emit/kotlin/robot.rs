@@ -1,9 +1,8 @@
 //! The robot's side: complete, partial and example robots, and typed reports and streams.
 
+use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
-use super::messages::both;
 use super::streams::{self, SERVER, SERVER_DOCS};
-use super::text::STYLE;
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -17,29 +16,32 @@ use std::borrow::Cow;
 
 /// Generates `Robot.kt`.
 pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     let handlers = parts(groups, "Handlers", has_commands);
     let ranges = pass_through(context).into_iter();
     let ranges: Vec<_> = ranges
         .map(|(words, range)| (method(&words).into_owned(), range))
         .collect();
     let unknown = method(UNKNOWN);
-    out.docs(&Docs::said(&[
+    let mut docs = Docs::said([
         "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。只实现了一部分指令的机器人，改为实现 `PartialRobot`。",
         "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing method. A robot with some of the commands implements `PartialRobot`, which refuses the others as not implemented.",
+    ]);
+    docs.both([
         "处理超时或断线之后，调用方不再等待响应。运动指令和影响不详的指令，处理程序仍运行到结束，可以查看 `Context.isAbandoned`；其他指令的处理程序被取消。",
         "After a timeout or a loss, the caller does not wait for the response any more. The handler of a command that moves the robot, or with an unknown effect, runs to its end and can check `Context.isAbandoned`. The handler of any other command is cancelled.",
-    ]));
+    ]);
+    out.docs(&docs);
     out.block(heading("public interface Robot", &handlers), |out| {
         for (name, range) in &ranges {
             raw(out, name, &about::range(range));
         }
         raw(out, &unknown, &about::unknown());
     });
-    out.documented(&both(
+    out.documented(&Docs::said([
         "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
         "A robot with some of the commands. It refuses the others as not implemented.",
-    ));
+    ]));
     let partial = parts(groups, "Partial", has_commands);
     out.line(heading(
         "public interface PartialRobot",
@@ -47,10 +49,10 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     ));
     out.blank();
     example(&mut out, groups);
-    out.documented(&both(
+    out.documented(&Docs::said([
         "由此机器人处理规范中的指令，供 [Server.bind] 使用。",
         "A service that handles the commands with this robot, for [Server.bind].",
-    ));
+    ]));
     out.enclose("public fun Robot.service(): Service =", "", |out| {
         out.line("Service()");
         for group in groups.iter().filter(|it| has_commands(it)) {
@@ -155,13 +157,16 @@ fn raw(out: &mut Source, name: &str, docs: &Docs<'_>) {
 }
 
 fn example(out: &mut Source, groups: &[Group<'_, '_>]) {
-    out.docs(&Docs::said(&[
+    let mut docs = Docs::said([
         "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
         "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
+    ]);
+    docs.both([
         "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。",
         "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With \
          `pretendMotion`, it pretends success.",
-    ]));
+    ]);
+    out.docs(&docs);
     let groups = groups.iter().filter(|it| has_commands(it));
     let answers = groups.map(|group| {
         let [handlers, example] = ["Handlers", "Example"].map(|whole| part_name(group, whole));
@@ -172,9 +177,12 @@ fn example(out: &mut Source, groups: &[Group<'_, '_>]) {
         &robot_and(answers),
     ));
     out.blank();
+    out.docs(&Docs::line([
+        "各分组的示例共有的部分。",
+        "The common part of the examples of all groups.",
+    ]));
     out.line(
         "\
-/** 各分组的示例共有的部分。The common part of the examples of all groups. */
 internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
     /** The response to a command that may move the robot. */
     protected fun <A : Message> pretended(context: Context, response: MessageType<A>): A =
@@ -218,10 +226,10 @@ fn signature(head: &str, command: &Call<'_>) -> String {
 
 fn reporter(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Reporter", |it| !it.reports.is_empty());
-    out.docs(&both(
+    out.docs(&Docs::said([
         "发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。",
         "Pushes reports: one method per report, which waits for the outcome at each app.",
-    ));
+    ]));
     wrapper(out, "Reporter", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -233,7 +241,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         "Reporter",
         &part_name(group, "Reporter"),
         |out| {
-            out.line(SERVER_DOCS);
+            out.docs(&Docs::line(SERVER_DOCS));
             out.line(format!("public val {SERVER}"));
             for report in &group.reports {
                 let mut docs = facts::method_docs(context, report.operation, |_| ());
@@ -245,9 +253,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.line(format!(
                     "    server.push(audience, Operations.{method}, report)"
                 ));
-                out.documented(&Docs::linked(format!(
-                    "[{method}]，供 Java 使用。[{method}] for Java."
-                )));
+                out.documented(&for_java(method));
                 out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
                 out.line(format!(
                     "    server.pushAsync(audience, Operations.{method}, report)"

@@ -129,7 +129,7 @@ fn assign(out: &mut Source, before: &str, message: &Record<'_>) {
 fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
     let is_there = |name: &str| context.package.has_type(name);
     let name = free(&["SampleRobot", "RobotOfTheSamples"], is_there);
-    out.docs(&Docs::said(&[
+    out.docs(&Docs::said([
         "用文档中的示例响应全部指令。",
         "Responds to every command with the samples of the documentation.",
     ]));
@@ -150,7 +150,7 @@ fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
 #[must_use]
 pub fn samples_file(context: &Context<'_>) -> Source {
     let run = &SampleRun::build(context);
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     robot(&mut out, context, run);
     for step in run.steps() {
         let [name, ty] = step.parameter();
@@ -159,7 +159,7 @@ pub fn samples_file(context: &Context<'_>) -> Source {
         out.blank();
         out.block(head, |out| write(out, context, &step.sample));
     }
-    out.documented(&Docs::said(&[
+    out.documented(&Docs::said([
         "运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。",
         "Runs all samples, and closes `client` at the end. `server` is the robot of the connection.",
     ]));

@@ -1,8 +1,8 @@
 //! The streams of the data port on both sides.
 
 use super::group::{heading, part_name, part_of, parts, wrapper};
-use super::messages::both;
 use crate::package::context::Context;
+use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::group::Group;
 use crate::package::items::Spelled;
@@ -15,10 +15,10 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&both(
+    out.documented(&Docs::said([
         "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
         "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
-    ));
+    ]));
     wrapper(out, "Streams", DATA, DATA_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -29,24 +29,23 @@ pub fn for_robot(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&both(
-        "机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。",
-        "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it.",
-    ));
+    out.documented(&Docs::said(["机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。", "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it."]));
     wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
 }
 
 const DATA: &str = "data: DataConnection";
 
-const DATA_DOCS: &str =
-    "/** 数据连接。The data connection: its state, and frames without a subscription. */";
+const DATA_DOCS: [&str; 2] = [
+    "数据连接。",
+    "The data connection: its state, and frames without a subscription.",
+];
 
 /// The property that sends the robot's reports and streams.
 pub const SERVER: &str = "server: Server";
 
 /// The comment on that property.
-pub const SERVER_DOCS: &str = "/** 由它发送。The server that sends them. */";
+pub const SERVER_DOCS: [&str; 2] = ["由它发送。", "The server that sends them."];
 
 /// Writes the streams of a group.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
@@ -54,7 +53,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         return;
     }
     part_of(out, group, "Streams", &part_name(group, "Streams"), |out| {
-        out.line(DATA_DOCS);
+        out.docs(&Docs::line(DATA_DOCS));
         out.line(format!("public val {DATA}"));
         for stream in &group.streams {
             app(out, context, stream);
@@ -69,7 +68,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         "Streamer",
         &part_name(group, "Streamer"),
         |out| {
-            out.line(SERVER_DOCS);
+            out.docs(&Docs::line(SERVER_DOCS));
             out.line(format!("public val {SERVER}"));
             for stream in group.subscribed() {
                 robot(out, context, stream);

@@ -1,7 +1,6 @@
 //! The spec's tables of constants. Each is a function that returns its rows as messages.
 
 use super::expr::{self, Form};
-use super::text::STYLE;
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -11,9 +10,9 @@ use fc_spec::model::Type;
 
 /// Generates `Tables.kt`.
 pub fn tables_file(context: &Context<'_>) -> Source {
-    let mut out = Source::new(&STYLE);
+    let mut out = context.source();
     let expressions = Expressions::new(&context.package);
-    out.docs(&Docs::said(&about::TABLES));
+    out.docs(&Docs::said(about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {
             out.documented(&about::table(context, table.of));

@@ -88,7 +88,7 @@ impl<'m> Press<'m> {
     fn new(model: &'m Model, targets: &'m Targets) -> Self {
         let engine = Engine::new().unwrap_or_else(|error| panic!("{error:#}"));
         let languages = Lang::ALL.into_iter();
-        let languages = languages.filter(|lang| targets.speaks(*lang));
+        let languages = languages.filter(|lang| targets.texts_of(Product::Markdown).include(*lang));
         Self {
             book: Book::new(model, tabs::of(model, targets)),
             targets,

@@ -3,7 +3,6 @@
 use crate::emit::{cpp, kotlin, python, rust, typescript};
 use crate::package::context::Context;
 use crate::package::samples::{self, Sample, Shown};
-use crate::package::source::Source;
 use crate::product::Product;
 use crate::product::below;
 use crate::target::{Targets, part};
@@ -63,9 +62,9 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
             continue;
         };
         let language = (shown.language)(targets);
-        let context = Context::new(&model, language, shown.style, None);
+        let context = Context::new(&model, language, shown.style);
         let tab = |sample: Sample<'_, '_>| {
-            let mut out = Source::new(context.style);
+            let mut out = context.source();
             (shown.write)(&mut out, &context, &sample);
             Tab {
                 info: format!("{} [{}]", shown.fence, language.title),

@@ -136,10 +136,10 @@ fn follow_docs<'c>(
     followed: &str,
 ) -> Docs<'c> {
     let mut docs = Docs::titled(&command.title);
-    docs.raw(format!(
-        "先返回响应，再逐个返回它引起的 `{followed}`。\n\
-         Returns the response, and then each `{followed}` that the command sets off.",
-    ));
+    docs.raw_lines([
+        format!("先返回响应，再逐个返回它引起的 `{followed}`。"),
+        format!("Returns the response, and then each `{followed}` that the command sets off."),
+    ]);
     let mut all = process::set_off(context, command);
     if let Some((set_off, _, messages)) = all.find(|(_, it, _)| it.name == report.name) {
         process::ending(&mut docs, context, set_off, report, messages);

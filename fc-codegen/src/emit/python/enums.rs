@@ -3,6 +3,7 @@
 use super::literal::wire;
 use super::source::{Code, Python};
 use crate::package::context::Context;
+use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::{Item, Spelled};
 use crate::package::process::{self, has_states, next_values};
@@ -82,7 +83,10 @@ fn states(out: &mut Source, shape: &EnumType, values: &[Spelled<'_, EnumValue>])
     }
     out.line("@classmethod");
     out.suite("def process(cls) -> rt.Process", |out| {
-        out.line("\"\"\"规范对这些状态的说明。The description of these states in the spec.\"\"\"");
+        out.docstring(&Docs::line([
+            "规范对这些状态的说明。",
+            "The description of these states in the spec.",
+        ]));
         Code::call("rt.Process", said).write(out, "return ", "");
     });
 }

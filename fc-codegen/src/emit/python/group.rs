@@ -5,7 +5,7 @@ use super::messages;
 use super::modules::{GroupPart, ModulePlan, NamedGroup, Used};
 use super::operations::{self, constant};
 use super::robot;
-use super::source::{PYTHON, Python, exported};
+use super::source::{Python, exported};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -21,7 +21,7 @@ pub fn group_file(
     let groups = plan.members(home);
     let items: Vec<_> = groups.iter().flat_map(|group| group.types).collect();
     let mut used = Used::default();
-    let mut body = Source::new(&PYTHON);
+    let mut body = context.source();
     messages::types(&mut body, &mut used, context, &items);
     if groups.iter().any(|group| !group.operations.is_empty()) {
         operations::values(&mut body, context, &groups);
@@ -42,7 +42,7 @@ pub fn group_file(
     for group in &groups {
         about::group(&mut docs, group.of);
     }
-    let mut out = Source::new(&PYTHON);
+    let mut out = context.source();
     out.docstring(&docs);
     used.imports(&mut out, context, plan, home);
     out.blank();
@@ -92,7 +92,7 @@ pub fn part_of(
     let (id, [class, zh, en]) = (group.id, about);
     let zh = format!("`{class}` 的一部分：`{id}` 组的{zh}。");
     let en = format!("Part of `{class}`: the {en} of the group `{id}`.");
-    let docs = Docs::named(zh, en);
+    let docs = Docs::said([zh, en]);
     out.gap();
     out.suite(&format!("class {name}({base})"), |out| {
         out.docstring(&docs);

@@ -7,6 +7,7 @@ use super::source::{Code, Python, assign_text};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
+use crate::package::docs::Docs;
 use crate::package::expr::Expressions;
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
@@ -14,7 +15,7 @@ use crate::package::language::Case;
 use crate::package::marks::{Bound, FieldMarks};
 use crate::package::name::free;
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, Field, Scalar, Type, TypeShape, Value, Variant};
+use fc_spec::model::{EnumRepr, Field, Scalar, Text, Type, TypeShape, Value, Variant};
 
 /// Writes message types. Enums come first, and choices last.
 pub fn types<'m>(
@@ -91,9 +92,10 @@ fn structure<'m>(
             used.library("typing", "ClassVar");
             let ty = ty.strip_suffix(" | rt.Unknown[int]").unwrap_or(ty);
             out.line(format!("{constant}: ClassVar[{ty}] = {value}"));
-            out.line(format!(
-                "\"\"\"没有 `{name}` 时的取值。The default of `{name}`.\"\"\""
-            ));
+            out.docstring(&Docs::line([
+                format!("没有 `{name}` 时的取值。"),
+                format!("The default of `{name}`."),
+            ]));
             out.blank();
         }
         for field in fields {
@@ -128,9 +130,10 @@ fn structure<'m>(
             out.blank();
             out.line("@property");
             out.suite(&format!("def {accessor}(self) -> {ty}"), |out| {
-                out.line(format!(
-                    "\"\"\"`{name}`，没有时为默认值。`{name}`, or its default.\"\"\""
-                ));
+                out.docstring(&Docs::line([
+                    format!("`{name}`，没有时为默认值。"),
+                    format!("`{name}`, or its default."),
+                ]));
                 out.line(format!(
                     "return self.{constant} if self.{name} is None else self.{name}"
                 ));
@@ -142,7 +145,10 @@ fn structure<'m>(
 /// Writes the field that keeps unknown keys.
 pub fn extra(out: &mut Source) {
     out.line("extra: rt.Extra = field(default_factory=rt.Extra)");
-    out.line("\"\"\"其他键，原样保留。Other keys, kept unchanged.\"\"\"");
+    out.docstring(&Docs::line([
+        "其他键，原样保留。",
+        "Other keys, kept unchanged.",
+    ]));
 }
 
 /// Returns the type of a field. An id field has its id type, if one exists.
@@ -313,8 +319,8 @@ fn choice<'m>(
     let mut docs = facts::type_docs(context, item);
     for variant in variants {
         let ty = context.name_of(&variant.of.ty);
-        docs.paragraph(format!("`{ty}`：{}", variant.text.zh));
-        docs.paragraph(format!("`{ty}`: {}", variant.text.en));
+        let Text { zh, en } = &variant.text;
+        docs.both([format!("`{ty}`：{zh}"), format!("`{ty}`: {en}")]);
         facts::variant_end(&mut docs, variant);
     }
     out.docstring(&docs);

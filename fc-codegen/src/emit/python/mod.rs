@@ -28,7 +28,8 @@ use modules::ModulePlan;
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.python(), &source::PYTHON, Some(targets));
+    let context =
+        &Context::new(model, targets.python(), &source::PYTHON).of_target(targets, Product::Python);
     let plan = &ModulePlan::build(context);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();
@@ -38,9 +39,13 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         (source("__init__.py"), all, root::root_file(context)),
         (source("call.py"), all, root::call(context, &package)),
         (source("client.py"), all, stubs::client(context, plan)),
-        (source("groups/__init__.py"), all, root::groups(plan, ids)),
-        (source("messages.py"), all, root::messages()),
-        (source("operations.py"), all, root::operations()),
+        (
+            source("groups/__init__.py"),
+            all,
+            root::groups(context, plan),
+        ),
+        (source("messages.py"), all, root::messages(context)),
+        (source("operations.py"), all, root::operations(context)),
         (
             source("protocol.py"),
             all,

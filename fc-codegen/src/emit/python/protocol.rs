@@ -45,8 +45,8 @@ pub fn name(context: &Context<'_>) -> String {
 /// Generates `protocol.py`.
 pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
     let package = &context.package;
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&Docs::said(&about::WIRE));
+    let mut out = context.source();
+    out.docstring(&Docs::said(about::WIRE));
     out.blank();
     out.line("from __future__ import annotations");
     out.blank();
@@ -69,7 +69,7 @@ pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String
         &mut out,
         context,
         "RequestEnvelope",
-        &about::REQUEST_ENVELOPE,
+        about::REQUEST_ENVELOPE,
         &package.request_envelope,
     );
     out.gap();
@@ -77,7 +77,7 @@ pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String
         &mut out,
         context,
         "ResponseEnvelope",
-        &about::RESPONSE_ENVELOPE,
+        about::RESPONSE_ENVELOPE,
         &package.response_envelope,
     );
     out.gap();
@@ -106,7 +106,7 @@ fn envelope(
     out: &mut Source,
     context: &Context<'_>,
     name: &str,
-    docs: &[&'static str],
+    docs: [&'static str; 2],
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     out.line("@dataclass(slots=True, kw_only=True)");

@@ -4,7 +4,7 @@ use super::literal::Constants;
 use super::messages::annotation;
 use super::modules::ModulePlan;
 use super::protocol;
-use super::source::{Code, PYTHON, Python, exported, method, sorted};
+use super::source::{Code, Python, exported, method, sorted};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -21,8 +21,8 @@ fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
 }
 
 /// Creates the head of a file that re-exports names.
-fn head(docs: &Docs<'_>) -> Source {
-    let mut out = Source::new(&PYTHON);
+fn head(context: &Context<'_>, docs: &Docs<'_>) -> Source {
+    let mut out = context.source();
     out.docstring(docs);
     out.line("\nfrom __future__ import annotations\n\nfrom typing import TYPE_CHECKING");
     out.blank();
@@ -35,7 +35,7 @@ pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
-    let mut out = head(&docs);
+    let mut out = head(context, &docs);
     let name = protocol::name(context);
     let streams = |name| (!package.streams.is_empty()).then_some(name);
     let client = ["AnyReport", "Client"]
@@ -77,13 +77,16 @@ pub fn root_file(context: &Context<'_>) -> String {
 }
 
 /// Generates `groups/__init__.py`.
-pub fn groups(plan: &ModulePlan<'_, '_>, ids: bool) -> String {
-    let mut out = head(&Docs::said(&[
-        "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
-        "The groups, one module each: message types, operations, and the methods of both sides.",
-    ]));
+pub fn groups(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
+    let mut out = head(
+        context,
+        &Docs::said([
+            "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
+            "The groups, one module each: message types, operations, and the methods of both sides.",
+        ]),
+    );
     let mut modules: Vec<&str> = plan.files().map(|group| group.name).collect();
-    if ids {
+    if !context.package.ids.is_empty() {
         modules.push(plan.ids());
     }
     modules.sort_unstable();
@@ -100,11 +103,11 @@ pub fn groups(plan: &ModulePlan<'_, '_>, ids: bool) -> String {
 }
 
 /// Generates `messages.py`.
-pub fn messages() -> String {
-    let mut out = head(&Docs::said(&[
-        "所有分组的报文类型。",
-        "The message types of all groups.",
-    ]));
+pub fn messages(context: &Context<'_>) -> String {
+    let mut out = head(
+        context,
+        &Docs::said(["所有分组的报文类型。", "The message types of all groups."]),
+    );
     out.line("from . import groups, operations\nfrom .groups import *");
     out.blank();
     let is_message = "if name not in operations.__all__";
@@ -117,11 +120,14 @@ pub fn messages() -> String {
 }
 
 /// Generates `operations.py`.
-pub fn operations() -> String {
-    let mut out = head(&Docs::said(&[
-        "所有分组的接口，以及规范中的说明。",
-        "The operations of all groups, with their description in the spec.",
-    ]));
+pub fn operations(context: &Context<'_>) -> String {
+    let mut out = head(
+        context,
+        &Docs::said([
+            "所有分组的接口，以及规范中的说明。",
+            "The operations of all groups, with their description in the spec.",
+        ]),
+    );
     out.line("import fc_runtime as rt\n\nfrom . import groups\nfrom .groups import *");
     out.blank();
     let is_operation = "if isinstance(getattr(groups, name), rt.Command | rt.Report | rt.Stream)";
@@ -135,8 +141,8 @@ pub fn operations() -> String {
 
 /// Generates the file of the id types.
 pub fn ids(context: &Context<'_>) -> String {
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&Docs::said(&[
+    let mut out = context.source();
+    out.docstring(&Docs::said([
         "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用。发送的形式与其中的值相同。",
         "The IDs of entities, with one type per entity, so that a type checker keeps them apart. An ID is sent as the value in it.",
     ]));
@@ -165,10 +171,13 @@ pub fn ids(context: &Context<'_>) -> String {
 /// Generates `call.py`.
 pub fn call(context: &Context<'_>, package: &str) -> String {
     let name = protocol::name(context);
-    format!(
-        "\
-\"\"\"命令行工具：`python -m {package}.call --help`。A command-line tool.\"\"\"
-
+    let mut out = context.source();
+    out.docstring(&Docs::line([
+        format!("命令行工具：`python -m {package}.call --help`。"),
+        "A command-line tool.".to_owned(),
+    ]));
+    out.line(format!(
+        "
 from __future__ import annotations
 
 from fc_runtime.tool import main
@@ -176,15 +185,15 @@ from fc_runtime.tool import main
 from .protocol import {name}
 
 if __name__ == \"__main__\":
-    raise SystemExit(main({name}))
-"
-    )
+    raise SystemExit(main({name}))"
+    ));
+    out.finish()
 }
 
 /// Generates `tables.py`.
 pub fn tables(context: &Context<'_>) -> String {
     let mut constants = Constants::default();
-    let mut body = Source::new(&PYTHON);
+    let mut body = context.source();
     let expressions = Expressions::new(&context.package);
     for table in &context.package.tables {
         let row = context.name_of(&table.row);
@@ -205,8 +214,8 @@ pub fn tables(context: &Context<'_>) -> String {
             },
         );
     }
-    let mut out = Source::new(&PYTHON);
-    out.docstring(&Docs::said(&about::TABLES));
+    let mut out = context.source();
+    out.docstring(&Docs::said(about::TABLES));
     out.blank();
     out.line("from __future__ import annotations");
     let types: Vec<&str> = constants.types.iter().map(String::as_str).collect();

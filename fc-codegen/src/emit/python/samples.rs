@@ -94,7 +94,7 @@ pub fn samples_file(context: &Context<'_>, package: &str) -> String {
     names
         .types
         .extend(["Client", "Reporter", "Robot"].map(str::to_owned));
-    let mut body = Source::new(&PYTHON);
+    let mut body = context.source();
     body.suite("class RobotOfTheSamples(Robot)", |out| {
         out.line("\"\"\"Responds with the samples.\"\"\"");
         for answer in &run.answers {
@@ -112,7 +112,7 @@ pub fn samples_file(context: &Context<'_>, package: &str) -> String {
     body.gap();
     test(&mut body, run);
 
-    let mut out = Source::new(&PYTHON);
+    let mut out = context.source();
     out.line("\"\"\"The samples of the documentation. They call every command, and push and receive every report.\"\"\"");
     out.blank();
     out.line("from __future__ import annotations\n\nimport asyncio\nimport contextlib\nimport io\nimport unittest");

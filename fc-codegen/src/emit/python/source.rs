@@ -144,7 +144,7 @@ impl Python for Source {
         let comment = &PYTHON.comment;
         let width = self.room().saturating_sub(QUOTES);
         let mut lines = Vec::new();
-        docs.lines(comment, width, |line| {
+        docs.lines(self.languages(), comment, width, |line| {
             lines.push(line.trim_end().to_owned());
         });
         let text = lines.join("\n");
@@ -328,9 +328,10 @@ fn natural(one: &str, other: &str) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fc_spec::model::Languages;
 
     fn written(code: &Code, before: &str, behind: &str) -> String {
-        let mut out = Source::new(&PYTHON);
+        let mut out = Source::new(&PYTHON, Languages::All);
         code.write(&mut out, before, behind);
         out.finish()
     }
@@ -371,7 +372,7 @@ mod tests {
         let shown = |text: &'static str| {
             let mut docs = Docs::default();
             docs.paragraph(text);
-            let mut out = Source::new(&PYTHON);
+            let mut out = Source::new(&PYTHON, Languages::All);
             out.docstring(&docs);
             out.finish()
         };

@@ -4,6 +4,7 @@ use super::context::Context;
 use super::literal::{literal, number};
 use super::source::Source;
 use crate::package::about;
+use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::{Item, Spelled};
 use crate::package::name::free;
@@ -18,7 +19,7 @@ pub fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    out.docs(&about::enumeration(context, item.ty.of, ""));
+    out.docs(&about::enumeration(context, item.ty.of, |_| ()));
     let (repr, rust) = match shape.repr {
         EnumRepr::Int(kind) => (kind.name(), kind.name()),
         EnumRepr::String => ("str", "String"),
@@ -46,7 +47,10 @@ pub fn enumeration(
             let taken = |name: &str| values.iter().any(|value| value.name == name);
             let other = free(&["Unknown", "Other", "Unlisted"], taken);
             out.blank();
-            out.line("/// 其他值，原样保留。Any other value, kept unchanged.");
+            out.docs(&Docs::line([
+                "其他值，原样保留。",
+                "Any other value, kept unchanged.",
+            ]));
             out.line("#[fc(other)]");
             out.line(format!("{other}({rust}),"));
         }

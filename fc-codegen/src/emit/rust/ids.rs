@@ -1,15 +1,14 @@
 //! `ids.rs`: a type for the ids of each entity, if the package has id types.
 
 use super::context::Context;
-use super::source::Source;
 use crate::package::about;
 use crate::package::docs::Docs;
 use fc_spec::model::Type;
 
 /// Generates `ids.rs`.
 pub fn ids_file(context: &Context<'_>) -> String {
-    let mut out = Source::rust();
-    out.inner_docs(&Docs::said(&[
+    let mut out = context.source();
+    out.inner_docs(&Docs::said([
         "各种实体的 ID，每种一个类型，不会互相混用。发送的形式与其中的值相同。",
         "The IDs of entities, with one type per entity, so that the compiler keeps them apart. An ID is sent as \
          the value in it.",

@@ -20,7 +20,7 @@ use std::collections::BTreeSet;
 
 /// Generates a module of message types.
 pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
-    let mut body = Source::rust();
+    let mut body = context.source();
     let mut used = Used::default();
     for item in &module.items {
         body.blank();
@@ -28,7 +28,7 @@ pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
     }
     calls::methods(&mut body, context, module);
 
-    let mut out = Source::rust();
+    let mut out = context.source();
     let mut docs = Docs::default();
     about::group(&mut docs, module.group);
     out.inner_docs(&docs);
@@ -49,7 +49,7 @@ pub fn module(context: &Context<'_>, module: &Module<'_>) -> String {
 
 /// Returns one type as its module declares it.
 pub fn item(context: &Context<'_>, item: &Item<'_>) -> String {
-    let mut out = Source::rust();
+    let mut out = context.source();
     declaration(&mut out, &mut Used::default(), context, item);
     out.finish()
 }
@@ -173,7 +173,10 @@ fn structure<'m>(
             });
             out.blank();
         }
-        out.line("/// 其他键，原样保留。Other keys, kept unchanged.");
+        out.docs(&Docs::line([
+            "其他键，原样保留。",
+            "Other keys, kept unchanged.",
+        ]));
         out.line("#[fc(extra)]");
         out.line(format!("pub {}: Extra,", extra_name(fields)));
     });

@@ -30,10 +30,14 @@ use context::Context;
 use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
+fn context<'m>(model: &'m Model, targets: &Targets) -> Context<'m> {
+    Context::new(model, targets.rust(), &source::RUST).of_target(targets, Product::Rust)
+}
+
 /// Generates all sources of the crate.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.rust(), &source::RUST, Some(targets));
+    let context = &context(model, targets);
     let mut files: Vec<File<'_>> = vec![
         file(samples::SHOWN.file, || {
             samples::samples_file(context, targets.krate())
@@ -74,7 +78,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// Returns the types with these names as the crate declares them, in sequence and without imports.
 #[must_use]
 pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
-    let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
+    let context = context(model, targets);
     let items = context.package.items();
     let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
     let items: Vec<_> = items.map(|item| messages::item(&context, item)).collect();
@@ -84,7 +88,7 @@ pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
 /// Returns a field as its struct declares it: `pub name: Option<String>`.
 #[must_use]
 pub fn field(model: &Model, targets: &Targets, owner: &str, wire: &str) -> Option<String> {
-    let context = Context::new(model, targets.rust(), &source::RUST, Some(targets));
+    let context = context(model, targets);
     let mut items = context.package.items();
     let item = items.find(|item| item.ty.of.name == owner)?;
     let mut fields = item.fields().iter();

@@ -10,8 +10,7 @@ use crate::package::items::{Call, Shape};
 /// One of the macros.
 struct Each {
     name: &'static str,
-    zh: &'static str,
-    en: &'static str,
+    about: [&'static str; 2],
     /// The matcher for the arguments of the user's macro.
     pattern: &'static str,
     rows: Vec<String>,
@@ -35,23 +34,29 @@ fn all(context: &Context<'_>) -> [Each; 3] {
     [
         Each {
             name: "for_each_command",
-            zh: "对每条有功能码的指令展开一次：方法名、请求类型、响应类型。",
-            en: "Expands once per command with a code: its method, request and response.",
+            about: [
+                "对每条有功能码的指令展开一次：方法名、请求类型、响应类型。",
+                "Expands once per command with a code: its method, request and response.",
+            ],
             pattern: "$($method:ident $request:ident $response:ident;)*",
             rows: context.commands().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_report",
-            zh: "对每个有功能码的上报展开一次：方法名、消息类型、应答类型。",
-            en: "Expands once per report with a code: its method, message and acknowledgement.",
+            about: [
+                "对每个有功能码的上报展开一次：方法名、消息类型、应答类型。",
+                "Expands once per report with a code: its method, message and acknowledgement.",
+            ],
             pattern: "$($method:ident $report:ident $acknowledgement:ident;)*",
             rows: context.reports().into_iter().map(row).collect(),
         },
         Each {
             name: "for_each_message",
-            zh: "对每个消息结构体展开一次，包括没有功能码的接口的结构体和内嵌的结构体。",
-            en: "Expands once per message struct, including those of operations without a code and \
+            about: [
+                "对每个消息结构体展开一次，包括没有功能码的接口的结构体和内嵌的结构体。",
+                "Expands once per message struct, including those of operations without a code and \
                  inner ones.",
+            ],
             pattern: "$($message:ident;)*",
             rows: messages.map(|item| format!("{};", item.ty.name)).collect(),
         },
@@ -59,9 +64,7 @@ fn all(context: &Context<'_>) -> [Each; 3] {
 }
 
 fn write(out: &mut Source, each: &Each) {
-    let mut docs = Docs::default();
-    docs.paragraph(each.zh);
-    docs.paragraph(each.en);
+    let mut docs = Docs::said(each.about);
     docs.paragraph(format!(
         "The callback macro must accept `{}`.",
         each.pattern

@@ -18,8 +18,8 @@ use fc_spec::model::{
 /// Generates `protocol.rs`.
 pub fn protocol_file(context: &Context<'_>) -> String {
     let package = &context.package;
-    let mut out = Source::rust();
-    out.inner_docs(&Docs::said(&about::WIRE));
+    let mut out = context.source();
+    out.inner_docs(&Docs::said(about::WIRE));
     out.blank();
     out.import("super::descriptors", &["OPERATIONS"]);
     out.import("fc_derive", &["Envelope", "Header", "Message", "OpenEnum"]);
@@ -158,7 +158,7 @@ fn header(out: &mut Source, context: &Context<'_>) {
     let length = frame.header_len();
     let zh = format!("包头，共 {length} 字节，其后是数据区。");
     let en = format!("The header: {length} bytes before the data area.");
-    let mut docs = Docs::named(zh, en);
+    let mut docs = Docs::said([zh, en]);
     docs.text(&frame.data);
     if let Some(page) = context.page("reference/wire.md") {
         docs.paragraph(page);
@@ -212,8 +212,8 @@ fn envelope(
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     let about = match side {
-        Direction::Request => &about::REQUEST_ENVELOPE,
-        Direction::Response => &about::RESPONSE_ENVELOPE,
+        Direction::Request => about::REQUEST_ENVELOPE,
+        Direction::Response => about::RESPONSE_ENVELOPE,
     };
     let (word, name) = (side.name(), Case::Pascal.apply(side.name()));
     out.docs(&Docs::said(about));
@@ -260,13 +260,19 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.line(format!("{},", result.name));
         }
         out.blank();
-        out.line("/// 其他结果码，原样保留。Any other code, kept unchanged.");
+        out.docs(&Docs::line([
+            "其他结果码，原样保留。",
+            "Any other code, kept unchanged.",
+        ]));
         out.line("#[fc(other)]");
         out.line(format!("{other}(i64),"));
     });
     out.blank();
     out.block("impl ResultCode", |out| {
-        out.line("/// 随结果码发送的文字。The text sent with the code.");
+        out.docs(&Docs::line([
+            "随结果码发送的文字。",
+            "The text sent with the code.",
+        ]));
         out.line("#[must_use]");
         out.block("pub const fn text(self) -> &'static str", |out| {
             out.block("match self", |out| {
@@ -295,7 +301,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     if streams.is_empty() {
         return;
     }
-    out.documented(&Docs::said(&["数据流的功能码。", "Codes of streams."]));
+    out.documented(&Docs::said(["数据流的功能码。", "Codes of streams."]));
     let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
@@ -310,7 +316,10 @@ fn streams(out: &mut Source, context: &Context<'_>) {
             out.line(format!("{},", stream.name));
         }
         out.blank();
-        out.line("/// 其他功能码，原样保留。Any other code, kept unchanged.");
+        out.docs(&Docs::line([
+            "其他功能码，原样保留。",
+            "Any other code, kept unchanged.",
+        ]));
         out.line("#[fc(other)]");
         out.line(format!("{other}(u16),"));
     });

@@ -19,10 +19,10 @@ pub fn robot_file(context: &Context<'_>) -> String {
     let commands = context.commands();
     let ranges = pass_through(context);
 
-    let mut out = Source::rust();
-    out.inner_docs(&Docs::said(&[
-"机器人端：每条指令一个方法的 trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。",
-"The robot's side: a trait with one method per command, a robot that responds with the examples of \
+    let mut out = context.source();
+    out.inner_docs(&Docs::said([
+        "机器人端：每条指令一个方法的 trait，按示例响应的示例机器人，以及上报的发送端。每种上报的方法与它的消息类型在同一个文件里。",
+        "The robot's side: a trait with one method per command, a robot that responds with the examples of \
          the spec, and the sender of reports. The method of each report is in the file of its messages.",
 ]));
     out.blank();
@@ -75,6 +75,15 @@ pub fn signature(
     )
 }
 
+/// A handler that stops early.
+const STOPPED_EARLY: &str = "\
+```ignore
+tokio::select! {
+    arrived = self.motors.drive(&request) => arrived,
+    () = context.abandoned() => self.motors.stop().await,
+}
+```";
+
 fn robot(
     out: &mut Source,
     context: &Context<'_>,
@@ -82,35 +91,31 @@ fn robot(
     commands: &[Call<'_>],
     ranges: &[(String, &CodeRange)],
 ) {
+    let mut docs = Docs::two_lines([
+        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。",
+        "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler\n\
+         reports a missing method.",
+    ]);
+    docs.raw_both([
+        "只实现了一部分指令的机器人，先写 `impl PartialRobot for …`：方法相同，都可以不写；没有写的指令以“未实现”\n\
+         拒绝。[`RobotService`] 可以使用任意一种；指令齐全之后，把 `PartialRobot` 改为 `Robot`。",
+        "A robot with some of the commands starts with `impl PartialRobot for …`. The methods are the same,\n\
+         and each is optional; a missing one is refused as not implemented. [`RobotService`] serves either.\n\
+         Once the robot has all commands, change `PartialRobot` to `Robot`.",
+    ]);
+    docs.raw_both([
+        "处理超时后，机器人替处理程序返回超时；连接也可能先断开。此后调用方不再等待响应。运动指令和影响不详的指令，\n\
+         处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。处理程序用 [`Context::is_abandoned`]\n\
+         和 [`Context::abandoned`] 得知这一点，可以提前停止：",
+        "After a handler timeout, the robot responds with a timeout; the connection can also break first. From\n\
+         then on the caller does not wait for the response. The handler of a command that moves the robot, or\n\
+         with an unknown effect, runs to its end. The handler of any other command is dropped at its next\n\
+         `.await`. A handler can check [`Context::is_abandoned`] or await [`Context::abandoned`], and stop early:",
+    ]);
+    docs.raw(STOPPED_EARLY);
+    out.docs(&docs);
     out.line(format!(
-        "\
-/// 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
-/// A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler
-/// reports a missing method.
-///
-/// 只实现了一部分指令的机器人，先写 `impl PartialRobot for …`：方法相同，都可以不写；没有写的指令以“未实现”
-/// 拒绝。[`RobotService`] 可以使用任意一种；指令齐全之后，把 `PartialRobot` 改为 `Robot`。
-///
-/// A robot with some of the commands starts with `impl PartialRobot for …`. The methods are the same,
-/// and each is optional; a missing one is refused as not implemented. [`RobotService`] serves either.
-/// Once the robot has all commands, change `PartialRobot` to `Robot`.
-///
-/// 处理超时后，机器人替处理程序返回超时；连接也可能先断开。此后调用方不再等待响应。运动指令和影响不详的指令，
-/// 处理程序仍运行到结束；其他指令的处理程序在下一个 `.await` 处被丢弃。处理程序用 [`Context::is_abandoned`]
-/// 和 [`Context::abandoned`] 得知这一点，可以提前停止：
-///
-/// After a handler timeout, the robot responds with a timeout; the connection can also break first. From
-/// then on the caller does not wait for the response. The handler of a command that moves the robot, or
-/// with an unknown effect, runs to its end. The handler of any other command is dropped at its next
-/// `.await`. A handler can check [`Context::is_abandoned`] or await [`Context::abandoned`], and stop early:
-///
-/// ```ignore
-/// tokio::select! {{
-///     arrived = self.motors.drive(&request) => arrived,
-///     () = context.abandoned() => self.motors.stop().await,
-/// }}
-/// ```
-#[dispatch(protocol = {protocol}, service = RobotService, partial = PartialRobot)]"
+        "#[dispatch(protocol = {protocol}, service = RobotService, partial = PartialRobot)]"
     ));
     out.block("pub trait Robot: Send + Sync + 'static", |out| {
         let cx = format!("context: Context<{protocol}>");
@@ -154,23 +159,25 @@ fn raw(out: &mut Source, protocol: &str, name: &str) {
 }
 
 fn example(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
-    out.line(
-        "\
-/// 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。
-/// Responds with the examples of the spec, only for demos and tests. Your own robot starts with
-/// `impl PartialRobot for …`.
-///
-/// 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion` 为真时假装成功。
-///
-/// It does not execute commands that move the robot or have an unknown effect, and refuses them as not
-/// implemented. With `pretend_motion`, it pretends success.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ExampleRobot {
-    /// 对这些指令也返回成功，但什么都不会动；只在没有真机时使用。
-    /// Responds to these with success as well, although no robot moves. Use it only without a real robot.
-    pub pretend_motion: bool,
-}",
-    );
+    let mut docs = Docs::two_lines([
+        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `impl PartialRobot for …` 开始。",
+        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with\n\
+         `impl PartialRobot for …`.",
+    ]);
+    docs.raw_both([
+        "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretend_motion` 为真时假装成功。",
+        "It does not execute commands that move the robot or have an unknown effect, and refuses them as not\n\
+         implemented. With `pretend_motion`, it pretends success.",
+    ]);
+    out.docs(&docs);
+    out.line("#[derive(Clone, Copy, Debug, Default)]");
+    out.block("pub struct ExampleRobot", |out| {
+        out.docs(&Docs::two_lines([
+            "对这些指令也返回成功，但什么都不会动；只在没有真机时使用。",
+            "Responds to these with success as well, although no robot moves. Use it only without a real robot.",
+        ]));
+        out.line("pub pretend_motion: bool,");
+    });
     out.blank();
     out.block("impl Robot for ExampleRobot", |out| {
         for command in commands {
@@ -203,11 +210,12 @@ fn reporter(out: &mut Source, context: &Context<'_>, protocol: &str) {
     } else {
         ""
     };
+    out.docs(&Docs::written([
+        "发送上报：每种上报一个方法。",
+        "Pushes reports: one method per report. Cheap to clone.",
+    ]));
     out.line(format!(
         "\
-/// 发送上报：每种上报一个方法。
-///
-/// Pushes reports: one method per report. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Reporter {{
 {allowed}    pub(crate) handle: ServerHandle<{protocol}>,
@@ -215,11 +223,12 @@ pub struct Reporter {{
     ));
     out.blank();
     out.block("impl Reporter", |out| {
+        out.docs(&Docs::written([
+            "向服务端的各个连接上报。",
+            "Reports to the connections of a server.",
+        ]));
         out.line(format!(
             "\
-/// 向服务端的各个连接上报。
-///
-/// Reports to the connections of a server.
 #[must_use]
 pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
     Self {{ handle }}

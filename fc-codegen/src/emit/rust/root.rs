@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::source::Source;
 use super::streams;
+use crate::package::about;
 use crate::package::docs::Docs;
 
 /// Lints that names in the spec can trigger, each with the reason.
@@ -40,13 +41,10 @@ const ALLOWED: &[(&str, &str)] = &[
 /// Generates `lib.rs`.
 pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
-    let mut out = Source::rust();
+    let mut out = context.source();
     let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
-    docs.paragraph(format!(
-        "规范版本 {}。Version {} of the spec.",
-        model.protocol.version, model.protocol.version
-    ));
+    about::version(&mut docs, model);
     docs.paragraph(
         "An app starts with `Client`, a robot with `PartialRobot` or `Robot`. `examples/app.rs` and `examples/robot.rs` of \
          this crate show both.",
@@ -87,13 +85,11 @@ pub mod tables;
     out.blank();
     out.line("#[cfg(feature = \"client\")]");
     out.filled("pub use client::{", &app, "};");
-    out.line(
-        "\
-/// 运行库：连接的配置、错误、限制、帧。依赖本 crate 即可，不必另外依赖运行库。
-///
-/// The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.
-pub use fc_runtime as runtime;",
-    );
+    out.docs(&Docs::written([
+        "运行库：连接的配置、错误、限制、帧。依赖本 crate 即可，不必另外依赖运行库。",
+        "The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.",
+    ]));
+    out.line("pub use fc_runtime as runtime;");
     every_id(&mut out, "", context);
     // Only types: a group can have the name of a crate, which a glob import must not hide.
     every_type(&mut out, "", context);
@@ -192,10 +188,10 @@ const FOR_BOTH: &[&str] = &[
 
 /// Generates `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
-    let mut out = Source::rust();
+    let mut out = context.source();
     let zh = format!("app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`");
     let en = format!("The names for an app and a robot, in one line: `use {krate}::prelude::*;`");
-    let mut docs = Docs::named(zh, en);
+    let mut docs = Docs::said([zh, en]);
     docs.paragraph(
         "It contains all message types, the stubs, and the related types of the runtime. A name that you \
          declare or import explicitly takes precedence over these.",
@@ -235,8 +231,8 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
 /// Generates `messages/mod.rs`.
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
-    let mut out = Source::rust();
-    out.inner_docs(&Docs::said(&[
+    let mut out = context.source();
+    out.inner_docs(&Docs::said([
         "消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。",
         "Message types, with one module per group. All types are re-exported at the crate root.",
     ]));

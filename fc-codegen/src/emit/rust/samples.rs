@@ -115,7 +115,7 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
     let run = &SampleRun::build(context);
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
-    let mut out = Source::rust();
+    let mut out = context.source();
     out.line(
         "\
 //! The samples that the documentation shows, compiled and run: every command is called, every

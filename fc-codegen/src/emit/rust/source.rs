@@ -48,11 +48,6 @@ const ARRAY_WIDTH: usize = 60;
 const SHORT_ITEM: usize = 10;
 
 impl Source {
-    /// Creates an empty Rust file.
-    pub fn rust() -> Self {
-        Self::new(&RUST)
-    }
-
     /// Writes a documentation comment on the enclosing item.
     pub fn inner_docs(&mut self, docs: &Docs<'_>) {
         self.comment(&INNER, docs);
@@ -135,10 +130,11 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fc_spec::model::Languages;
 
     #[test]
     fn imports_are_sorted_and_filled() {
-        let mut out = Source::rust();
+        let mut out = Source::new(&RUST, Languages::All);
         out.import("a", &["B"]);
         out.import("a", &["C", "B", "C"]);
         let names: Vec<String> = (10..30).map(|n| format!("Name{n}")).collect();

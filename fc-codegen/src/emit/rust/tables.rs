@@ -12,15 +12,15 @@ use std::collections::BTreeSet;
 
 /// Generates `tables.rs`.
 pub fn tables_file(context: &Context<'_>) -> String {
-    let mut rows = Source::rust();
+    let mut rows = context.source();
     let mut used = Used::default();
     for table in &context.package.tables {
         rows.blank();
         table_function(&mut rows, &mut used, context, table);
     }
 
-    let mut out = Source::rust();
-    out.inner_docs(&Docs::said(&about::TABLES));
+    let mut out = context.source();
+    out.inner_docs(&Docs::said(about::TABLES));
     out.blank();
     out.import("super::ids", &used.ids.iter().collect::<Vec<_>>());
     out.import("super::messages", &used.types.iter().collect::<Vec<_>>());

@@ -16,10 +16,13 @@ use fc_spec::model::{Operation, Side};
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_streams = groups.iter().any(|it| it.has(What::Streams));
-    let mut out = head([
-        "app 端：每条指令一个方法。",
-        "The app's side: one method per command.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "app 端：每条指令一个方法。",
+            "The app's side: one method per command.",
+        ],
+    );
     let mut names = vec!["Connection", "dial", "dialLater"];
     names.extend(has_commands.then_some("addCalls"));
     names.extend(has_streams.then_some("addAppStreams"));
@@ -36,14 +39,17 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     names.extend(has_streams.then(|| "streams".to_owned()));
     named(&mut out, "import", names, "./operations.ts");
     out.blank();
-    out.line("/** 任意一个上报，`case` 是它的名称。Any report. `case` is its name. */");
+    out.docs(&Docs::line([
+        "任意一个上报，`case` 是它的名称。",
+        "Any report. `case` is its name.",
+    ]));
     let mut reports = parts(context, groups, "report", What::Reports);
     reports.push("UnknownReport".to_owned());
     union(&mut out, "AnyReport", &reports);
     out.blank();
     let calls = parts(context, groups, "calls", What::Commands);
     if has_commands {
-        let about = "/** 每组指令的方法。The methods of each group of commands. */";
+        let about = ["每组指令的方法。", "The methods of each group of commands."];
         merged(&mut out, "Client", about, &calls);
     }
     client_class(&mut out, &protocol, has_commands);
@@ -54,26 +60,31 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
 }
 
 fn client_class(out: &mut Source, protocol: &str, has_commands: bool) {
-    out.line("/** 一个机器人，从 app 一侧看：每条指令一个方法。A robot as seen from the app: one method per command. */");
+    out.docs(&Docs::line([
+        "一个机器人，从 app 一侧看：每条指令一个方法。",
+        "A robot as seen from the app: one method per command.",
+    ]));
     out.block("export class Client extends Connection<AnyReport>", |out| {
         if has_commands {
             out.line("static {\n  addCalls(Client, service.methods)\n}");
             out.blank();
         }
+        out.docs(&Docs::said([
+            "连接机器人；`config` 中没有设置的项使用规范的默认值。",
+            "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
+        ]));
         out.line(format!(
             "\
-/**
- * 连接机器人；`config` 中没有设置的项使用规范的默认值。
- * Connects to a robot. Settings missing from `config` have the defaults of the spec.
- */
 static async connect(platform: Platform, config: ClientConfig = {{}}): Promise<Client> {{
   return new Client(await dial({protocol}, platform, config))
-}}
-
-/**
- * 立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。
- * Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.
- */
+}}"
+        ));
+        out.documented(&Docs::two_lines([
+            "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
+            "Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.",
+        ]));
+        out.line(format!(
+            "\
 static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
   return new Client(dialLater({protocol}, platform, config))
 }}"
@@ -82,29 +93,35 @@ static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
 }
 
 fn app_streams(out: &mut Source, parts: &[String]) {
-    let about = "/** 每组数据流的方法。The methods of each group of streams. */";
+    let about = [
+        "每组数据流的方法。",
+        "The methods of each group of streams.",
+    ];
     merged(out, "Streams", about, parts);
-    out.line(
-        "\
-/**
- * 数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。
- * The streams of the data port. Subscribe to those of the robot, and send those of the app.
- */",
-    );
+    out.docs(&Docs::said([
+        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
+        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
+    ]));
     out.block("export class Streams", |out| {
         out.line("static {\n  addAppStreams(Streams, streams)\n}");
         out.blank();
-        let about = "/** 数据连接。The data connection. */";
-        let made = "/** 数据连接上的数据流，见 `client.data()`。The streams of a data connection; see `client.data()`. */";
+        let about = ["数据连接。", "The data connection."];
+        let made = [
+            "数据连接上的数据流，见 `client.data()`。",
+            "The streams of a data connection; see `client.data()`.",
+        ];
         constructor(out, ["data", "DataConnection"], about, made);
     });
 }
 
 /// Writes the constructor of a class, and the protected member that its methods use. The groups declare the methods.
-pub fn constructor(out: &mut Source, [field, ty]: [&str; 2], about: &str, made: &str) {
-    out.line(format!(
-        "{about}\nprotected readonly {field}: {ty}\n\n{made}\nconstructor({field}: {ty}) {{\n  this.{field} = {field}\n}}"
-    ));
+pub fn constructor(out: &mut Source, [field, ty]: [&str; 2], about: [&str; 2], made: [&str; 2]) {
+    out.docs(&Docs::line(about));
+    out.line(format!("protected readonly {field}: {ty}"));
+    out.documented(&Docs::line(made));
+    out.block(format!("constructor({field}: {ty})"), |out| {
+        out.line(format!("this.{field} = {field}"));
+    });
 }
 
 /// Returns the runtime types that a group's part of the app's side names.
@@ -126,16 +143,22 @@ pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'stat
 
 /// Writes a group's part of the app's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
-    let calls = [
+    let calls = (
         "calls",
-        "/** 本组的指令，`Client` 的方法。The commands of the group: methods of `Client`. */",
-    ];
+        [
+            "本组的指令，`Client` 的方法。",
+            "The commands of the group: methods of `Client`.",
+        ],
+    );
     group.interface(out, context, calls, &group.commands, |out, command| {
         call(out, context, command);
     });
     if group.has(What::Reports) {
         out.blank();
-        out.line("/** 本组的任意一个上报，`case` 是它的名称。Any report of the group. `case` is its name. */");
+        out.docs(&Docs::line([
+            "本组的任意一个上报，`case` 是它的名称。",
+            "Any report of the group. `case` is its name.",
+        ]));
         let reported = own(context, "Reported");
         let reports = group.reports.iter().map(|report| {
             let name = &report.request.ty.name;
@@ -145,10 +168,13 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         let name = group.part(context, "report");
         alternatives(out, &name, &reports.collect::<Vec<_>>());
     }
-    let streams = [
+    let streams = (
         "streams",
-        "/** 本组的数据流，`Streams` 的方法。The streams of the group: methods of `Streams`. */",
-    ];
+        [
+            "本组的数据流，`Streams` 的方法。",
+            "The streams of the group: methods of `Streams`.",
+        ],
+    );
     group.interface(out, context, streams, &group.streams, |out, stream| {
         let (name, held) = (&stream.name, carried(context, stream, ""));
         out.docs(&stream_docs(context, stream));

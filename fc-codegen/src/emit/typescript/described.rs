@@ -7,14 +7,18 @@ use super::layout::Layout;
 use super::operations::{code, languages};
 use super::source::{head, named};
 use super::wire::header;
+use crate::package::docs::Docs;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
 pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
-    let mut out = head([
-        "协议及其文字和示例，供显示任意帧的工具使用。",
-        "The protocol with its texts and examples, for tools that show any frame.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "协议及其文字和示例，供显示任意帧的工具使用。",
+            "The protocol with its texts and examples, for tools that show any frame.",
+        ],
+    );
     named(&mut out, "import type", ["Protocol"], "../src/protocol.ts");
     let operations = &context.model().operations;
     if operations
@@ -25,7 +29,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
     }
     out.line("import { wire } from './wire.ts'");
     out.blank();
-    out.line("/** 规范中的协议。The protocol of the spec. */");
+    out.docs(&Docs::line(["规范中的协议。", "The protocol of the spec."]));
     protocol(context, samples).write(&mut out, "export const protocol: Protocol = ", "");
     out.finish()
 }

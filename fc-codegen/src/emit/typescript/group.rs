@@ -5,6 +5,7 @@
 use super::context::{Context, own, spelled};
 use super::root;
 use super::source::{Source, head, nothing};
+use crate::package::docs::Docs;
 use crate::package::items::{Item, Spelled};
 use crate::package::language::{Role, TYPESCRIPT};
 use crate::package::process::set_off;
@@ -68,15 +69,14 @@ impl<'p, 'm> Group<'p, 'm> {
         &self,
         out: &mut Source,
         context: &Context<'_>,
-        [word, about]: [&str; 2],
+        (word, about): (&str, [&str; 2]),
         members: &[T],
         member: impl Fn(&mut Source, &T),
     ) {
         if members.is_empty() {
             return;
         }
-        out.blank();
-        out.line(about);
+        out.documented(&Docs::line(about));
         let name = self.part(context, word);
         out.block(format!("export interface {name}"), |out| {
             for one in members {
@@ -107,8 +107,14 @@ pub fn has_default(field: &Spelled<'_, Field>) -> bool {
 }
 
 /// Generates a module that re-exports the files of one kind from all groups.
-pub fn index(about: [&str; 2], groups: &[Group<'_, '_>], file: &str, what: What) -> String {
-    let mut out = head(about);
+pub fn index(
+    context: &Context<'_>,
+    about: [&str; 2],
+    groups: &[Group<'_, '_>],
+    file: &str,
+    what: What,
+) -> String {
+    let mut out = head(context, about);
     let mut names: Vec<&str> = groups
         .iter()
         .filter(|it| it.has(what))
@@ -150,9 +156,8 @@ pub fn extending(out: &Source, name: &str, parts: &[String]) -> String {
 }
 
 /// Writes an interface that gives the class with the same name the methods of `parts`.
-pub fn merged(out: &mut Source, name: &str, about: &str, parts: &[String]) {
-    out.blank();
-    out.line(about);
+pub fn merged(out: &mut Source, name: &str, about: [&str; 2], parts: &[String]) {
+    out.documented(&Docs::line(about));
     out.line([&extending(out, name, parts), " {}"].concat());
     out.blank();
 }

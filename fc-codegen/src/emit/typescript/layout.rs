@@ -203,14 +203,15 @@ fn fill(out: &mut Source, items: &[Layout]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emit::typescript::source::file;
+    use crate::emit::typescript::source::TYPESCRIPT;
+    use fc_spec::model::Languages;
 
     #[test]
     fn values_break_as_biome_breaks_them() {
         let number = |value: i32| Layout::Number(value.to_string());
         let pair =
             |value| Layout::Object(vec![("a".into(), number(value)), ("b".into(), number(2))]);
-        let mut out = file();
+        let mut out = Source::new(&TYPESCRIPT, Languages::All);
         Layout::List(vec![pair(1)]).write(&mut out, "const x = ", "");
         Layout::List(vec![pair(1), pair(3)]).write(&mut out, "const x = ", "");
         Layout::List((0..70).map(number).collect()).write(&mut out, "const x = ", "");

@@ -6,7 +6,7 @@
 use super::constants::wire;
 use super::context::{Context, field_type, imported, imports, own, page_of, parts, repr_is_large};
 use super::group::Group;
-use super::source::{self, Source, alternatives, literal, named, property, tag_text};
+use super::source::{Source, alternatives, literal, named, property, tag_text};
 use super::{client, robot};
 use crate::package::about;
 use crate::package::conditions::sentence;
@@ -26,7 +26,7 @@ pub const ABOUT: [&str; 2] = [
 
 /// Generates `messages.ts` of a group: its message types, and its parts of the stubs.
 pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
-    let mut out = source::file();
+    let mut out = context.source();
     let mut docs = Docs::default();
     about::group(&mut docs, group.of);
     docs.raw("@module");
@@ -116,7 +116,10 @@ fn structure(
             out.line(property(&field.name, &ty, field.optional));
             out.blank();
         }
-        out.line("/** 其他键，原样保留。Other keys, kept unchanged. */");
+        out.docs(&Docs::line([
+            "其他键，原样保留。",
+            "Other keys, kept unchanged.",
+        ]));
         out.line(property("extra", &own(context, "Extra"), true));
     });
 }
@@ -143,7 +146,7 @@ fn enumeration(
     let name = &item.ty.name;
     let mut docs = facts::type_docs(context, item);
     if !shape.closed {
-        docs.raw("其他值原样保留。\nAny other value is kept unchanged.");
+        docs.raw_lines(["其他值原样保留。", "Any other value is kept unchanged."]);
     }
     out.docs(&docs);
     let open = match shape.repr {
@@ -158,9 +161,10 @@ fn enumeration(
     let known: Vec<String> = known.chain(open.map(str::to_owned)).collect();
     union(out, name, &known);
     out.blank();
-    let mut docs = Docs::default();
-    docs.raw(format!("{{@link {name}}}：各个值。Its values."));
-    out.docs(&docs);
+    out.docs(&Docs::line([
+        format!("{{@link {name}}}：各个值。"),
+        "Its values.".to_owned(),
+    ]));
     out.enclose(&format!("export const {name} = {{"), "} as const", |out| {
         for value in values {
             let docs = facts::value_docs(value);
@@ -208,7 +212,10 @@ fn choice(
     variants: &[Spelled<'_, Variant>],
 ) {
     let mut docs = facts::type_docs(context, item);
-    docs.raw("`case` 是形式的名称，`value` 是它的内容。\n`case` is the name of the form, and `value` its content.");
+    docs.raw_lines([
+        "`case` 是形式的名称，`value` 是它的内容。",
+        "`case` is the name of the form, and `value` its content.",
+    ]);
     out.docs(&docs);
     let tagged = own(context, "Tagged");
     let variants = variants.iter().map(|variant| {

@@ -81,7 +81,8 @@ static KINDS: [Kind; 6] = [
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, &LANGUAGE, &TYPESCRIPT, Some(targets));
+    let context =
+        &Context::new(model, &LANGUAGE, &TYPESCRIPT).of_target(targets, Product::TypeScript);
     let samples = &Samples::new(model);
     let groups = &Group::all(&context.package);
     let mut files: Vec<(String, &str, String)> = Vec::new();
@@ -99,7 +100,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     }
     for kind in &KINDS {
         let file = kind.file;
-        let text = group::index(kind.about, groups, file, kind.what);
+        let text = group::index(context, kind.about, groups, file, kind.what);
         files.push((format!("{file}.ts"), "the spec", text));
         for group in groups.iter().filter(|it| it.has(kind.what)) {
             let text = (kind.text)(context, samples, group);

@@ -23,7 +23,7 @@ pub const COMMANDS: [&str; 2] = ["每条指令的描述数据。", "Every comman
 
 pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let commands = &group.commands;
-    let mut out = head(COMMANDS);
+    let mut out = head(context, COMMANDS);
     let mut names = vec!["AnyCommand"];
     for call in commands {
         names.push(command_type(context, call.operation));
@@ -37,8 +37,10 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
     for call in commands {
         command(&mut out, context, samples, call);
     }
-    let about =
-        "/** 本组的指令，按方法名。The commands of the group, by the names of their methods. */";
+    let about = [
+        "本组的指令，按方法名。",
+        "The commands of the group, by the names of their methods.",
+    ];
     let methods: Vec<String> = commands.iter().map(|it| it.method.to_owned()).collect();
     all(&mut out, about, "AnyCommand", &methods);
     out.finish()
@@ -47,9 +49,8 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
 /// Writes the group's entry for the lists of the package, in the order of the spec.
 ///
 /// The entry is a default export, which `export *` skips.
-fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
-    out.blank();
-    out.line(about);
+fn all(out: &mut Source, about: [&str; 2], ty: &str, members: &[String]) {
+    out.documented(&Docs::line(about));
     // Each member has a separate line, so that a new member changes no other line.
     let close = format!("}} as Readonly<Record<string, {ty}>>");
     out.lines("export default {", members, &close);
@@ -254,7 +255,7 @@ pub const REPORTS: [&str; 2] = ["每种上报的描述数据。", "Every report 
 
 pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let reports = &group.reports;
-    let mut out = head(REPORTS);
+    let mut out = head(context, REPORTS);
     let names = ["AnyReportOf", "Report"];
     named(&mut out, "import type", names, "../../../src/runtime.ts");
     out.line("import * as messages from '../../messages.ts'");
@@ -278,8 +279,10 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '
         let names = [call.method, "Report"];
         write(&mut out, context, operation, names, &types, members);
     }
-    let about =
-        "/** 本组的上报，按方法名。The reports of the group, by the names of their methods. */";
+    let about = [
+        "本组的上报，按方法名。",
+        "The reports of the group, by the names of their methods.",
+    ];
     let methods: Vec<String> = reports.iter().map(|it| it.method.to_owned()).collect();
     all(&mut out, about, "AnyReportOf", &methods);
     out.finish()
@@ -332,7 +335,7 @@ pub const STREAMS: [&str; 2] = ["每个数据流的描述数据。", "Every stre
 
 pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
     let streams = &group.streams;
-    let mut out = head(STREAMS);
+    let mut out = head(context, STREAMS);
     let names = ["AnyStream", "Stream"];
     named(&mut out, "import type", names, "../../../src/runtime.ts");
     if streams
@@ -371,7 +374,10 @@ pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) ->
             members,
         );
     }
-    let about = "/** 本组的数据流，按方法名中的名称。The streams of the group, by the names in their methods. */";
+    let about = [
+        "本组的数据流，按方法名中的名称。",
+        "The streams of the group, by the names in their methods.",
+    ];
     let members = streams
         .iter()
         .map(|it| format!("{}: {}", it.name, spelled(Role::Method, &it.of.name)));

@@ -10,10 +10,13 @@ use crate::package::ranges::{self, UNKNOWN};
 use fc_spec::model::CodeRange;
 
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
-    let mut out = head([
-        "协议：数值和全部接口。",
-        "The protocol: its numbers and all of its operations.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "协议：数值和全部接口。",
+            "The protocol: its numbers and all of its operations.",
+        ],
+    );
     let names = [
         "AnyCommand",
         "AnyReportOf",
@@ -37,13 +40,21 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     }
     out.line("import { wire } from './wire.ts'");
     let about = [
-        "/** 全部指令，按方法名。All commands, by the names of their methods. */",
-        "/** 全部上报，按方法名。All reports, by the names of their methods. */",
-        "/** 全部数据流，按方法名中的名称。All streams, by the names in their methods. */",
+        [
+            "全部指令，按方法名。",
+            "All commands, by the names of their methods.",
+        ],
+        [
+            "全部上报，按方法名。",
+            "All reports, by the names of their methods.",
+        ],
+        [
+            "全部数据流，按方法名中的名称。",
+            "All streams, by the names in their methods.",
+        ],
     ];
     for ((word, ty, what), about) in all.iter().zip(about) {
-        out.blank();
-        out.line(about);
+        out.documented(&Docs::line(about));
         let groups = groups.iter().filter(|it| it.has(*what));
         let variables: Vec<String> = groups
             .map(|it| format!("...{}", it.variable(word)))
@@ -69,7 +80,10 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         .write(&mut out, &head, "");
 
     out.blank();
-    out.line("/** 机器人的每个方法对应的指令。The command of each method of a robot. */");
+    out.docs(&Docs::line([
+        "机器人的每个方法对应的指令。",
+        "The command of each method of a robot.",
+    ]));
     let ranges = self::ranges(context).into_iter().map(|(method, range)| {
         Layout::object([
             ("first", Layout::Number(range.first_spelling.to_lowercase())),

@@ -18,10 +18,13 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_reports = groups.iter().any(|it| it.has(What::Reports));
     let has_streams = groups.iter().any(|it| it.has(What::RobotStreams));
-    let mut out = head([
-        "机器人端：每条指令一个方法，以及上报的发送端。",
-        "The robot's side: one method per command, and the sender of reports.",
-    ]);
+    let mut out = head(
+        context,
+        [
+            "机器人端：每条指令一个方法，以及上报的发送端。",
+            "The robot's side: one method per command, and the sender of reports.",
+        ],
+    );
     let mut names = vec!["serveRobot"];
     names.extend(has_commands.then_some("addExamples"));
     names.extend(has_reports.then_some("addReports"));
@@ -51,18 +54,17 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         &parts(context, groups, Side::Robot.name(), What::Commands),
     );
     out.blank();
+    out.docs(&Docs::said([
+        "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
+        "A robot with some of the commands. It refuses the others as not implemented.",
+    ]));
+    out.line("export type PartialRobot = Partial<Robot>");
+    out.documented(&Docs::said([
+        "为 app 提供服务；`config` 中没有设置的项使用规范的默认值。",
+        "Serves apps. Settings missing from `config` have the defaults of the spec.",
+    ]));
     out.line(format!(
         "\
-/**
- * 只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。
- * A robot with some of the commands. It refuses the others as not implemented.
- */
-export type PartialRobot = Partial<Robot>
-
-/**
- * 为 app 提供服务；`config` 中没有设置的项使用规范的默认值。
- * Serves apps. Settings missing from `config` have the defaults of the spec.
- */
 export function serve(platform: ServerPlatform, robot: PartialRobot, config: ServerConfig = {{}}): Promise<Server> {{
   return serveRobot({protocol}, service, platform, robot, config)
 }}"
@@ -74,9 +76,15 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
         );
     }
     if has_reports {
-        let about = "/** 发送上报：每种上报一个方法。Pushes reports: one method per report. */";
+        let about = [
+            "发送上报：每种上报一个方法。",
+            "Pushes reports: one method per report.",
+        ];
         let parts = parts(context, groups, "reporter", What::Reports);
-        let constructor = "/** 向一个服务端的各个 app 上报。Reports to the apps of a server. */";
+        let constructor = [
+            "向一个服务端的各个 app 上报。",
+            "Reports to the apps of a server.",
+        ];
         pushing(
             &mut out,
             "Reporter",
@@ -87,10 +95,15 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
         );
     }
     if has_streams {
-        let about = "/** 机器人发送的数据流：每个数据流一个方法。Sends the streams of the robot: one method per stream. */";
+        let about = [
+            "机器人发送的数据流：每个数据流一个方法。",
+            "Sends the streams of the robot: one method per stream.",
+        ];
         let parts = parts(context, groups, "streamer", What::RobotStreams);
-        let constructor =
-            "/** 向一个服务端的各个数据连接发送。Sends to the data connections of a server. */";
+        let constructor = [
+            "向一个服务端的各个数据连接发送。",
+            "Sends to the data connections of a server.",
+        ];
         pushing(
             &mut out,
             "Streamer",
@@ -104,19 +117,17 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
 }
 
 fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
-    out.line(
-        "\
-/**
- * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。
- * A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing
- * method.
- *
- * 抛出 `Refusal` 可以拒绝指令。处理超时或连接断开后，`context.signal` 会中止：调用方不再等待响应。
- *
- * Throw a `Refusal` to refuse a command. `context.signal` is aborted after a handler timeout or a loss of the connection:
- * the caller does not wait for the response any more.
- */",
-    );
+    let mut docs = Docs::two_lines([
+        "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。",
+        "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing\n\
+             method.",
+    ]);
+    docs.raw_both([
+        "抛出 `Refusal` 可以拒绝指令。处理超时或连接断开后，`context.signal` 会中止：调用方不再等待响应。",
+        "Throw a `Refusal` to refuse a command. `context.signal` is aborted after a handler timeout or a loss of the connection:\n\
+         the caller does not wait for the response any more.",
+    ]);
+    out.docs(&docs);
     let open = extending(out, "Robot", parts);
     out.block(open, |out| {
         for (name, range) in ranges(context) {
@@ -127,19 +138,20 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
             ));
             raw(out, docs, &name);
         }
-        let mut docs = Docs::default();
-        docs.paragraph("功能码不在规范中的指令。");
-        docs.paragraph("Commands with a code that is not in the spec.");
+        let docs = Docs::said([
+            "功能码不在规范中的指令。",
+            "Commands with a code that is not in the spec.",
+        ]);
         raw(out, docs, UNKNOWN);
     });
 }
 
 /// Writes an optional method for requests without a type. A new range in the spec therefore breaks no robot.
 fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
-    docs.paragraph("报文是 JSON 文本。不实现此方法时，按未知指令拒绝。");
-    docs.paragraph(
+    docs.both([
+        "报文是 JSON 文本。不实现此方法时，按未知指令拒绝。",
         "Messages are JSON texts. Without this method, the robot refuses them as unknown commands.",
-    );
+    ]);
     out.blank();
     out.docs(&docs);
     out.line(format!(
@@ -148,35 +160,36 @@ fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
 }
 
 fn example(out: &mut Source, parts: &[String]) {
-    let about = "/** 每组指令的方法。The methods of each group of commands. */";
+    let about = ["每组指令的方法。", "The methods of each group of commands."];
     merged(out, "ExampleRobot", about, parts);
-    out.line(
-        "\
-/**
- * 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
- * Responds with the examples of the spec, only for demos and tests. Your own robot starts with `implements PartialRobot`.
- *
- * 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。
- *
- * It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With
- * `pretendMotion`, it pretends success.
- */",
-    );
+    let mut docs = Docs::two_lines([
+        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。",
+        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `implements PartialRobot`.",
+    ]);
+    docs.both([
+        "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。",
+        "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With `pretendMotion`, it pretends success.",
+    ]);
+    out.docs(&docs);
     out.block("export class ExampleRobot implements Robot", |out| {
         out.line(
             "\
 static {
   addExamples(ExampleRobot, service.methods)
-}
-
-/**
- * 对运动指令也返回成功，但什么都不会动；只在没有真机时使用。
- * Responds to commands that may move the robot with success as well, although no robot moves. Use it only without a real
- * robot.
- */
-readonly pretendMotion: boolean
-
-/** 默认不假装成功。By default it does not pretend success. */
+}",
+        );
+        out.documented(&Docs::two_lines([
+            "对运动指令也返回成功，但什么都不会动；只在没有真机时使用。",
+            "Responds to commands that may move the robot with success as well, although no robot moves. Use it only without a real\n\
+             robot.",
+        ]));
+        out.line("readonly pretendMotion: boolean");
+        out.documented(&Docs::line([
+            "默认不假装成功。",
+            "By default it does not pretend success.",
+        ]));
+        out.line(
+            "\
 constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion'>> = {}) {
   this.pretendMotion = pretendMotion
 }",
@@ -185,14 +198,21 @@ constructor({ pretendMotion = false }: Partial<Pick<ExampleRobot, 'pretendMotion
 }
 
 /// Writes a class whose methods send something to the apps of a server.
-fn pushing(out: &mut Source, name: &str, parts: &[String], about: &str, add: &str, made: &str) {
-    let methods = "/** 每组的方法。The methods of each group. */";
+fn pushing(
+    out: &mut Source,
+    name: &str,
+    parts: &[String],
+    about: [&str; 2],
+    add: &str,
+    made: [&str; 2],
+) {
+    let methods = ["每组的方法。", "The methods of each group."];
     merged(out, name, methods, parts);
-    out.line(about);
+    out.docs(&Docs::line(about));
     out.block(format!("export class {name}"), |out| {
         out.line(format!("static {{\n  {add}\n}}"));
         out.blank();
-        let server = "/** 服务端。The server. */";
+        let server = ["服务端。", "The server."];
         constructor(out, ["server", "Server"], server, made);
     });
 }
@@ -219,18 +239,24 @@ pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
 
 /// Writes a group's part of the robot's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
-    let handlers = [
+    let handlers = (
         Side::Robot.name(),
-        "/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */",
-    ];
+        [
+            "本组的指令，`Robot` 的方法。",
+            "The commands of the group: methods of `Robot`.",
+        ],
+    );
     group.interface(out, context, handlers, &group.commands, |out, command| {
         handler(out, context, command);
     });
     let robot = group.part(context, Side::Robot.name());
-    let examples = [
+    let examples = (
         "examples",
-        "/** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */",
-    ];
+        [
+            "本组指令的示例：`ExampleRobot` 的方法。",
+            "The examples of the group: methods of `ExampleRobot`.",
+        ],
+    );
     group.interface(out, context, examples, &group.commands, |out, command| {
         let mut docs = Docs::default();
         docs.raw(format!("{{@inheritDoc {robot}.{}}}", command.method));
@@ -240,10 +266,13 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         method(out, command.method, parameters, &command.response.ty.name);
     });
     let audience = format!("audience?: {}", own(context, "Audience"));
-    let reporter = [
+    let reporter = (
         "reporter",
-        "/** 本组的上报，`Reporter` 的方法。The reports of the group: methods of `Reporter`. */",
-    ];
+        [
+            "本组的上报，`Reporter` 的方法。",
+            "The reports of the group: methods of `Reporter`.",
+        ],
+    );
     group.interface(out, context, reporter, &group.reports, |out, report| {
         let operation = report.operation;
         let mut docs = facts::operation_docs(operation);
@@ -258,10 +287,13 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         let result = format!("Promise<{}[]>", own(context, "Acknowledgement"));
         method(out, report.method, &parameters, &result);
     });
-    let streamer = [
+    let streamer = (
         "streamer",
-        "/** 本组由机器人发送的数据流，`Streamer` 的方法。The streams of the group that a robot sends: methods of `Streamer`. */",
-    ];
+        [
+            "本组由机器人发送的数据流，`Streamer` 的方法。",
+            "The streams of the group that a robot sends: methods of `Streamer`.",
+        ],
+    );
     group.interface(
         out,
         context,

@@ -1,7 +1,8 @@
 //! `index.ts`: the package as a program imports it.
 
 use super::context::Context;
-use super::source::{file as empty, named};
+use super::source::named;
+use crate::package::about;
 use crate::package::docs::Docs;
 use fc_spec::model::Side;
 
@@ -28,14 +29,11 @@ pub fn has(name: &str) -> bool {
 }
 
 pub fn file(context: &Context<'_>) -> String {
-    let mut out = empty();
+    let mut out = context.source();
     let protocol = &context.model().protocol;
     let mut docs = Docs::titled(&protocol.title);
     docs.text(&protocol.about);
-    docs.paragraph(format!(
-        "规范版本 {}。Version {} of the spec.",
-        protocol.version, protocol.version
-    ));
+    about::version(&mut docs, context.model());
     docs.raw("An app starts with {@link Client}, a robot with {@link PartialRobot} or {@link Robot} and {@link serve}.");
     docs.raw("@module");
     out.docs(&docs);

@@ -5,6 +5,7 @@
 use super::constants::Constants;
 use super::context::{Context, imported, own, spelled};
 use super::source::{self, Source, TYPESCRIPT, named};
+use crate::package::docs::Docs;
 use crate::package::expr::Record;
 use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
 use crate::package::name::free;
@@ -127,7 +128,7 @@ pub fn file(context: &Context<'_>) -> String {
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut names = Names::new(context);
-    let mut body = Source::new(&TYPESCRIPT);
+    let mut body = context.source();
     let head = format!("class {robot} implements Robot");
     if run.answers.is_empty() {
         body.line([&head, " {}"].concat());
@@ -148,10 +149,13 @@ pub fn file(context: &Context<'_>) -> String {
     body.blank();
     run_all(&mut body, context, &robot, run);
 
-    let mut out = source::head([
-        "文档中的示例代码：随软件包编译，由测试运行。",
-        "The samples of the documentation: compiled with the package, and run by a test of it.",
-    ]);
+    let mut out = source::head(
+        context,
+        [
+            "文档中的示例代码：随软件包编译，由测试运行。",
+            "The samples of the documentation: compiled with the package, and run by a test of it.",
+        ],
+    );
     let mut runtime = vec!["Platform", "ServerPlatform"];
     if run.has(Verb::Call) {
         runtime.extend(["Answer", "Context"]);
@@ -201,13 +205,10 @@ fn run_all(out: &mut Source, context: &Context<'_>, robot: &str, run: &SampleRun
         out.list(&format!("const {name} = Promise.all(["), &calls, "])");
     };
     let [app, server] = ["Platform", "ServerPlatform"].map(|it| own(context, it));
-    out.line(
-        "\
-/**
- * 一个 app 和一个机器人在本机上运行全部示例。
- * Runs all samples, with an app and a robot on this machine.
- */",
-    );
+    out.docs(&Docs::said([
+        "一个 app 和一个机器人在本机上运行全部示例。",
+        "Runs all samples, with an app and a robot on this machine.",
+    ]));
     let head = format!("export async function run(app: {app}, robot: {server}): Promise<void>");
     out.block(head, |out| {
         out.line(format!(

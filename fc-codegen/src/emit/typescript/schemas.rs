@@ -18,7 +18,7 @@ pub const ABOUT: [&str; 2] = [
 ];
 
 pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
-    let mut out = head(ABOUT);
+    let mut out = head(context, ABOUT);
     let items = group.items();
     let kinds = items.iter().map(|item| imported(context, kind(item)));
     named(&mut out, "import type", kinds, "../../../src/schema.ts");

@@ -1,5 +1,6 @@
 //! Source text in the layout of Biome: comments, literals and declarations.
 
+use super::context::Context;
 use crate::package::docs::{Docs, escape_links};
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
@@ -104,17 +105,10 @@ pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
     });
 }
 
-/// Creates an empty TypeScript file.
-pub fn file() -> Source {
-    Source::new(&TYPESCRIPT)
-}
-
 /// Creates the head of a file whose source is the whole spec.
-pub fn head([zh, en]: [&str; 2]) -> Source {
-    let mut out = file();
-    let mut docs = Docs::default();
-    docs.raw(zh);
-    docs.raw(en);
+pub fn head(context: &Context<'_>, about: [&str; 2]) -> Source {
+    let mut out = context.source();
+    let mut docs = Docs::written(about);
     docs.raw("@module");
     out.docs(&docs);
     out.blank();

@@ -19,7 +19,7 @@ pub const DEFAULTS: [&str; 2] = [
 ];
 
 pub fn file(context: &Context<'_>) -> String {
-    let mut out = head(about::TABLES);
+    let mut out = head(context, about::TABLES);
     let tables = &context.package.tables;
     if tables.is_empty() {
         return nothing(out);
@@ -51,7 +51,7 @@ pub fn file(context: &Context<'_>) -> String {
 ///
 /// A default is the meaning of an absent field.
 pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> String {
-    let mut out = head(DEFAULTS);
+    let mut out = head(context, DEFAULTS);
     named(
         &mut out,
         "import type",

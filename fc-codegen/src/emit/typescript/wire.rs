@@ -20,7 +20,7 @@ const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 <<
 
 pub fn file(context: &Context<'_>) -> String {
     let package = &context.package;
-    let mut out = head(about::WIRE);
+    let mut out = head(context, about::WIRE);
     named(
         &mut out,
         "import type",
@@ -31,19 +31,22 @@ pub fn file(context: &Context<'_>) -> String {
         &mut out,
         context,
         "RequestEnvelope",
-        &about::REQUEST_ENVELOPE,
+        about::REQUEST_ENVELOPE,
         &package.request_envelope,
     );
     envelope(
         &mut out,
         context,
         "ResponseEnvelope",
-        &about::RESPONSE_ENVELOPE,
+        about::RESPONSE_ENVELOPE,
         &package.response_envelope,
     );
     results(&mut out, context);
     out.blank();
-    out.line("/** 消息之下各层的全部数值。All numbers of the layers below the messages. */");
+    out.docs(&Docs::line([
+        "消息之下各层的全部数值。",
+        "All numbers of the layers below the messages.",
+    ]));
     wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }
@@ -52,7 +55,7 @@ fn envelope(
     out: &mut Source,
     context: &Context<'_>,
     name: &str,
-    docs: &[&'static str],
+    docs: [&'static str; 2],
     fields: &[Spelled<'_, EnvelopeField>],
 ) {
     out.blank();
@@ -105,7 +108,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     let codes: Vec<String> = codes.chain(["(number & {})".to_owned()]).collect();
     super::messages::union(out, "ResultCode", &codes);
     out.blank();
-    out.line("/** {@link ResultCode}：各个值。Its values. */");
+    out.docs(&Docs::line(["{@link ResultCode}：各个值。", "Its values."]));
     out.enclose("export const ResultCode = {", "} as const", |out| {
         for result in results {
             let mut docs = Docs::titled(&result.text);
