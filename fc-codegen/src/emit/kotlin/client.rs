@@ -108,6 +108,9 @@ const CONNECTION: [&str; 2] = [
     "The underlying connection: raw commands and options of a call.",
 ];
 
+const OPTIONS: &str = "options: CallOptions";
+const OPTIONS_OR_NONE: &str = "options: CallOptions = CallOptions()";
+
 /// Writes a group's part of `Client`: a method for each command.
 pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     if group.commands.is_empty() {
@@ -143,34 +146,35 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     );
     let bare = is_bare(command.request).then(|| format!("{request} {{}}"));
     let given = format!("request: {request}");
-    let parameter = match &bare {
-        Some(bare) => format!("{given} = {bare}"),
-        None => given.clone(),
+    let parameters = match &bare {
+        Some(bare) => [format!("{given} = {bare}"), OPTIONS_OR_NONE.to_owned()],
+        None => [given.clone(), OPTIONS_OR_NONE.to_owned()],
     };
     function(
         out,
         &format!("public suspend fun {method}("),
-        &parameter,
+        &parameters,
         &format!("): {response} ="),
-        &format!("connection.call(Operations.{method}, request)"),
+        &format!("connection.call(Operations.{method}, request, options)"),
     );
     let docs = for_java(method);
-    let mut twin = |parameter: &str, body: &str| {
+    let mut twin = |parameters: &[String], body: &str| {
         out.documented(&docs);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
-        function(out, &open, parameter, &close, body);
+        function(out, &open, parameters, &close, body);
     };
     twin(
-        &given,
-        &format!("connection.callAsync(Operations.{method}, request)"),
+        &[given.clone(), OPTIONS.to_owned()],
+        &format!("connection.callAsync(Operations.{method}, request, options)"),
     );
     // `@JvmOverloads` does not work in an interface.
+    twin(&[given], &format!("{method}Async(request, CallOptions())"));
     if let Some(bare) = bare {
-        twin("", &format!("{method}Async({bare})"));
+        twin(&[], &format!("{method}Async({bare}, CallOptions())"));
     }
-    followed(out, context, command, &parameter);
+    followed(out, context, command, &parameters);
 }
 
 /// Creates the comment on the form of a method for Java.
@@ -182,7 +186,7 @@ pub fn for_java(method: &str) -> Docs<'static> {
 }
 
 /// Writes a method for each kind of report that a command sets off.
-fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, parameter: &str) {
+fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, parameters: &[String]) {
     let operation = command.operation;
     let (method, response) = (command.method, &command.response.ty.name);
     let followed: Vec<_> = set_off(context, operation).collect();
@@ -215,42 +219,52 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
         } else {
             format!("{method}FollowedBy{reported_type}")
         };
-        out.enclose(
-            &format!(
-                "public suspend fun {name}({parameter}): Following<{response}, {reported_type}> ="
-            ),
-            "",
-            |out| {
-                let call =
-                    format!("connection.follow(Operations.{method}, request, Operations.{kind})");
-                if ties.is_empty() {
-                    out.line(call);
-                } else {
-                    let used = |word: &str| {
-                        if ties.iter().any(|tie| tie.contains(&format!("({word}."))) {
-                            word.to_owned()
-                        } else {
-                            "_".to_owned()
-                        }
-                    };
-                    let names = format!("_, {}, report", used("response"));
-                    out.enclose(&format!("{call} {{ {names} ->"), "}", |out| {
-                        out.line(ties.join(" && "));
-                    });
-                }
-            },
-        );
+        let open = format!("public suspend fun {name}(");
+        let close = format!("): Following<{response}, {reported_type}> =");
+        let call =
+            format!("connection.follow(Operations.{method}, request, Operations.{kind}, options)");
+        if ties.is_empty() {
+            function(out, &open, parameters, &close, &call);
+        } else {
+            signature(out, &open, parameters, &close, |out| {
+                let used = |word: &str| {
+                    if ties.iter().any(|tie| tie.contains(&format!("({word}."))) {
+                        word.to_owned()
+                    } else {
+                        "_".to_owned()
+                    }
+                };
+                let names = format!("_, {}, report", used("response"));
+                out.enclose(&format!("{call} {{ {names} ->"), "}", |out| {
+                    out.line(ties.join(" && "));
+                });
+            });
+        }
     }
 }
 
 /// Writes a function with an expression body. The function has several lines if it exceeds one.
-fn function(out: &mut Source, open: &str, parameter: &str, close: &str, body: &str) {
-    if out.has_room([open, parameter, close, " ", body]) {
-        out.line([open, parameter, close, " ", body].concat());
-    } else if out.has_room([open, parameter, close]) {
-        out.enclose(&[open, parameter, close].concat(), "", |out| out.line(body));
+fn function(out: &mut Source, open: &str, parameters: &[String], close: &str, body: &str) {
+    let joined = parameters.join(", ");
+    if out.has_room([open, &joined, close, " ", body]) {
+        out.line([open, &joined, close, " ", body].concat());
     } else {
-        out.enclose(open, "", |out| out.line(format!("{parameter},")));
-        out.enclose(close, "", |out| out.line(body));
+        signature(out, open, parameters, close, |out| out.line(body));
     }
+}
+
+/// Writes a function with its body below. Each parameter has a line if all exceed one.
+fn signature(
+    out: &mut Source,
+    open: &str,
+    parameters: &[String],
+    close: &str,
+    body: impl FnOnce(&mut Source),
+) {
+    let joined = parameters.join(", ");
+    if out.has_room([open, &joined, close]) {
+        return out.enclose(&[open, &joined, close].concat(), "", body);
+    }
+    out.lines(open, parameters, "");
+    out.enclose(close, "", body);
 }

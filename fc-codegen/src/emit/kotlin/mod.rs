@@ -84,6 +84,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.Acknowledgement",
     "fc.runtime.Audience",
     "fc.runtime.Bytes",
+    "fc.runtime.CallOptions",
     "fc.runtime.ChoiceType",
     "fc.runtime.ClientConfig",
     "fc.runtime.Command",

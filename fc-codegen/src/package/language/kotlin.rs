@@ -21,18 +21,19 @@ pub static KOTLIN: Language = Language {
         this throw true try typealias typeof val var when while",
     ),
     types: Words::new(
-        "AckPolicy Acknowledgement Annotation Any Array Audience AutoCloseable BigInteger Boolean BooleanArray \
-        Builder Byte ByteArray Bytes CallError Char CharArray CharSequence ChoiceType Client ClientConfig Codec \
-        Collection Command Comparable Comparator CompletableFuture Connection ConnectionState Content Context \
-        DataConnection DeclaredError Defaults Deprecated DigestAlgorithm Double DoubleArray Effect Empty Enum \
-        EnumType EnvelopeRole Error ExampleAnswers ExampleRobot Exception Extra Field Float FloatArray Flow Following Function \
-        HeaderField HeaderLayout HeaderRole Int IntArray IntEnumType IntValue Iterable Iterator Json JvmField \
-        JvmOverloads JvmStatic JvmSynthetic Lazy Limits List Long LongArray Loss Map Message MessageBuilder \
-        MessageType MutableList MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair \
-        PartialRobot Protocol RawRequest Record Refusal Report Reporter Reports RequestEnvelope ResponseEnvelope \
-        Result ResultCode ResultText Results Robot Runnable Sequence Server Service Set Short ShortArray State \
-        StateOrder Steps Streamer Streams String StringBuilder Subscription Suppress System Tables TextEnumType \
-        TextValue Thread Throwable Throws Triple Types UByte UInt ULong UShort Unit Void",
+        "AckPolicy Acknowledgement Annotation Any Array Audience AutoCloseable BigInteger Boolean \
+        BooleanArray Builder Byte ByteArray Bytes CallError CallOptions Char CharArray CharSequence \
+        ChoiceType Client ClientConfig Codec Collection Command Comparable Comparator CompletableFuture \
+        Connection ConnectionState Content Context DataConnection DeclaredError Defaults Deprecated \
+        DigestAlgorithm Double DoubleArray Effect Empty Enum EnumType EnvelopeRole Error ExampleAnswers \
+        ExampleRobot Exception Extra Field Float FloatArray Flow Following Function HeaderField HeaderLayout \
+        HeaderRole Int IntArray IntEnumType IntValue Iterable Iterator Json JvmField JvmOverloads JvmStatic \
+        JvmSynthetic Lazy Limits List Long LongArray Loss Map Message MessageBuilder MessageType MutableList \
+        MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair PartialRobot \
+        Protocol RawRequest Record Refusal Report Reporter Reports RequestEnvelope ResponseEnvelope Result \
+        ResultCode ResultText Results Robot Runnable Sequence Server Service Set Short ShortArray State \
+        StateOrder Steps Streamer Streams String StringBuilder Subscription Suppress System Tables \
+        TextEnumType TextValue Thread Throwable Throws Triple Types UByte UInt ULong UShort Unit Void",
     ),
     fields: Words::new(
         "clone equals extra field finalize getClass hashCode messageType notify notifyAll toString wait",

@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -119,12 +120,22 @@ public interface BuildingClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun listIotDevices(request: ListIotDevicesRequest): ListIotDevicesResponse =
-        connection.call(Operations.listIotDevices, request)
+    public suspend fun listIotDevices(
+        request: ListIotDevicesRequest,
+        options: CallOptions = CallOptions(),
+    ): ListIotDevicesResponse =
+        connection.call(Operations.listIotDevices, request, options)
+
+    /** [listIotDevices]，供 Java 使用。[listIotDevices] for Java. */
+    public fun listIotDevicesAsync(
+        request: ListIotDevicesRequest,
+        options: CallOptions,
+    ): CompletableFuture<ListIotDevicesResponse> =
+        connection.callAsync(Operations.listIotDevices, request, options)
 
     /** [listIotDevices]，供 Java 使用。[listIotDevices] for Java. */
     public fun listIotDevicesAsync(request: ListIotDevicesRequest): CompletableFuture<ListIotDevicesResponse> =
-        connection.callAsync(Operations.listIotDevices, request)
+        listIotDevicesAsync(request, CallOptions())
 
     /**
      * 获取楼层信息
@@ -144,15 +155,23 @@ public interface BuildingClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getFloors(request: GetFloorsRequest = GetFloorsRequest {}): GetFloorsResponse =
-        connection.call(Operations.getFloors, request)
+    public suspend fun getFloors(
+        request: GetFloorsRequest = GetFloorsRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetFloorsResponse =
+        connection.call(Operations.getFloors, request, options)
+
+    /** [getFloors]，供 Java 使用。[getFloors] for Java. */
+    public fun getFloorsAsync(request: GetFloorsRequest, options: CallOptions): CompletableFuture<GetFloorsResponse> =
+        connection.callAsync(Operations.getFloors, request, options)
 
     /** [getFloors]，供 Java 使用。[getFloors] for Java. */
     public fun getFloorsAsync(request: GetFloorsRequest): CompletableFuture<GetFloorsResponse> =
-        connection.callAsync(Operations.getFloors, request)
+        getFloorsAsync(request, CallOptions())
 
     /** [getFloors]，供 Java 使用。[getFloors] for Java. */
-    public fun getFloorsAsync(): CompletableFuture<GetFloorsResponse> = getFloorsAsync(GetFloorsRequest {})
+    public fun getFloorsAsync(): CompletableFuture<GetFloorsResponse> =
+        getFloorsAsync(GetFloorsRequest {}, CallOptions())
 }
 
 /**

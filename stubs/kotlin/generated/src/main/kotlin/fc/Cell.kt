@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.ChoiceType
 import fc.runtime.Command
 import fc.runtime.Connection
@@ -131,16 +132,26 @@ public interface CellClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getCellConfig(request: GetCellConfigRequest = GetCellConfigRequest {}): GetCellConfigResponse =
-        connection.call(Operations.getCellConfig, request)
+    public suspend fun getCellConfig(
+        request: GetCellConfigRequest = GetCellConfigRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetCellConfigResponse =
+        connection.call(Operations.getCellConfig, request, options)
+
+    /** [getCellConfig]，供 Java 使用。[getCellConfig] for Java. */
+    public fun getCellConfigAsync(
+        request: GetCellConfigRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetCellConfigResponse> =
+        connection.callAsync(Operations.getCellConfig, request, options)
 
     /** [getCellConfig]，供 Java 使用。[getCellConfig] for Java. */
     public fun getCellConfigAsync(request: GetCellConfigRequest): CompletableFuture<GetCellConfigResponse> =
-        connection.callAsync(Operations.getCellConfig, request)
+        getCellConfigAsync(request, CallOptions())
 
     /** [getCellConfig]，供 Java 使用。[getCellConfig] for Java. */
     public fun getCellConfigAsync(): CompletableFuture<GetCellConfigResponse> =
-        getCellConfigAsync(GetCellConfigRequest {})
+        getCellConfigAsync(GetCellConfigRequest {}, CallOptions())
 
     /**
      * 设置机器人格口配置
@@ -169,12 +180,22 @@ public interface CellClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun setCellConfig(request: SetCellConfigRequest): SetCellConfigResponse =
-        connection.call(Operations.setCellConfig, request)
+    public suspend fun setCellConfig(
+        request: SetCellConfigRequest,
+        options: CallOptions = CallOptions(),
+    ): SetCellConfigResponse =
+        connection.call(Operations.setCellConfig, request, options)
+
+    /** [setCellConfig]，供 Java 使用。[setCellConfig] for Java. */
+    public fun setCellConfigAsync(
+        request: SetCellConfigRequest,
+        options: CallOptions,
+    ): CompletableFuture<SetCellConfigResponse> =
+        connection.callAsync(Operations.setCellConfig, request, options)
 
     /** [setCellConfig]，供 Java 使用。[setCellConfig] for Java. */
     public fun setCellConfigAsync(request: SetCellConfigRequest): CompletableFuture<SetCellConfigResponse> =
-        connection.callAsync(Operations.setCellConfig, request)
+        setCellConfigAsync(request, CallOptions())
 }
 
 /**

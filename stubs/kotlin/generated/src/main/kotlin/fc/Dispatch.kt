@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -88,18 +89,26 @@ public interface DispatchClient {
     @JvmSynthetic
     public suspend fun checkCondition0333(
         request: CheckCondition0333Request = CheckCondition0333Request {},
+        options: CallOptions = CallOptions(),
     ): CheckCondition0333Response =
-        connection.call(Operations.checkCondition0333, request)
+        connection.call(Operations.checkCondition0333, request, options)
+
+    /** [checkCondition0333]，供 Java 使用。[checkCondition0333] for Java. */
+    public fun checkCondition0333Async(
+        request: CheckCondition0333Request,
+        options: CallOptions,
+    ): CompletableFuture<CheckCondition0333Response> =
+        connection.callAsync(Operations.checkCondition0333, request, options)
 
     /** [checkCondition0333]，供 Java 使用。[checkCondition0333] for Java. */
     public fun checkCondition0333Async(
         request: CheckCondition0333Request,
     ): CompletableFuture<CheckCondition0333Response> =
-        connection.callAsync(Operations.checkCondition0333, request)
+        checkCondition0333Async(request, CallOptions())
 
     /** [checkCondition0333]，供 Java 使用。[checkCondition0333] for Java. */
     public fun checkCondition0333Async(): CompletableFuture<CheckCondition0333Response> =
-        checkCondition0333Async(CheckCondition0333Request {})
+        checkCondition0333Async(CheckCondition0333Request {}, CallOptions())
 }
 
 /**

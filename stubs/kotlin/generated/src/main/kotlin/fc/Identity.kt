@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -117,15 +118,26 @@ public interface IdentityClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getRobotSn(request: GetRobotSnRequest = GetRobotSnRequest {}): GetRobotSnResponse =
-        connection.call(Operations.getRobotSn, request)
+    public suspend fun getRobotSn(
+        request: GetRobotSnRequest = GetRobotSnRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetRobotSnResponse =
+        connection.call(Operations.getRobotSn, request, options)
+
+    /** [getRobotSn]，供 Java 使用。[getRobotSn] for Java. */
+    public fun getRobotSnAsync(
+        request: GetRobotSnRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetRobotSnResponse> =
+        connection.callAsync(Operations.getRobotSn, request, options)
 
     /** [getRobotSn]，供 Java 使用。[getRobotSn] for Java. */
     public fun getRobotSnAsync(request: GetRobotSnRequest): CompletableFuture<GetRobotSnResponse> =
-        connection.callAsync(Operations.getRobotSn, request)
+        getRobotSnAsync(request, CallOptions())
 
     /** [getRobotSn]，供 Java 使用。[getRobotSn] for Java. */
-    public fun getRobotSnAsync(): CompletableFuture<GetRobotSnResponse> = getRobotSnAsync(GetRobotSnRequest {})
+    public fun getRobotSnAsync(): CompletableFuture<GetRobotSnResponse> =
+        getRobotSnAsync(GetRobotSnRequest {}, CallOptions())
 
     /**
      * 获取固件版本
@@ -149,18 +161,26 @@ public interface IdentityClient {
     @JvmSynthetic
     public suspend fun getFirmwareVersions(
         request: GetFirmwareVersionsRequest = GetFirmwareVersionsRequest {},
+        options: CallOptions = CallOptions(),
     ): GetFirmwareVersionsResponse =
-        connection.call(Operations.getFirmwareVersions, request)
+        connection.call(Operations.getFirmwareVersions, request, options)
+
+    /** [getFirmwareVersions]，供 Java 使用。[getFirmwareVersions] for Java. */
+    public fun getFirmwareVersionsAsync(
+        request: GetFirmwareVersionsRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetFirmwareVersionsResponse> =
+        connection.callAsync(Operations.getFirmwareVersions, request, options)
 
     /** [getFirmwareVersions]，供 Java 使用。[getFirmwareVersions] for Java. */
     public fun getFirmwareVersionsAsync(
         request: GetFirmwareVersionsRequest,
     ): CompletableFuture<GetFirmwareVersionsResponse> =
-        connection.callAsync(Operations.getFirmwareVersions, request)
+        getFirmwareVersionsAsync(request, CallOptions())
 
     /** [getFirmwareVersions]，供 Java 使用。[getFirmwareVersions] for Java. */
     public fun getFirmwareVersionsAsync(): CompletableFuture<GetFirmwareVersionsResponse> =
-        getFirmwareVersionsAsync(GetFirmwareVersionsRequest {})
+        getFirmwareVersionsAsync(GetFirmwareVersionsRequest {}, CallOptions())
 }
 
 /**

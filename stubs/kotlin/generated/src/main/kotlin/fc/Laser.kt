@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -83,12 +84,22 @@ public interface LaserClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getLaserScan(request: GetLaserScanRequest): GetLaserScanResponse =
-        connection.call(Operations.getLaserScan, request)
+    public suspend fun getLaserScan(
+        request: GetLaserScanRequest,
+        options: CallOptions = CallOptions(),
+    ): GetLaserScanResponse =
+        connection.call(Operations.getLaserScan, request, options)
+
+    /** [getLaserScan]，供 Java 使用。[getLaserScan] for Java. */
+    public fun getLaserScanAsync(
+        request: GetLaserScanRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetLaserScanResponse> =
+        connection.callAsync(Operations.getLaserScan, request, options)
 
     /** [getLaserScan]，供 Java 使用。[getLaserScan] for Java. */
     public fun getLaserScanAsync(request: GetLaserScanRequest): CompletableFuture<GetLaserScanResponse> =
-        connection.callAsync(Operations.getLaserScan, request)
+        getLaserScanAsync(request, CallOptions())
 }
 
 /**

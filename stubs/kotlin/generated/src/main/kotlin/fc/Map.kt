@@ -7,6 +7,7 @@ import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
 import fc.runtime.Bytes
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -311,12 +312,22 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getMapImage(request: GetMapImageRequest): GetMapImageResponse =
-        connection.call(Operations.getMapImage, request)
+    public suspend fun getMapImage(
+        request: GetMapImageRequest,
+        options: CallOptions = CallOptions(),
+    ): GetMapImageResponse =
+        connection.call(Operations.getMapImage, request, options)
+
+    /** [getMapImage]，供 Java 使用。[getMapImage] for Java. */
+    public fun getMapImageAsync(
+        request: GetMapImageRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetMapImageResponse> =
+        connection.callAsync(Operations.getMapImage, request, options)
 
     /** [getMapImage]，供 Java 使用。[getMapImage] for Java. */
     public fun getMapImageAsync(request: GetMapImageRequest): CompletableFuture<GetMapImageResponse> =
-        connection.callAsync(Operations.getMapImage, request)
+        getMapImageAsync(request, CallOptions())
 
     /**
      * 获取地图列表
@@ -335,15 +346,22 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun listMaps(request: ListMapsRequest = ListMapsRequest {}): ListMapsResponse =
-        connection.call(Operations.listMaps, request)
+    public suspend fun listMaps(
+        request: ListMapsRequest = ListMapsRequest {},
+        options: CallOptions = CallOptions(),
+    ): ListMapsResponse =
+        connection.call(Operations.listMaps, request, options)
+
+    /** [listMaps]，供 Java 使用。[listMaps] for Java. */
+    public fun listMapsAsync(request: ListMapsRequest, options: CallOptions): CompletableFuture<ListMapsResponse> =
+        connection.callAsync(Operations.listMaps, request, options)
 
     /** [listMaps]，供 Java 使用。[listMaps] for Java. */
     public fun listMapsAsync(request: ListMapsRequest): CompletableFuture<ListMapsResponse> =
-        connection.callAsync(Operations.listMaps, request)
+        listMapsAsync(request, CallOptions())
 
     /** [listMaps]，供 Java 使用。[listMaps] for Java. */
-    public fun listMapsAsync(): CompletableFuture<ListMapsResponse> = listMapsAsync(ListMapsRequest {})
+    public fun listMapsAsync(): CompletableFuture<ListMapsResponse> = listMapsAsync(ListMapsRequest {}, CallOptions())
 
     /**
      * 获取地图信息
@@ -358,15 +376,26 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getMapInfo(request: GetMapInfoRequest = GetMapInfoRequest {}): GetMapInfoResponse =
-        connection.call(Operations.getMapInfo, request)
+    public suspend fun getMapInfo(
+        request: GetMapInfoRequest = GetMapInfoRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetMapInfoResponse =
+        connection.call(Operations.getMapInfo, request, options)
+
+    /** [getMapInfo]，供 Java 使用。[getMapInfo] for Java. */
+    public fun getMapInfoAsync(
+        request: GetMapInfoRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetMapInfoResponse> =
+        connection.callAsync(Operations.getMapInfo, request, options)
 
     /** [getMapInfo]，供 Java 使用。[getMapInfo] for Java. */
     public fun getMapInfoAsync(request: GetMapInfoRequest): CompletableFuture<GetMapInfoResponse> =
-        connection.callAsync(Operations.getMapInfo, request)
+        getMapInfoAsync(request, CallOptions())
 
     /** [getMapInfo]，供 Java 使用。[getMapInfo] for Java. */
-    public fun getMapInfoAsync(): CompletableFuture<GetMapInfoResponse> = getMapInfoAsync(GetMapInfoRequest {})
+    public fun getMapInfoAsync(): CompletableFuture<GetMapInfoResponse> =
+        getMapInfoAsync(GetMapInfoRequest {}, CallOptions())
 
     /**
      * 保存地图
@@ -385,11 +414,16 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun saveMap(request: SaveMapRequest): SaveMapResponse = connection.call(Operations.saveMap, request)
+    public suspend fun saveMap(request: SaveMapRequest, options: CallOptions = CallOptions()): SaveMapResponse =
+        connection.call(Operations.saveMap, request, options)
+
+    /** [saveMap]，供 Java 使用。[saveMap] for Java. */
+    public fun saveMapAsync(request: SaveMapRequest, options: CallOptions): CompletableFuture<SaveMapResponse> =
+        connection.callAsync(Operations.saveMap, request, options)
 
     /** [saveMap]，供 Java 使用。[saveMap] for Java. */
     public fun saveMapAsync(request: SaveMapRequest): CompletableFuture<SaveMapResponse> =
-        connection.callAsync(Operations.saveMap, request)
+        saveMapAsync(request, CallOptions())
 
     /**
      * 下载地图
@@ -411,12 +445,22 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun downloadMaps(request: DownloadMapsRequest): DownloadMapsResponse =
-        connection.call(Operations.downloadMaps, request)
+    public suspend fun downloadMaps(
+        request: DownloadMapsRequest,
+        options: CallOptions = CallOptions(),
+    ): DownloadMapsResponse =
+        connection.call(Operations.downloadMaps, request, options)
+
+    /** [downloadMaps]，供 Java 使用。[downloadMaps] for Java. */
+    public fun downloadMapsAsync(
+        request: DownloadMapsRequest,
+        options: CallOptions,
+    ): CompletableFuture<DownloadMapsResponse> =
+        connection.callAsync(Operations.downloadMaps, request, options)
 
     /** [downloadMaps]，供 Java 使用。[downloadMaps] for Java. */
     public fun downloadMapsAsync(request: DownloadMapsRequest): CompletableFuture<DownloadMapsResponse> =
-        connection.callAsync(Operations.downloadMaps, request)
+        downloadMapsAsync(request, CallOptions())
 
     /**
      * [downloadMaps]：先返回响应，再逐个返回它引起的 [MapSyncProgress]。
@@ -433,8 +477,11 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
-    public suspend fun downloadMapsFollowed(request: DownloadMapsRequest): Following<DownloadMapsResponse, MapSyncProgress> =
-        connection.follow(Operations.downloadMaps, request, Operations.mapSyncProgress)
+    public suspend fun downloadMapsFollowed(
+        request: DownloadMapsRequest,
+        options: CallOptions = CallOptions(),
+    ): Following<DownloadMapsResponse, MapSyncProgress> =
+        connection.follow(Operations.downloadMaps, request, Operations.mapSyncProgress, options)
 
     /**
      * 上传地图
@@ -454,15 +501,26 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun uploadMaps(request: UploadMapsRequest = UploadMapsRequest {}): UploadMapsResponse =
-        connection.call(Operations.uploadMaps, request)
+    public suspend fun uploadMaps(
+        request: UploadMapsRequest = UploadMapsRequest {},
+        options: CallOptions = CallOptions(),
+    ): UploadMapsResponse =
+        connection.call(Operations.uploadMaps, request, options)
+
+    /** [uploadMaps]，供 Java 使用。[uploadMaps] for Java. */
+    public fun uploadMapsAsync(
+        request: UploadMapsRequest,
+        options: CallOptions,
+    ): CompletableFuture<UploadMapsResponse> =
+        connection.callAsync(Operations.uploadMaps, request, options)
 
     /** [uploadMaps]，供 Java 使用。[uploadMaps] for Java. */
     public fun uploadMapsAsync(request: UploadMapsRequest): CompletableFuture<UploadMapsResponse> =
-        connection.callAsync(Operations.uploadMaps, request)
+        uploadMapsAsync(request, CallOptions())
 
     /** [uploadMaps]，供 Java 使用。[uploadMaps] for Java. */
-    public fun uploadMapsAsync(): CompletableFuture<UploadMapsResponse> = uploadMapsAsync(UploadMapsRequest {})
+    public fun uploadMapsAsync(): CompletableFuture<UploadMapsResponse> =
+        uploadMapsAsync(UploadMapsRequest {}, CallOptions())
 
     /**
      * [uploadMaps]：先返回响应，再逐个返回它引起的 [MapSyncProgress]。
@@ -479,8 +537,11 @@ public interface MapClient {
      * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
-    public suspend fun uploadMapsFollowed(request: UploadMapsRequest = UploadMapsRequest {}): Following<UploadMapsResponse, MapSyncProgress> =
-        connection.follow(Operations.uploadMaps, request, Operations.mapSyncProgress)
+    public suspend fun uploadMapsFollowed(
+        request: UploadMapsRequest = UploadMapsRequest {},
+        options: CallOptions = CallOptions(),
+    ): Following<UploadMapsResponse, MapSyncProgress> =
+        connection.follow(Operations.uploadMaps, request, Operations.mapSyncProgress, options)
 
     /**
      * 获取正在同步的地图进度
@@ -501,18 +562,26 @@ public interface MapClient {
     @JvmSynthetic
     public suspend fun getMapSyncProgress(
         request: GetMapSyncProgressRequest = GetMapSyncProgressRequest {},
+        options: CallOptions = CallOptions(),
     ): GetMapSyncProgressResponse =
-        connection.call(Operations.getMapSyncProgress, request)
+        connection.call(Operations.getMapSyncProgress, request, options)
+
+    /** [getMapSyncProgress]，供 Java 使用。[getMapSyncProgress] for Java. */
+    public fun getMapSyncProgressAsync(
+        request: GetMapSyncProgressRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetMapSyncProgressResponse> =
+        connection.callAsync(Operations.getMapSyncProgress, request, options)
 
     /** [getMapSyncProgress]，供 Java 使用。[getMapSyncProgress] for Java. */
     public fun getMapSyncProgressAsync(
         request: GetMapSyncProgressRequest,
     ): CompletableFuture<GetMapSyncProgressResponse> =
-        connection.callAsync(Operations.getMapSyncProgress, request)
+        getMapSyncProgressAsync(request, CallOptions())
 
     /** [getMapSyncProgress]，供 Java 使用。[getMapSyncProgress] for Java. */
     public fun getMapSyncProgressAsync(): CompletableFuture<GetMapSyncProgressResponse> =
-        getMapSyncProgressAsync(GetMapSyncProgressRequest {})
+        getMapSyncProgressAsync(GetMapSyncProgressRequest {}, CallOptions())
 }
 
 /**

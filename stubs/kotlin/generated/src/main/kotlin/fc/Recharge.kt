@@ -6,6 +6,7 @@ package fc
 import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -210,16 +211,26 @@ public interface RechargeClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun startRecharge(request: StartRechargeRequest = StartRechargeRequest {}): StartRechargeResponse =
-        connection.call(Operations.startRecharge, request)
+    public suspend fun startRecharge(
+        request: StartRechargeRequest = StartRechargeRequest {},
+        options: CallOptions = CallOptions(),
+    ): StartRechargeResponse =
+        connection.call(Operations.startRecharge, request, options)
+
+    /** [startRecharge]，供 Java 使用。[startRecharge] for Java. */
+    public fun startRechargeAsync(
+        request: StartRechargeRequest,
+        options: CallOptions,
+    ): CompletableFuture<StartRechargeResponse> =
+        connection.callAsync(Operations.startRecharge, request, options)
 
     /** [startRecharge]，供 Java 使用。[startRecharge] for Java. */
     public fun startRechargeAsync(request: StartRechargeRequest): CompletableFuture<StartRechargeResponse> =
-        connection.callAsync(Operations.startRecharge, request)
+        startRechargeAsync(request, CallOptions())
 
     /** [startRecharge]，供 Java 使用。[startRecharge] for Java. */
     public fun startRechargeAsync(): CompletableFuture<StartRechargeResponse> =
-        startRechargeAsync(StartRechargeRequest {})
+        startRechargeAsync(StartRechargeRequest {}, CallOptions())
 
     /**
      * [startRecharge]：先返回响应，再逐个返回它引起的 [RechargeProgress]。
@@ -236,8 +247,11 @@ public interface RechargeClient {
      * @throws fc.runtime.CallError if the response is not a success
      */
     @JvmSynthetic
-    public suspend fun startRechargeFollowed(request: StartRechargeRequest = StartRechargeRequest {}): Following<StartRechargeResponse, RechargeProgress> =
-        connection.follow(Operations.startRecharge, request, Operations.rechargeProgress)
+    public suspend fun startRechargeFollowed(
+        request: StartRechargeRequest = StartRechargeRequest {},
+        options: CallOptions = CallOptions(),
+    ): Following<StartRechargeResponse, RechargeProgress> =
+        connection.follow(Operations.startRecharge, request, Operations.rechargeProgress, options)
 
     /**
      * 取消一键回充
@@ -259,16 +273,24 @@ public interface RechargeClient {
     @JvmSynthetic
     public suspend fun cancelRecharge(
         request: CancelRechargeRequest = CancelRechargeRequest {},
+        options: CallOptions = CallOptions(),
     ): CancelRechargeResponse =
-        connection.call(Operations.cancelRecharge, request)
+        connection.call(Operations.cancelRecharge, request, options)
+
+    /** [cancelRecharge]，供 Java 使用。[cancelRecharge] for Java. */
+    public fun cancelRechargeAsync(
+        request: CancelRechargeRequest,
+        options: CallOptions,
+    ): CompletableFuture<CancelRechargeResponse> =
+        connection.callAsync(Operations.cancelRecharge, request, options)
 
     /** [cancelRecharge]，供 Java 使用。[cancelRecharge] for Java. */
     public fun cancelRechargeAsync(request: CancelRechargeRequest): CompletableFuture<CancelRechargeResponse> =
-        connection.callAsync(Operations.cancelRecharge, request)
+        cancelRechargeAsync(request, CallOptions())
 
     /** [cancelRecharge]，供 Java 使用。[cancelRecharge] for Java. */
     public fun cancelRechargeAsync(): CompletableFuture<CancelRechargeResponse> =
-        cancelRechargeAsync(CancelRechargeRequest {})
+        cancelRechargeAsync(CancelRechargeRequest {}, CallOptions())
 
     /**
      * 获取回充状态
@@ -290,16 +312,24 @@ public interface RechargeClient {
     @JvmSynthetic
     public suspend fun getRechargeStatus(
         request: GetRechargeStatusRequest = GetRechargeStatusRequest {},
+        options: CallOptions = CallOptions(),
     ): GetRechargeStatusResponse =
-        connection.call(Operations.getRechargeStatus, request)
+        connection.call(Operations.getRechargeStatus, request, options)
+
+    /** [getRechargeStatus]，供 Java 使用。[getRechargeStatus] for Java. */
+    public fun getRechargeStatusAsync(
+        request: GetRechargeStatusRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetRechargeStatusResponse> =
+        connection.callAsync(Operations.getRechargeStatus, request, options)
 
     /** [getRechargeStatus]，供 Java 使用。[getRechargeStatus] for Java. */
     public fun getRechargeStatusAsync(request: GetRechargeStatusRequest): CompletableFuture<GetRechargeStatusResponse> =
-        connection.callAsync(Operations.getRechargeStatus, request)
+        getRechargeStatusAsync(request, CallOptions())
 
     /** [getRechargeStatus]，供 Java 使用。[getRechargeStatus] for Java. */
     public fun getRechargeStatusAsync(): CompletableFuture<GetRechargeStatusResponse> =
-        getRechargeStatusAsync(GetRechargeStatusRequest {})
+        getRechargeStatusAsync(GetRechargeStatusRequest {}, CallOptions())
 }
 
 /**

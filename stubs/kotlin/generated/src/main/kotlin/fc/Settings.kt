@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -156,12 +157,22 @@ public interface SettingsClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun switch0a08(request: Switch0a08Request): Switch0a08Response =
-        connection.call(Operations.switch0a08, request)
+    public suspend fun switch0a08(
+        request: Switch0a08Request,
+        options: CallOptions = CallOptions(),
+    ): Switch0a08Response =
+        connection.call(Operations.switch0a08, request, options)
+
+    /** [switch0a08]，供 Java 使用。[switch0a08] for Java. */
+    public fun switch0a08Async(
+        request: Switch0a08Request,
+        options: CallOptions,
+    ): CompletableFuture<Switch0a08Response> =
+        connection.callAsync(Operations.switch0a08, request, options)
 
     /** [switch0a08]，供 Java 使用。[switch0a08] for Java. */
     public fun switch0a08Async(request: Switch0a08Request): CompletableFuture<Switch0a08Response> =
-        connection.callAsync(Operations.switch0a08, request)
+        switch0a08Async(request, CallOptions())
 
     /**
      * 语音提醒的开关
@@ -186,13 +197,24 @@ public interface SettingsClient {
      */
     @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
     @JvmSynthetic
-    public suspend fun setVoiceReminder(request: SetVoiceReminderRequest): SetVoiceReminderResponse =
-        connection.call(Operations.setVoiceReminder, request)
+    public suspend fun setVoiceReminder(
+        request: SetVoiceReminderRequest,
+        options: CallOptions = CallOptions(),
+    ): SetVoiceReminderResponse =
+        connection.call(Operations.setVoiceReminder, request, options)
+
+    /** [setVoiceReminder]，供 Java 使用。[setVoiceReminder] for Java. */
+    @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
+    public fun setVoiceReminderAsync(
+        request: SetVoiceReminderRequest,
+        options: CallOptions,
+    ): CompletableFuture<SetVoiceReminderResponse> =
+        connection.callAsync(Operations.setVoiceReminder, request, options)
 
     /** [setVoiceReminder]，供 Java 使用。[setVoiceReminder] for Java. */
     @Deprecated("The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.")
     public fun setVoiceReminderAsync(request: SetVoiceReminderRequest): CompletableFuture<SetVoiceReminderResponse> =
-        connection.callAsync(Operations.setVoiceReminder, request)
+        setVoiceReminderAsync(request, CallOptions())
 
     /**
      * 切换业务环境
@@ -213,16 +235,24 @@ public interface SettingsClient {
     @JvmSynthetic
     public suspend fun switchEnvironment(
         request: SwitchEnvironmentRequest = SwitchEnvironmentRequest {},
+        options: CallOptions = CallOptions(),
     ): SwitchEnvironmentResponse =
-        connection.call(Operations.switchEnvironment, request)
+        connection.call(Operations.switchEnvironment, request, options)
+
+    /** [switchEnvironment]，供 Java 使用。[switchEnvironment] for Java. */
+    public fun switchEnvironmentAsync(
+        request: SwitchEnvironmentRequest,
+        options: CallOptions,
+    ): CompletableFuture<SwitchEnvironmentResponse> =
+        connection.callAsync(Operations.switchEnvironment, request, options)
 
     /** [switchEnvironment]，供 Java 使用。[switchEnvironment] for Java. */
     public fun switchEnvironmentAsync(request: SwitchEnvironmentRequest): CompletableFuture<SwitchEnvironmentResponse> =
-        connection.callAsync(Operations.switchEnvironment, request)
+        switchEnvironmentAsync(request, CallOptions())
 
     /** [switchEnvironment]，供 Java 使用。[switchEnvironment] for Java. */
     public fun switchEnvironmentAsync(): CompletableFuture<SwitchEnvironmentResponse> =
-        switchEnvironmentAsync(SwitchEnvironmentRequest {})
+        switchEnvironmentAsync(SwitchEnvironmentRequest {}, CallOptions())
 }
 
 /**

@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -172,14 +173,24 @@ public interface StandbyClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun setStandbyPosition(request: SetStandbyPositionRequest): SetStandbyPositionResponse =
-        connection.call(Operations.setStandbyPosition, request)
+    public suspend fun setStandbyPosition(
+        request: SetStandbyPositionRequest,
+        options: CallOptions = CallOptions(),
+    ): SetStandbyPositionResponse =
+        connection.call(Operations.setStandbyPosition, request, options)
+
+    /** [setStandbyPosition]，供 Java 使用。[setStandbyPosition] for Java. */
+    public fun setStandbyPositionAsync(
+        request: SetStandbyPositionRequest,
+        options: CallOptions,
+    ): CompletableFuture<SetStandbyPositionResponse> =
+        connection.callAsync(Operations.setStandbyPosition, request, options)
 
     /** [setStandbyPosition]，供 Java 使用。[setStandbyPosition] for Java. */
     public fun setStandbyPositionAsync(
         request: SetStandbyPositionRequest,
     ): CompletableFuture<SetStandbyPositionResponse> =
-        connection.callAsync(Operations.setStandbyPosition, request)
+        setStandbyPositionAsync(request, CallOptions())
 
     /**
      * 获取机器人待命时的位置
@@ -196,18 +207,26 @@ public interface StandbyClient {
     @JvmSynthetic
     public suspend fun getStandbyPosition(
         request: GetStandbyPositionRequest = GetStandbyPositionRequest {},
+        options: CallOptions = CallOptions(),
     ): GetStandbyPositionResponse =
-        connection.call(Operations.getStandbyPosition, request)
+        connection.call(Operations.getStandbyPosition, request, options)
+
+    /** [getStandbyPosition]，供 Java 使用。[getStandbyPosition] for Java. */
+    public fun getStandbyPositionAsync(
+        request: GetStandbyPositionRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetStandbyPositionResponse> =
+        connection.callAsync(Operations.getStandbyPosition, request, options)
 
     /** [getStandbyPosition]，供 Java 使用。[getStandbyPosition] for Java. */
     public fun getStandbyPositionAsync(
         request: GetStandbyPositionRequest,
     ): CompletableFuture<GetStandbyPositionResponse> =
-        connection.callAsync(Operations.getStandbyPosition, request)
+        getStandbyPositionAsync(request, CallOptions())
 
     /** [getStandbyPosition]，供 Java 使用。[getStandbyPosition] for Java. */
     public fun getStandbyPositionAsync(): CompletableFuture<GetStandbyPositionResponse> =
-        getStandbyPositionAsync(GetStandbyPositionRequest {})
+        getStandbyPositionAsync(GetStandbyPositionRequest {}, CallOptions())
 
     /**
      * 设置点位（0x0313，用途不详）
@@ -222,12 +241,22 @@ public interface StandbyClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun setPositions0313(request: SetPositions0313Request): SetPositions0313Response =
-        connection.call(Operations.setPositions0313, request)
+    public suspend fun setPositions0313(
+        request: SetPositions0313Request,
+        options: CallOptions = CallOptions(),
+    ): SetPositions0313Response =
+        connection.call(Operations.setPositions0313, request, options)
+
+    /** [setPositions0313]，供 Java 使用。[setPositions0313] for Java. */
+    public fun setPositions0313Async(
+        request: SetPositions0313Request,
+        options: CallOptions,
+    ): CompletableFuture<SetPositions0313Response> =
+        connection.callAsync(Operations.setPositions0313, request, options)
 
     /** [setPositions0313]，供 Java 使用。[setPositions0313] for Java. */
     public fun setPositions0313Async(request: SetPositions0313Request): CompletableFuture<SetPositions0313Response> =
-        connection.callAsync(Operations.setPositions0313, request)
+        setPositions0313Async(request, CallOptions())
 
     /**
      * 获取点位（0x0314，用途不详）
@@ -249,16 +278,24 @@ public interface StandbyClient {
     @JvmSynthetic
     public suspend fun getPositions0314(
         request: GetPositions0314Request = GetPositions0314Request {},
+        options: CallOptions = CallOptions(),
     ): GetPositions0314Response =
-        connection.call(Operations.getPositions0314, request)
+        connection.call(Operations.getPositions0314, request, options)
+
+    /** [getPositions0314]，供 Java 使用。[getPositions0314] for Java. */
+    public fun getPositions0314Async(
+        request: GetPositions0314Request,
+        options: CallOptions,
+    ): CompletableFuture<GetPositions0314Response> =
+        connection.callAsync(Operations.getPositions0314, request, options)
 
     /** [getPositions0314]，供 Java 使用。[getPositions0314] for Java. */
     public fun getPositions0314Async(request: GetPositions0314Request): CompletableFuture<GetPositions0314Response> =
-        connection.callAsync(Operations.getPositions0314, request)
+        getPositions0314Async(request, CallOptions())
 
     /** [getPositions0314]，供 Java 使用。[getPositions0314] for Java. */
     public fun getPositions0314Async(): CompletableFuture<GetPositions0314Response> =
-        getPositions0314Async(GetPositions0314Request {})
+        getPositions0314Async(GetPositions0314Request {}, CallOptions())
 }
 
 /**

@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -193,12 +194,22 @@ public interface StationClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getStation(request: GetStationRequest): GetStationResponse =
-        connection.call(Operations.getStation, request)
+    public suspend fun getStation(
+        request: GetStationRequest,
+        options: CallOptions = CallOptions(),
+    ): GetStationResponse =
+        connection.call(Operations.getStation, request, options)
+
+    /** [getStation]，供 Java 使用。[getStation] for Java. */
+    public fun getStationAsync(
+        request: GetStationRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetStationResponse> =
+        connection.callAsync(Operations.getStation, request, options)
 
     /** [getStation]，供 Java 使用。[getStation] for Java. */
     public fun getStationAsync(request: GetStationRequest): CompletableFuture<GetStationResponse> =
-        connection.callAsync(Operations.getStation, request)
+        getStationAsync(request, CallOptions())
 
     /**
      * 一键上报地图点位信息
@@ -220,16 +231,24 @@ public interface StationClient {
     @JvmSynthetic
     public suspend fun uploadMapStations(
         request: UploadMapStationsRequest = UploadMapStationsRequest {},
+        options: CallOptions = CallOptions(),
     ): UploadMapStationsResponse =
-        connection.call(Operations.uploadMapStations, request)
+        connection.call(Operations.uploadMapStations, request, options)
+
+    /** [uploadMapStations]，供 Java 使用。[uploadMapStations] for Java. */
+    public fun uploadMapStationsAsync(
+        request: UploadMapStationsRequest,
+        options: CallOptions,
+    ): CompletableFuture<UploadMapStationsResponse> =
+        connection.callAsync(Operations.uploadMapStations, request, options)
 
     /** [uploadMapStations]，供 Java 使用。[uploadMapStations] for Java. */
     public fun uploadMapStationsAsync(request: UploadMapStationsRequest): CompletableFuture<UploadMapStationsResponse> =
-        connection.callAsync(Operations.uploadMapStations, request)
+        uploadMapStationsAsync(request, CallOptions())
 
     /** [uploadMapStations]，供 Java 使用。[uploadMapStations] for Java. */
     public fun uploadMapStationsAsync(): CompletableFuture<UploadMapStationsResponse> =
-        uploadMapStationsAsync(UploadMapStationsRequest {})
+        uploadMapStationsAsync(UploadMapStationsRequest {}, CallOptions())
 
     /**
      * 添加站点信息
@@ -248,12 +267,22 @@ public interface StationClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun addStation(request: AddStationRequest): AddStationResponse =
-        connection.call(Operations.addStation, request)
+    public suspend fun addStation(
+        request: AddStationRequest,
+        options: CallOptions = CallOptions(),
+    ): AddStationResponse =
+        connection.call(Operations.addStation, request, options)
+
+    /** [addStation]，供 Java 使用。[addStation] for Java. */
+    public fun addStationAsync(
+        request: AddStationRequest,
+        options: CallOptions,
+    ): CompletableFuture<AddStationResponse> =
+        connection.callAsync(Operations.addStation, request, options)
 
     /** [addStation]，供 Java 使用。[addStation] for Java. */
     public fun addStationAsync(request: AddStationRequest): CompletableFuture<AddStationResponse> =
-        connection.callAsync(Operations.addStation, request)
+        addStationAsync(request, CallOptions())
 
     /**
      * 删除站点信息
@@ -268,12 +297,22 @@ public interface StationClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun deleteStation(request: DeleteStationRequest): DeleteStationResponse =
-        connection.call(Operations.deleteStation, request)
+    public suspend fun deleteStation(
+        request: DeleteStationRequest,
+        options: CallOptions = CallOptions(),
+    ): DeleteStationResponse =
+        connection.call(Operations.deleteStation, request, options)
+
+    /** [deleteStation]，供 Java 使用。[deleteStation] for Java. */
+    public fun deleteStationAsync(
+        request: DeleteStationRequest,
+        options: CallOptions,
+    ): CompletableFuture<DeleteStationResponse> =
+        connection.callAsync(Operations.deleteStation, request, options)
 
     /** [deleteStation]，供 Java 使用。[deleteStation] for Java. */
     public fun deleteStationAsync(request: DeleteStationRequest): CompletableFuture<DeleteStationResponse> =
-        connection.callAsync(Operations.deleteStation, request)
+        deleteStationAsync(request, CallOptions())
 
     /**
      * 重命名站点
@@ -288,12 +327,22 @@ public interface StationClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun renameStation(request: RenameStationRequest): RenameStationResponse =
-        connection.call(Operations.renameStation, request)
+    public suspend fun renameStation(
+        request: RenameStationRequest,
+        options: CallOptions = CallOptions(),
+    ): RenameStationResponse =
+        connection.call(Operations.renameStation, request, options)
+
+    /** [renameStation]，供 Java 使用。[renameStation] for Java. */
+    public fun renameStationAsync(
+        request: RenameStationRequest,
+        options: CallOptions,
+    ): CompletableFuture<RenameStationResponse> =
+        connection.callAsync(Operations.renameStation, request, options)
 
     /** [renameStation]，供 Java 使用。[renameStation] for Java. */
     public fun renameStationAsync(request: RenameStationRequest): CompletableFuture<RenameStationResponse> =
-        connection.callAsync(Operations.renameStation, request)
+        renameStationAsync(request, CallOptions())
 }
 
 /**

@@ -6,6 +6,7 @@ package fc
 import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -162,15 +163,26 @@ public interface StatusClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun listFaults(request: ListFaultsRequest = ListFaultsRequest {}): ListFaultsResponse =
-        connection.call(Operations.listFaults, request)
+    public suspend fun listFaults(
+        request: ListFaultsRequest = ListFaultsRequest {},
+        options: CallOptions = CallOptions(),
+    ): ListFaultsResponse =
+        connection.call(Operations.listFaults, request, options)
+
+    /** [listFaults]，供 Java 使用。[listFaults] for Java. */
+    public fun listFaultsAsync(
+        request: ListFaultsRequest,
+        options: CallOptions,
+    ): CompletableFuture<ListFaultsResponse> =
+        connection.callAsync(Operations.listFaults, request, options)
 
     /** [listFaults]，供 Java 使用。[listFaults] for Java. */
     public fun listFaultsAsync(request: ListFaultsRequest): CompletableFuture<ListFaultsResponse> =
-        connection.callAsync(Operations.listFaults, request)
+        listFaultsAsync(request, CallOptions())
 
     /** [listFaults]，供 Java 使用。[listFaults] for Java. */
-    public fun listFaultsAsync(): CompletableFuture<ListFaultsResponse> = listFaultsAsync(ListFaultsRequest {})
+    public fun listFaultsAsync(): CompletableFuture<ListFaultsResponse> =
+        listFaultsAsync(ListFaultsRequest {}, CallOptions())
 
     /**
      * 获取自检结果
@@ -190,15 +202,26 @@ public interface StatusClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getSelfCheck(request: GetSelfCheckRequest = GetSelfCheckRequest {}): GetSelfCheckResponse =
-        connection.call(Operations.getSelfCheck, request)
+    public suspend fun getSelfCheck(
+        request: GetSelfCheckRequest = GetSelfCheckRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetSelfCheckResponse =
+        connection.call(Operations.getSelfCheck, request, options)
+
+    /** [getSelfCheck]，供 Java 使用。[getSelfCheck] for Java. */
+    public fun getSelfCheckAsync(
+        request: GetSelfCheckRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetSelfCheckResponse> =
+        connection.callAsync(Operations.getSelfCheck, request, options)
 
     /** [getSelfCheck]，供 Java 使用。[getSelfCheck] for Java. */
     public fun getSelfCheckAsync(request: GetSelfCheckRequest): CompletableFuture<GetSelfCheckResponse> =
-        connection.callAsync(Operations.getSelfCheck, request)
+        getSelfCheckAsync(request, CallOptions())
 
     /** [getSelfCheck]，供 Java 使用。[getSelfCheck] for Java. */
-    public fun getSelfCheckAsync(): CompletableFuture<GetSelfCheckResponse> = getSelfCheckAsync(GetSelfCheckRequest {})
+    public fun getSelfCheckAsync(): CompletableFuture<GetSelfCheckResponse> =
+        getSelfCheckAsync(GetSelfCheckRequest {}, CallOptions())
 }
 
 /**

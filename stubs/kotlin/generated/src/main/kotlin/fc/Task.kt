@@ -6,6 +6,7 @@ package fc
 import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -220,15 +221,26 @@ public interface TaskClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun createTask(request: CreateTaskRequest = CreateTaskRequest {}): CreateTaskResponse =
-        connection.call(Operations.createTask, request)
+    public suspend fun createTask(
+        request: CreateTaskRequest = CreateTaskRequest {},
+        options: CallOptions = CallOptions(),
+    ): CreateTaskResponse =
+        connection.call(Operations.createTask, request, options)
+
+    /** [createTask]，供 Java 使用。[createTask] for Java. */
+    public fun createTaskAsync(
+        request: CreateTaskRequest,
+        options: CallOptions,
+    ): CompletableFuture<CreateTaskResponse> =
+        connection.callAsync(Operations.createTask, request, options)
 
     /** [createTask]，供 Java 使用。[createTask] for Java. */
     public fun createTaskAsync(request: CreateTaskRequest): CompletableFuture<CreateTaskResponse> =
-        connection.callAsync(Operations.createTask, request)
+        createTaskAsync(request, CallOptions())
 
     /** [createTask]，供 Java 使用。[createTask] for Java. */
-    public fun createTaskAsync(): CompletableFuture<CreateTaskResponse> = createTaskAsync(CreateTaskRequest {})
+    public fun createTaskAsync(): CompletableFuture<CreateTaskResponse> =
+        createTaskAsync(CreateTaskRequest {}, CallOptions())
 
     /**
      * 获取任务状态
@@ -243,16 +255,26 @@ public interface TaskClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun getTaskStatus(request: GetTaskStatusRequest = GetTaskStatusRequest {}): GetTaskStatusResponse =
-        connection.call(Operations.getTaskStatus, request)
+    public suspend fun getTaskStatus(
+        request: GetTaskStatusRequest = GetTaskStatusRequest {},
+        options: CallOptions = CallOptions(),
+    ): GetTaskStatusResponse =
+        connection.call(Operations.getTaskStatus, request, options)
+
+    /** [getTaskStatus]，供 Java 使用。[getTaskStatus] for Java. */
+    public fun getTaskStatusAsync(
+        request: GetTaskStatusRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetTaskStatusResponse> =
+        connection.callAsync(Operations.getTaskStatus, request, options)
 
     /** [getTaskStatus]，供 Java 使用。[getTaskStatus] for Java. */
     public fun getTaskStatusAsync(request: GetTaskStatusRequest): CompletableFuture<GetTaskStatusResponse> =
-        connection.callAsync(Operations.getTaskStatus, request)
+        getTaskStatusAsync(request, CallOptions())
 
     /** [getTaskStatus]，供 Java 使用。[getTaskStatus] for Java. */
     public fun getTaskStatusAsync(): CompletableFuture<GetTaskStatusResponse> =
-        getTaskStatusAsync(GetTaskStatusRequest {})
+        getTaskStatusAsync(GetTaskStatusRequest {}, CallOptions())
 }
 
 /**

@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -117,15 +118,26 @@ public interface UnnamedClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun unnamed0309(request: Unnamed0309Request = Unnamed0309Request {}): Unnamed0309Response =
-        connection.call(Operations.unnamed0309, request)
+    public suspend fun unnamed0309(
+        request: Unnamed0309Request = Unnamed0309Request {},
+        options: CallOptions = CallOptions(),
+    ): Unnamed0309Response =
+        connection.call(Operations.unnamed0309, request, options)
+
+    /** [unnamed0309]，供 Java 使用。[unnamed0309] for Java. */
+    public fun unnamed0309Async(
+        request: Unnamed0309Request,
+        options: CallOptions,
+    ): CompletableFuture<Unnamed0309Response> =
+        connection.callAsync(Operations.unnamed0309, request, options)
 
     /** [unnamed0309]，供 Java 使用。[unnamed0309] for Java. */
     public fun unnamed0309Async(request: Unnamed0309Request): CompletableFuture<Unnamed0309Response> =
-        connection.callAsync(Operations.unnamed0309, request)
+        unnamed0309Async(request, CallOptions())
 
     /** [unnamed0309]，供 Java 使用。[unnamed0309] for Java. */
-    public fun unnamed0309Async(): CompletableFuture<Unnamed0309Response> = unnamed0309Async(Unnamed0309Request {})
+    public fun unnamed0309Async(): CompletableFuture<Unnamed0309Response> =
+        unnamed0309Async(Unnamed0309Request {}, CallOptions())
 
     /**
      * 未命名指令（0x0460）
@@ -145,15 +157,26 @@ public interface UnnamedClient {
      * @throws fc.runtime.CallError if the call fails
      */
     @JvmSynthetic
-    public suspend fun unnamed0460(request: Unnamed0460Request = Unnamed0460Request {}): Unnamed0460Response =
-        connection.call(Operations.unnamed0460, request)
+    public suspend fun unnamed0460(
+        request: Unnamed0460Request = Unnamed0460Request {},
+        options: CallOptions = CallOptions(),
+    ): Unnamed0460Response =
+        connection.call(Operations.unnamed0460, request, options)
+
+    /** [unnamed0460]，供 Java 使用。[unnamed0460] for Java. */
+    public fun unnamed0460Async(
+        request: Unnamed0460Request,
+        options: CallOptions,
+    ): CompletableFuture<Unnamed0460Response> =
+        connection.callAsync(Operations.unnamed0460, request, options)
 
     /** [unnamed0460]，供 Java 使用。[unnamed0460] for Java. */
     public fun unnamed0460Async(request: Unnamed0460Request): CompletableFuture<Unnamed0460Response> =
-        connection.callAsync(Operations.unnamed0460, request)
+        unnamed0460Async(request, CallOptions())
 
     /** [unnamed0460]，供 Java 使用。[unnamed0460] for Java. */
-    public fun unnamed0460Async(): CompletableFuture<Unnamed0460Response> = unnamed0460Async(Unnamed0460Request {})
+    public fun unnamed0460Async(): CompletableFuture<Unnamed0460Response> =
+        unnamed0460Async(Unnamed0460Request {}, CallOptions())
 }
 
 /**

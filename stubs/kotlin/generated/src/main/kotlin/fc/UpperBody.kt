@@ -3,6 +3,7 @@
 
 package fc
 
+import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
 import fc.runtime.Content
@@ -93,18 +94,26 @@ public interface UpperBodyClient {
     @JvmSynthetic
     public suspend fun getUpperBodyStatus(
         request: GetUpperBodyStatusRequest = GetUpperBodyStatusRequest {},
+        options: CallOptions = CallOptions(),
     ): GetUpperBodyStatusResponse =
-        connection.call(Operations.getUpperBodyStatus, request)
+        connection.call(Operations.getUpperBodyStatus, request, options)
+
+    /** [getUpperBodyStatus]，供 Java 使用。[getUpperBodyStatus] for Java. */
+    public fun getUpperBodyStatusAsync(
+        request: GetUpperBodyStatusRequest,
+        options: CallOptions,
+    ): CompletableFuture<GetUpperBodyStatusResponse> =
+        connection.callAsync(Operations.getUpperBodyStatus, request, options)
 
     /** [getUpperBodyStatus]，供 Java 使用。[getUpperBodyStatus] for Java. */
     public fun getUpperBodyStatusAsync(
         request: GetUpperBodyStatusRequest,
     ): CompletableFuture<GetUpperBodyStatusResponse> =
-        connection.callAsync(Operations.getUpperBodyStatus, request)
+        getUpperBodyStatusAsync(request, CallOptions())
 
     /** [getUpperBodyStatus]，供 Java 使用。[getUpperBodyStatus] for Java. */
     public fun getUpperBodyStatusAsync(): CompletableFuture<GetUpperBodyStatusResponse> =
-        getUpperBodyStatusAsync(GetUpperBodyStatusRequest {})
+        getUpperBodyStatusAsync(GetUpperBodyStatusRequest {}, CallOptions())
 }
 
 /**

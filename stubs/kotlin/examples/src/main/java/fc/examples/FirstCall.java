@@ -4,9 +4,11 @@ import fc.Client;
 import fc.GetRobotSnRequest;
 import fc.RechargeProgress;
 import fc.runtime.CallError;
+import fc.runtime.CallOptions;
 import fc.runtime.ClientConfig;
 import fc.runtime.ReceivedReport;
 import java.util.concurrent.CompletionException;
+import java.util.concurrent.TimeUnit;
 
 /** The first call, from Java: the robot's serial number, and its reports as they come. */
 public final class FirstCall {
@@ -22,7 +24,9 @@ public final class FirstCall {
                 new ClientConfig().host(arguments[0]).commandPort(Integer.parseInt(arguments[1]));
         try (Client client = Client.connectAsync(config).join()) {
             client.getConnection().onReport(FirstCall::show);
-            System.out.println(client.getRobotSnAsync(GetRobotSnRequest.builder().build()).join());
+            CallOptions soon = new CallOptions().timeout(5, TimeUnit.SECONDS);
+            GetRobotSnRequest request = GetRobotSnRequest.builder().build();
+            System.out.println(client.getRobotSnAsync(request, soon).join());
         } catch (CompletionException failure) {
             if (failure.getCause() instanceof CallError) {
                 System.err.println(((CallError) failure.getCause()).getName());
