@@ -6,9 +6,9 @@ mod operation;
 
 use super::named::Thing;
 use super::{
-    Answer, Asked, Condition, EnumType, Example, Field, FieldDetails, Model, OneOf, Operation,
-    Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape,
-    Types, Unlinked, Value, Variant,
+    Answer, Asked, Condition, Constraints, EnumType, Example, Field, FieldDetails, Model, OneOf,
+    Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef,
+    TypeShape, Types, Unlinked, Value, Variant,
 };
 use crate::text;
 use std::collections::HashSet;
@@ -260,9 +260,12 @@ impl View<'_> {
             other => other.clone(),
         };
         let details = field.details.as_deref().map(|details| {
-            let only = details.only.iter().filter(|value| knows(value));
+            let only = details.constraints.only.iter().filter(|value| knows(value));
             Box::new(FieldDetails {
-                only: only.cloned().collect(),
+                constraints: Constraints {
+                    only: only.cloned().collect(),
+                    ..details.constraints.clone()
+                },
                 default: details.default.clone().filter(knows),
                 condition: match self.condition(shape, field) {
                     Left::Some(condition) => Some(condition),
