@@ -1,4 +1,4 @@
-// What a field demands of its values beyond their type.
+// Constraints of fields: their types, and the check of a value.
 
 import { BodyError } from './fault.ts'
 import type { FieldPlan, Value } from './plan.ts'
@@ -17,7 +17,7 @@ export interface Constraints {
   readonly only?: readonly (number | bigint | string)[]
 }
 
-/** Whether there is any demand. */
+/** Returns `true` if there is a constraint. */
 export function isConstrained({ min, max, length, pattern, only }: Constraints): boolean {
   return [min, max, length, pattern, only].some((one) => one !== undefined)
 }
