@@ -5,10 +5,9 @@
 
 use crate::tree::About;
 use fc_spec::model::{
-    self, ByteOrder, Constraint, Direction, EnumType, FloatKind, FrameKind, IntKind, Model,
+    self, ByteOrder, Constraints, Direction, EnumType, FloatKind, FrameKind, IntKind, Model,
     Operation, Quirk, Type, TypeDef, TypeShape, Variant, WireForm,
 };
-use regex_lite::Regex;
 use std::collections::HashMap;
 
 /// A prepared model.
@@ -48,9 +47,7 @@ pub(crate) struct FieldPlan<'m> {
     pub(crate) optional: bool,
     pub(crate) form: Form,
     /// The constraints that a value must satisfy.
-    pub(crate) constraints: Vec<Constraint<'m>>,
-    /// The compiled pattern of the constraints.
-    pub(crate) pattern: Option<Regex>,
+    pub(crate) constraints: Option<&'m Constraints>,
 }
 
 /// The form of a value in messages, and the other forms that a reader accepts.
@@ -220,8 +217,7 @@ fn envelope<'m>(fields: &'m [model::EnvelopeField]) -> Vec<FieldPlan<'m>> {
         ty: type_plan(&field.ty),
         optional: field.optional,
         form: Form::PLAIN,
-        constraints: Vec::new(),
-        pattern: None,
+        constraints: None,
     };
     fields.iter().map(plan).collect()
 }
@@ -243,7 +239,6 @@ fn shape(ty: &TypeDef) -> Shape<'_> {
 
 fn own(field: &model::Field) -> FieldPlan<'_> {
     let details = field.details();
-    let pattern = details.pattern.as_ref();
     let mut form = Form {
         wire: field.wire_form,
         ..Form::PLAIN
@@ -261,8 +256,7 @@ fn own(field: &model::Field) -> FieldPlan<'_> {
         ty: type_plan(&field.ty),
         optional: field.optional,
         form,
-        constraints: details.constraints().collect(),
-        pattern: pattern.and_then(|it| Regex::new(&format!("^(?:{})$", it.portable())).ok()),
+        constraints: Some(&details.constraints),
     }
 }
 

@@ -13,14 +13,6 @@ use crate::syntax::{Entry, Tree, parse, quoted};
 use crate::text;
 use std::fmt;
 
-/// Errors about unused things. The place of such an error is the key of the thing.
-const UNUSED: [FaultCode; 4] = [
-    FaultCode::UnusedType,
-    FaultCode::UnusedEntity,
-    FaultCode::UnusedCoordinates,
-    FaultCode::UnusedStore,
-];
-
 /// A spec without one of its operations.
 #[derive(Clone, Debug)]
 pub struct Retired {
@@ -185,7 +177,13 @@ impl Rest {
 fn unused(sources: &Sources) -> Option<Span> {
     let mut faults = Faults::new();
     let _ = Trees::new(sources).load(Languages::Any, &mut faults);
-    let fault = faults.iter().find(|fault| UNUSED.contains(&fault.code))?;
+    // Words of `availability` stay, because they belong to the whole protocol.
+    let is_unused = |code| {
+        let mut declared = FaultCode::DECLARED.iter().map(|[_, unused]| *unused);
+        code != FaultCode::UnusedAvailability && declared.any(|unused| unused == code)
+    };
+    let fault = faults.iter().find(|fault| is_unused(fault.code))?;
+    // The place of such an error is the key of the thing.
     Some(fault.primary.span)
 }
 

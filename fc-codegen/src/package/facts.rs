@@ -6,9 +6,9 @@ use super::process;
 use super::style::Style;
 use crate::package::items::Item;
 use fc_spec::model::{
-    Accepted, AcceptedIn, Available, Body, BodyState, Cadence, DeclaredError, Deprecation,
-    Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk, Scalar,
-    TypeShape, Value, Variant, WireForm,
+    Accepted, AcceptedIn, Argument, Available, Body, BodyState, Cadence, Constraint, DeclaredError,
+    Deprecation, Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk,
+    Scalar, TypeShape, Value, Variant, WireForm,
 };
 
 /// Returns the comment on a struct's field. `condition` is the sentence about its presence.
@@ -107,27 +107,11 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     if let Some(unit) = &details.unit {
         facts.push(format!("Unit: {unit}."));
     }
-    if let Some(range) = range(style, details.min.as_ref(), details.max.as_ref()) {
+    let constraints = &details.constraints;
+    if let Some(range) = range(style, constraints.min.as_ref(), constraints.max.as_ref()) {
         facts.push(format!("Range: `{range}`."));
     }
-    if let Some((least, most)) = details.length {
-        facts.push(if least == most {
-            format!("Length: {least}.")
-        } else {
-            format!("Length: {least} to {most}.")
-        });
-    }
-    if let Some(pattern) = &details.pattern {
-        facts.push(format!("Pattern: {}.", code(pattern.source())));
-    }
-    if !details.only.is_empty() {
-        let taken: Vec<String> = details
-            .only
-            .iter()
-            .map(|it| code(&scalar(style, it)))
-            .collect();
-        facts.push(format!("Only {}.", taken.join(", ")));
-    }
+    facts.extend(constraints.iter().filter_map(|it| constraint(style, it)));
     if let Some(default) = &details.default {
         facts.push(format!("Absent means {}.", code(&scalar(style, default))));
     }
@@ -374,6 +358,32 @@ pub fn withdrawn_note(deprecation: &Deprecation) -> String {
         }
         None => format!("{since}{note}"),
     }
+}
+
+/// Returns the sentence about a constraint. `None` for `min` and `max`, which share a sentence.
+fn constraint(style: &Style, constraint: Constraint<'_>) -> Option<String> {
+    if matches!(constraint, Constraint::Min(_) | Constraint::Max(_)) {
+        return None;
+    }
+    let name = titled(constraint.name());
+    Some(match constraint.argument() {
+        Argument::Number(value) => format!("{name}: {}.", code(&number(style, value))),
+        Argument::Range(least, most) if least == most => format!("{name}: {least}."),
+        Argument::Range(least, most) => format!("{name}: {least} to {most}."),
+        Argument::Pattern(pattern) => format!("{name}: {}.", code(pattern.source())),
+        Argument::Values(taken) => {
+            let taken: Vec<String> = taken.iter().map(|it| code(&scalar(style, it))).collect();
+            format!("{name} {}.", taken.join(", "))
+        }
+    })
+}
+
+/// Returns a key as the start of a sentence: `length` as `Length`.
+fn titled(key: &str) -> String {
+    let mut letters = key.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+    let name: String = first.into_iter().chain(letters).collect();
+    name.replace('_', " ")
 }
 
 fn range(style: &Style, min: Option<&Number>, max: Option<&Number>) -> Option<String> {

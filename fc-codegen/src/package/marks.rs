@@ -2,7 +2,7 @@
 
 use super::conditions::{Asked, asked};
 use crate::package::items::Spelled;
-use fc_spec::model::{Constraint, Field, Number, Quirk, Scalar, WireForm};
+use fc_spec::model::{Argument, Constraint, Field, Quirk, WireForm};
 
 /// The marks of a field.
 pub struct FieldMarks<'f, 'm> {
@@ -11,7 +11,7 @@ pub struct FieldMarks<'f, 'm> {
     /// The wire form, unless it is the default of the type.
     pub form: Option<&'static str>,
     /// The constraints, in the order of the checks.
-    pub constraints: Vec<(&'static str, Bound<'f>)>,
+    pub constraints: Vec<(&'static str, Argument<'f>)>,
     /// The names of the quirks.
     pub quirks: Vec<&'static str>,
     /// `true` if numbers or bools are also read from other forms.
@@ -20,19 +20,6 @@ pub struct FieldMarks<'f, 'm> {
     pub empty_is_absent: bool,
     /// The condition of an optional field.
     pub condition: Option<Asked<'f, 'm>>,
-}
-
-/// The value of a constraint.
-#[derive(Clone, Copy, Debug)]
-pub enum Bound<'f> {
-    /// A number.
-    Number(&'f Number),
-    /// The least and the most of a count.
-    Range(u64, u64),
-    /// A regular expression that every language reads.
-    Pattern(&'f str),
-    /// Values in wire form.
-    Values(&'f [Scalar]),
 }
 
 impl<'f, 'm> FieldMarks<'f, 'm> {
@@ -44,7 +31,7 @@ impl<'f, 'm> FieldMarks<'f, 'm> {
         Self {
             also: &details.also,
             form: (form != WireForm::Plain).then(|| form.name()),
-            constraints: details.constraints().map(bound).collect(),
+            constraints: details.constraints.iter().map(named).collect(),
             quirks: details.quirks.iter().map(|quirk| quirk.name()).collect(),
             is_lenient: has(Quirk::LenientNumber) || has(Quirk::LenientBool),
             empty_is_absent: has(Quirk::EmptyIsAbsent),
@@ -61,12 +48,6 @@ impl FieldMarks<'_, '_> {
     }
 }
 
-fn bound(constraint: Constraint<'_>) -> (&'static str, Bound<'_>) {
-    match constraint {
-        Constraint::Min(min) => ("min", Bound::Number(min)),
-        Constraint::Max(max) => ("max", Bound::Number(max)),
-        Constraint::Length(least, most) => ("length", Bound::Range(least, most)),
-        Constraint::Pattern(pattern) => ("pattern", Bound::Pattern(pattern.portable())),
-        Constraint::Only(taken) => ("only", Bound::Values(taken)),
-    }
+fn named(constraint: Constraint<'_>) -> (&'static str, Argument<'_>) {
+    (constraint.name(), constraint.argument())
 }

@@ -36,6 +36,7 @@ mod names;
 mod output;
 mod rooms;
 mod target;
+mod touch;
 mod vector_words;
 mod vocabulary;
 mod wire_facts;

@@ -1,14 +1,14 @@
 //! A message with its attributes.
 
 use super::condition::{self, Asked};
-use crate::attr::{self, Item, Number, NumberValue, Slot};
+use super::constraint::Constraints;
+use crate::attr::{self, Item, Slot};
 use crate::errors::Errors;
 use crate::item;
 use proc_macro2::{Span, TokenStream};
-use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::{Parse, ParseStream};
-use syn::{DeriveInput, Fields, Generics, Ident, LitInt, LitStr, Path, Token, Type, Visibility};
+use syn::{DeriveInput, Fields, Generics, Ident, LitStr, Path, Type, Visibility};
 
 /// A struct with `#[derive(Message)]`.
 pub struct Message<'a> {
@@ -55,16 +55,8 @@ pub struct FieldAttributes {
     pub lenient: Slot<Lenient>,
     /// `empty_is_absent`.
     pub empty_is_absent: Slot<()>,
-    /// `min = …`.
-    pub min: Slot<Number>,
-    /// `max = …`.
-    pub max: Slot<Number>,
-    /// `length = …`.
-    pub length: Slot<(usize, usize)>,
-    /// `pattern = "…"`.
-    pub pattern: Slot<LitStr>,
-    /// `only(…, …)`.
-    pub only: Slot<Vec<TokenStream>>,
+    /// Constraints.
+    pub constraints: Constraints,
     /// `when(…)`.
     pub when: Slot<Vec<Asked>>,
     /// `unless(…)`.
@@ -177,31 +169,17 @@ impl FieldAttributes {
             "wire" => self.wire.set(key, wire_form(input)),
             "lenient" => self.lenient.set(key, lenient(input)),
             "empty_is_absent" => self.empty_is_absent.set(key, Ok(())),
-            "min" => self.min.set(key, attr::number(input)),
-            "max" => self.max.set(key, attr::number(input)),
-            "length" => self.length.set(key, length(input)),
-            "pattern" => self.pattern.set(key, pattern(input)),
-            "only" => self.only.set(key, wire_values(input)),
             "when" => self.when.set(key, condition::read(input)),
             "unless" => self.unless.set(key, condition::read(input)),
             "sensitive" => self.sensitive.set(key, Ok(())),
             "extra" => self.extra.set(key, Ok(())),
             "default" | "role" => Ok(Item::Foreign),
-            _ => Ok(Item::Unknown),
+            _ => self.constraints.read(key, input),
         }
     }
 
-    /// Returns `true` if there are constraints.
-    pub fn has_constraints(&self) -> bool {
-        self.min.get().is_some()
-            || self.max.get().is_some()
-            || self.length.get().is_some()
-            || self.pattern.get().is_some()
-            || self.only.get().is_some()
-    }
-
     fn says_more_than_extra(&self) -> bool {
-        self.has_constraints()
+        !self.constraints.is_empty()
             || self.key.get().is_some()
             || self.also.get().is_some()
             || self.wire.get().is_some()
@@ -235,45 +213,5 @@ fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
         "number" => Ok(Lenient::Number),
         "bool" => Ok(Lenient::Bool),
         _ => Err(syn::Error::new(word.span(), "expected `number` or `bool`")),
-    }
-}
-
-/// Reads `= 15` or `= 1..=32`.
-fn length(input: ParseStream<'_>) -> syn::Result<(usize, usize)> {
-    input.parse::<Token![=]>()?;
-    if input.peek2(Token![..]) {
-        return attr::range(input);
-    }
-    let literal: LitInt = input.parse()?;
-    let length = attr::plain_integer(&literal)?;
-    Ok((length, length))
-}
-
-/// Reads `= "regular expression"`.
-fn pattern(input: ParseStream<'_>) -> syn::Result<LitStr> {
-    let literal = attr::text(input)?;
-    match regex_lite::Regex::new(&literal.value()) {
-        Ok(_) => Ok(literal),
-        Err(error) => Err(syn::Error::new_spanned(literal, error)),
-    }
-}
-
-/// Reads `(1, 6)` or `("day", "night")`.
-fn wire_values(input: ParseStream<'_>) -> syn::Result<Vec<TokenStream>> {
-    attr::listed(input, "expected a value of the enum", wire_value)
-}
-
-/// Reads `6` or `"night"`.
-fn wire_value(input: ParseStream<'_>) -> syn::Result<TokenStream> {
-    if input.peek(LitStr) {
-        return Ok(input.parse::<LitStr>()?.into_token_stream());
-    }
-    let number = attr::signed(input)?;
-    match number.value {
-        NumberValue::Int(_) => Ok(number.tokens),
-        NumberValue::Float(_) => {
-            let message = "expected an integer or a string";
-            Err(syn::Error::new_spanned(number.tokens, message))
-        }
     }
 }

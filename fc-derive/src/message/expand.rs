@@ -2,10 +2,9 @@
 
 use super::ast::{Field, FieldAttributes, Lenient, Message, WireForm};
 use super::condition;
-use crate::attr::{Number, NumberValue};
-use crate::span::{generated, moved, span_of};
+use crate::span::{moved, span_of};
 use proc_macro2::{Literal, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{quote, quote_spanned};
 use syn::{Path, Type};
 
 /// Returns the implementation of `Message`.
@@ -212,7 +211,7 @@ fn check_own(message: &Message<'_>) -> Option<TokenStream> {
     let runtime = &message.runtime;
     let mut checks = Vec::new();
     for field in &message.fields {
-        checks.append(&mut constraints(message, field));
+        checks.append(&mut field.attributes.constraints.checks(runtime, field));
     }
     if checks.is_empty() {
         return None;
@@ -223,54 +222,6 @@ fn check_own(message: &Message<'_>) -> Option<TokenStream> {
             ::core::result::Result::Ok(())
         }
     })
-}
-
-fn constraints(message: &Message<'_>, field: &Field<'_>) -> Vec<TokenStream> {
-    let runtime = &message.runtime;
-    let Field {
-        ident,
-        key,
-        ty,
-        attributes,
-        ..
-    } = field;
-    let mut checks = Vec::new();
-    if let Some(min) = attributes.min.get() {
-        let limit = limit(message, min);
-        checks.push(quote!(#runtime::json::min::<#ty>(#key, &self.#ident, #limit)?;));
-    }
-    if let Some(max) = attributes.max.get() {
-        let limit = limit(message, max);
-        checks.push(quote!(#runtime::json::max::<#ty>(#key, &self.#ident, #limit)?;));
-    }
-    if let Some((least, most)) = attributes.length.get() {
-        let least = Literal::usize_unsuffixed(*least);
-        let most = Literal::usize_unsuffixed(*most);
-        checks.push(quote! {
-            #runtime::json::length::<#ty>(#key, &self.#ident, #least, #most)?;
-        });
-    }
-    if let Some(pattern) = attributes.pattern.get() {
-        checks.push(quote! {{
-            static PATTERN: #runtime::json::Pattern = #runtime::json::Pattern::new(#pattern);
-            #runtime::json::matches::<#ty>(#key, &self.#ident, &PATTERN)?;
-        }});
-    }
-    if let Some(only) = attributes.only.get() {
-        let taken = only.iter().map(generated);
-        checks.push(quote!(#runtime::json::only::<#ty>(#key, &self.#ident, &[#(#taken),*])?;));
-    }
-    checks
-}
-
-fn limit(message: &Message<'_>, number: &Number) -> TokenStream {
-    let runtime = &message.runtime;
-    let tokens = generated(&number.tokens);
-    let variant = match number.value {
-        NumberValue::Int(_) => format_ident!("Int"),
-        NumberValue::Float(_) => format_ident!("Float"),
-    };
-    quote!(#runtime::json::Limit::#variant(#tokens))
 }
 
 /// Returns the text in front of a value, escaped like in the writer of the runtime.

@@ -2,6 +2,7 @@
 
 mod ast;
 mod condition;
+mod constraint;
 mod expand;
 mod fallback;
 mod valid;

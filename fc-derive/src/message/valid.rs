@@ -1,6 +1,6 @@
 //! Conflicts between attributes of a message.
 
-use super::ast::{Field, Message};
+use super::ast::Message;
 use super::condition;
 use crate::errors::Errors;
 use crate::item;
@@ -17,7 +17,7 @@ pub fn check(message: &Message<'_>, errors: &mut Errors) {
         );
     }
     for field in &message.fields {
-        check_limits(field, errors);
+        field.attributes.constraints.check_limits(errors);
         condition::check(message, field, errors);
     }
 }
@@ -41,13 +41,5 @@ fn check_keys(message: &Message<'_>, errors: &mut Errors) {
                 errors.at(span, format!("the key `{key}` is read already"));
             }
         }
-    }
-}
-
-fn check_limits(field: &Field<'_>, errors: &mut Errors) {
-    if let (Some(min), Some(max)) = (field.attributes.min.get(), field.attributes.max.get())
-        && min.as_f64() > max.as_f64()
-    {
-        errors.on(&max.tokens, "no number is possible: `max` is below `min`");
     }
 }

@@ -17,8 +17,8 @@ pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
         _ => return None,
     };
     for (end, limit, keeps) in [
-        (&mut least, &details.min, Ordering::Less),
-        (&mut most, &details.max, Ordering::Greater),
+        (&mut least, &details.constraints.min, Ordering::Less),
+        (&mut most, &details.constraints.max, Ordering::Greater),
     ] {
         if let Some(limit) = limit
             && end.as_ref().is_none_or(|end| compare(end, limit) == keeps)

@@ -4,13 +4,13 @@ use super::fields::Fields;
 use super::{Judge, accept, json, sources};
 use crate::rule::Wire;
 use crate::rules::constraints as rules;
-use fc_spec::model::{FieldDetails, Pattern, Scalar};
+use fc_spec::model::{Constraints, Pattern, Scalar};
 
 impl Judge<'_> {
     pub(super) fn constraints(&mut self, it: &Fields<'_>) {
-        let (old, new) = (it.old.details(), it.new.details());
+        let [old, new] = [it.old, it.new].map(|it| &it.details().constraints);
         let is_same_type = it.old.ty == it.new.ty;
-        let limits = |it: &FieldDetails| (it.min.clone(), it.max.clone());
+        let limits = |it: &Constraints| (it.min.clone(), it.max.clone());
         if limits(old) != limits(new) || old.only != new.only {
             // If the type also changed, the finding about the type covers the limits.
             if is_same_type {
@@ -36,9 +36,9 @@ impl Judge<'_> {
             }
         }
         if old.length != new.length {
-            let ends = |it: &FieldDetails| it.length.unwrap_or((0, u64::MAX));
+            let ends = |it: &Constraints| it.length.unwrap_or((0, u64::MAX));
             let (one, other) = (ends(old), ends(new));
-            let shown = |it: &FieldDetails| match it.length {
+            let shown = |it: &Constraints| match it.length {
                 Some((least, most)) if most == u64::MAX => format!("{least}–"),
                 Some((least, most)) => format!("{least}–{most}"),
                 None => String::new(),
@@ -60,6 +60,7 @@ impl Judge<'_> {
             self.report(it.found(&rules::PATTERN, values, wire));
             self.claim_in(&it.path, &["pattern"]);
         }
+        let (old, new) = (it.old.details(), it.new.details());
         if old.default != new.default {
             let shown = |it: &Option<Scalar>| it.as_ref().map(json).unwrap_or_default();
             let values = [shown(&old.default), shown(&new.default)];
@@ -81,12 +82,12 @@ impl Judge<'_> {
 }
 
 /// Returns the limits of a field as a string, such as `1–100` or `1, 6`.
-fn range(details: &FieldDetails) -> String {
+fn range(it: &Constraints) -> String {
     let mut parts = Vec::new();
-    if details.min.is_some() || details.max.is_some() {
+    if it.min.is_some() || it.max.is_some() {
         let end = |it: &Option<fc_spec::model::Number>| it.as_ref().map(json).unwrap_or_default();
-        parts.push(format!("{}–{}", end(&details.min), end(&details.max)));
+        parts.push(format!("{}–{}", end(&it.min), end(&it.max)));
     }
-    parts.extend(details.only.iter().map(json));
+    parts.extend(it.only.iter().map(json));
     parts.join(", ")
 }

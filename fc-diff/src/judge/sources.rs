@@ -76,5 +76,5 @@ fn is_large(field: &Field) -> bool {
         None => or <= SAFE,
     };
     let details = field.details();
-    !(fits(&details.min, least) && fits(&details.max, i128::MAX))
+    !(fits(&details.constraints.min, least) && fits(&details.constraints.max, i128::MAX))
 }

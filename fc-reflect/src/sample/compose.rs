@@ -230,7 +230,7 @@ impl<'m> Samples<'m> {
                 let ty = self.model.types.get(named);
                 match &ty.shape {
                     TypeShape::Enum(shape) => {
-                        constraint::enum_value(shape, &field.details().only, bound)
+                        constraint::enum_value(shape, &field.details().constraints.only, bound)
                     }
                     TypeShape::Struct(_) | TypeShape::OneOf(_) => {
                         self.value_of_named(ty, profile, open)

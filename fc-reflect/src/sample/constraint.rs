@@ -90,7 +90,7 @@ pub(crate) fn enum_value(shape: &EnumType, only: &[Scalar], bound: Bound) -> Val
 
 /// Returns the number of items of an array.
 pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
-    let (least, most) = match (&field.ty, field.details().length) {
+    let (least, most) = match (&field.ty, field.details().constraints.length) {
         (Type::Array(_), Some(length)) => length,
         _ => (0, u64::MAX),
     };
@@ -100,15 +100,6 @@ pub(crate) fn item_count(field: &Field, bound: Bound) -> u64 {
         Bound::Most => 2,
     };
     wanted.clamp(least.min(LONGEST), most.max(least).min(LONGEST))
-}
-
-/// Returns the smallest and the largest integer that a field accepts.
-#[must_use]
-pub fn int_range(kind: IntKind, field: &Field) -> (i128, i128) {
-    let (least, most) = kind.range();
-    let min = field.details().min.as_ref().map_or(least, ceil);
-    let max = field.details().max.as_ref().map_or(most, floor);
-    (min.max(least), max.min(most))
 }
 
 /// Returns a float as an encoder writes it. An `f32` gets the fewest digits that identify it.
@@ -125,10 +116,8 @@ pub(crate) fn float_value(kind: FloatKind, value: f64) -> Value {
 /// Returns `true` if the field has no pattern, or its pattern matches the whole text.
 #[must_use]
 pub fn pattern_takes(field: &Field, text: &str) -> bool {
-    let Some(pattern) = &field.details().pattern else {
-        return true;
-    };
-    pattern.matches(text)
+    let pattern = field.details().constraints.pattern.as_ref();
+    pattern.is_none_or(|pattern| pattern.matches(text))
 }
 
 /// Returns `count` characters by repeating `text`, at most [`LONGEST`] and one more.
@@ -146,25 +135,22 @@ pub fn base64_of(count: u64) -> String {
 }
 
 fn int(kind: IntKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
-    let (least, most) = int_range(kind, field);
-    let within = || {
-        given
-            .cloned()
-            .unwrap_or_else(|| int_value(1.clamp(least, most.max(least))))
-    };
+    let constraints = &field.details().constraints;
+    let nearest = |wanted| int_value(constraints.nearest_int(kind, wanted));
     match bound {
-        Bound::Least if field.details().min.is_some() => int_value(least),
-        Bound::None | Bound::Least => within(),
-        Bound::Most if field.details().max.is_some() => int_value(most),
-        Bound::Most => int_value(most.min(LARGEST_SAFE).max(least)),
+        Bound::Least if constraints.min.is_some() => nearest(i128::MIN),
+        Bound::None | Bound::Least => given.cloned().unwrap_or_else(|| nearest(1)),
+        Bound::Most if constraints.max.is_some() => nearest(i128::MAX),
+        Bound::Most => nearest(LARGEST_SAFE),
     }
 }
 
 fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) -> Value {
+    let constraints = &field.details().constraints;
     let edge = match bound {
         Bound::None => None,
-        Bound::Least => field.details().min.as_ref(),
-        Bound::Most => field.details().max.as_ref(),
+        Bound::Least => constraints.min.as_ref(),
+        Bound::Most => constraints.max.as_ref(),
     };
     let given = match (edge, given) {
         (Some(edge), _) | (None, Some(Value::Number(edge))) => Some(edge.to_f64()),
@@ -172,16 +158,8 @@ fn float(kind: FloatKind, field: &Field, given: Option<&Value>, bound: Bound) ->
         (None, None) => None,
     };
     let within = || {
-        let least = field
-            .details()
-            .min
-            .as_ref()
-            .map_or(f64::MIN, Number::to_f64);
-        let most = field
-            .details()
-            .max
-            .as_ref()
-            .map_or(f64::MAX, Number::to_f64);
+        let least = constraints.min.as_ref().map_or(f64::MIN, Number::to_f64);
+        let most = constraints.max.as_ref().map_or(f64::MAX, Number::to_f64);
         0.5_f64.min(most).max(least)
     };
     float_value(kind, given.unwrap_or_else(within))
@@ -192,10 +170,12 @@ fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
         Some(Value::String(text)) => Some(text.as_str()),
         _ => None,
     };
-    let wanted = match (bound, field.details().length, base) {
-        (Bound::Least, Some((least, _)), _) if field.details().pattern.is_none() => Some(least),
+    let wanted = match (bound, field.details().constraints.length, base) {
+        (Bound::Least, Some((least, _)), _) if field.details().constraints.pattern.is_none() => {
+            Some(least)
+        }
         (Bound::Most, Some((_, most)), _)
-            if field.details().pattern.is_none() && most <= LONGEST =>
+            if field.details().constraints.pattern.is_none() && most <= LONGEST =>
         {
             Some(most)
         }
@@ -213,7 +193,7 @@ fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
 }
 
 fn base64(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
-    let wanted = match (bound, field.details().length) {
+    let wanted = match (bound, field.details().constraints.length) {
         (Bound::Least, Some((least, _))) => Some(least),
         (Bound::Most, Some((_, most))) if most <= LONGEST => Some(most),
         (_, Some((least, _))) if given.is_none() => Some(least),
@@ -228,20 +208,4 @@ fn base64(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
 
 fn int_value(value: i128) -> Value {
     Value::Number(Number::Int(value))
-}
-
-#[allow(clippy::cast_possible_truncation)]
-fn ceil(number: &Number) -> i128 {
-    match number {
-        Number::Int(value) => *value,
-        Number::Float(value) => value.ceil() as i128,
-    }
-}
-
-#[allow(clippy::cast_possible_truncation)]
-fn floor(number: &Number) -> i128 {
-    match number {
-        Number::Int(value) => *value,
-        Number::Float(value) => value.floor() as i128,
-    }
 }

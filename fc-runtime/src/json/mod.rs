@@ -45,9 +45,7 @@ mod writer;
 pub use self::allowance::Allowance;
 pub use self::base64::Bytes64;
 pub use self::choice::{closed, closed_str, open, open_str, unknown_value};
-pub use self::constraint::{
-    Bounded, Chosen, Limit, Measured, Pattern, Patterned, length, matches, max, min, only,
-};
+pub use self::constraint::*;
 pub(crate) use self::document::enveloped;
 pub use self::document::{decode, from_slice, from_str, read_object, to_vec};
 pub use self::error::{BodyError, BodyErrorKind};

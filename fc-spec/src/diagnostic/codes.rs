@@ -282,6 +282,15 @@ fault_codes! {
 }
 
 impl FaultCode {
+    /// Errors about declared things: a name without a declaration, and a declaration without a use.
+    pub(crate) const DECLARED: [[Self; 2]; 5] = [
+        [Self::UnknownAvailability, Self::UnusedAvailability],
+        [Self::UnknownType, Self::UnusedType],
+        [Self::UnknownEntity, Self::UnusedEntity],
+        [Self::UnknownStore, Self::UnusedStore],
+        [Self::UnknownCoordinates, Self::UnusedCoordinates],
+    ];
+
     /// Returns the code with this number. Case, the prefix `FC` and leading zeros make no difference.
     #[must_use]
     pub fn parse(number: &str) -> Option<Self> {

@@ -3,7 +3,6 @@
 use crate::model::{Number, Scalar, Type, Value};
 use crate::names;
 use crate::syntax::{Node, NodeKind};
-use std::cmp::Ordering;
 
 /// Returns `true` for a decimal integer with leading zeros, which some YAML readers parse as octal.
 pub(crate) fn has_leading_zero(text: &str) -> bool {
@@ -84,14 +83,6 @@ pub(crate) fn number_text(text: &str) -> Option<Number> {
     }
     let value: f64 = text.parse().ok()?;
     value.is_finite().then_some(Number::Float(value))
-}
-
-/// Compares two numbers. The comparison of integers is exact. Fractions are finite.
-pub(crate) fn compare(a: &Number, b: &Number) -> Ordering {
-    match (a, b) {
-        (Number::Int(a), Number::Int(b)) => a.cmp(b),
-        _ => float(a).total_cmp(&float(b)),
-    }
 }
 
 /// Returns the number as a float. Large integers are rounded.

@@ -113,7 +113,7 @@ const SAFE: f64 = 9_007_199_254_740_991.0;
 fn integer_beyond_double(search: &mut Search<'_>) {
     for (ty, field) in search.fields() {
         let is_long = matches!(field.ty.item(), Type::Int(IntKind::I64 | IntKind::U64));
-        let max = field.details().max.as_ref();
+        let max = field.details().constraints.max.as_ref();
         let is_bounded = max.is_some_and(|max| max.to_f64() <= SAFE);
         if is_long && !is_bounded && field.wire_form != WireForm::String {
             search.report(
@@ -131,7 +131,7 @@ fn integer_beyond_double(search: &mut Search<'_>) {
 fn number_without_range(search: &mut Search<'_>) {
     for (ty, field) in search.fields() {
         let details = field.details();
-        let is_open = details.min.is_none() && details.max.is_none();
+        let is_open = details.constraints.min.is_none() && details.constraints.max.is_none();
         if matches!(field.ty.item(), Type::Float(_)) && is_open {
             search.report(
                 of_field(ty, field),
@@ -149,7 +149,10 @@ fn unbounded_length(search: &mut Search<'_>) {
     for (ty, field) in search.fields() {
         let has_length = matches!(field.ty, Type::String | Type::Base64 | Type::Array(_));
         let details = field.details();
-        if has_length && details.length.is_none() && details.pattern.is_none() {
+        if has_length
+            && details.constraints.length.is_none()
+            && details.constraints.pattern.is_none()
+        {
             search.report(
                 of_field(ty, field),
                 text!(

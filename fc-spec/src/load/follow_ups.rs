@@ -40,33 +40,11 @@ const WITHIN_ENTRY: &[FaultCode] = &[
     FaultCode::UnknownField,
 ];
 
-/// Errors about unknown names, with the error for an unused thing that the name may mean.
-const UNKNOWN: [(FaultCode, FaultCode); 5] = [
-    (
-        FaultCode::UnknownAvailability,
-        FaultCode::UnusedAvailability,
-    ),
-    (FaultCode::UnknownType, FaultCode::UnusedType),
-    (FaultCode::UnknownEntity, FaultCode::UnusedEntity),
-    (FaultCode::UnknownStore, FaultCode::UnusedStore),
-    (FaultCode::UnknownCoordinates, FaultCode::UnusedCoordinates),
-];
-
-/// Errors about missing or unused things.
+/// Errors about missing or unused things, in addition to those of [`FaultCode::DECLARED`].
 const ABSENT: &[FaultCode] = &[
-    FaultCode::UnknownType,
-    FaultCode::UnusedType,
     FaultCode::UnknownOperation,
     FaultCode::NotAReport,
     FaultCode::NotACommand,
-    FaultCode::UnknownEntity,
-    FaultCode::UnusedEntity,
-    FaultCode::UnknownStore,
-    FaultCode::UnusedStore,
-    FaultCode::UnknownCoordinates,
-    FaultCode::UnusedCoordinates,
-    FaultCode::UnknownAvailability,
-    FaultCode::UnusedAvailability,
     FaultCode::UnknownConflict,
     FaultCode::UnansweredConflict,
 ];
@@ -134,7 +112,7 @@ impl<'s> Earlier<'s> {
                 || lies_in(&self.hidden)
                 || (code == FaultCode::EmptyEnum && lies_in(&self.incomplete))
                 || (!NAMES_NOTHING.contains(&code) && lies_in(&unknown));
-            let is_meant = UNKNOWN.iter().any(|(unknown, unused)| {
+            let is_meant = FaultCode::DECLARED.iter().any(|[unknown, unused]| {
                 let name = subject(self.sources.slice(at));
                 *unused == code
                     && names.iter().any(|(code, meant)| {
@@ -159,7 +137,9 @@ impl<'s> Earlier<'s> {
     fn is_absent_only_here(&self, code: FaultCode, at: Span) -> bool {
         let subject = subject(self.sources.slice(at));
         let is_known = self.words.contains(subject) || self.suggested.contains(&loosely(subject));
-        ABSENT.contains(&code) && is_known
+        let is_absent =
+            ABSENT.contains(&code) || FaultCode::DECLARED.as_flattened().contains(&code);
+        is_absent && is_known
     }
 
     /// Removes errors about unused types that a skipped part may use, directly or through another unused type.

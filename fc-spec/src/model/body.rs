@@ -1,7 +1,7 @@
 //! Types and fields of JSON bodies.
 
 use super::{
-    Available, Change, Condition, Deprecation, Location, Number, Pattern, Scalar, StructRef, Text,
+    Available, Change, Condition, Constraints, Deprecation, Location, Scalar, StructRef, Text,
     TypeRef, Value,
 };
 use crate::names;
@@ -200,16 +200,9 @@ pub struct FieldDetails {
     pub kept: Option<String>,
     /// Unit, such as `m`, `rad`, `ms`.
     pub unit: Option<String>,
-    /// Smallest value of a number.
-    pub min: Option<Number>,
-    /// Largest value of a number.
-    pub max: Option<Number>,
-    /// Fewest and most characters of a string, bytes of a base64, items of an array.
-    pub length: Option<(u64, u64)>,
-    /// Regular expression that a string must match as a whole.
-    pub pattern: Option<Pattern>,
-    /// Accepted values of its enum, in wire form. Empty if all values are accepted.
-    pub only: Vec<Scalar>,
+    /// Constraints on values.
+    #[serde(flatten)]
+    pub constraints: Constraints,
     /// Value that the receiver uses if the optional field is absent. It is documented and not sent.
     pub default: Option<Scalar>,
     /// Leniencies of the decoder.
@@ -227,37 +220,11 @@ pub struct FieldDetails {
 }
 
 impl FieldDetails {
-    /// Returns the constraints on values, in the order of their checks.
-    pub fn constraints(&self) -> impl Iterator<Item = Constraint<'_>> {
-        let min = self.min.as_ref().map(Constraint::Min);
-        let max = self.max.as_ref().map(Constraint::Max);
-        let length = self.length;
-        let length = length.map(|(least, most)| Constraint::Length(least, most));
-        let pattern = self.pattern.as_ref().map(Constraint::Pattern);
-        let only = (!self.only.is_empty()).then_some(Constraint::Only(&self.only));
-        [min, max, length, pattern, only].into_iter().flatten()
-    }
-
     /// Returns empty details.
     #[must_use]
     pub fn none() -> &'static Self {
         &NO_DETAILS
     }
-}
-
-/// A constraint on the values of a field, in addition to its type. An absent value meets every constraint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Constraint<'f> {
-    /// The smallest value of a number.
-    Min(&'f Number),
-    /// The largest value of a number.
-    Max(&'f Number),
-    /// Fewest and most characters of a string, bytes of a base64, items of an array.
-    Length(u64, u64),
-    /// A regular expression that a string must match as a whole.
-    Pattern(&'f Pattern),
-    /// The accepted values of an enum, in wire form. Every other value is refused, including values that the enum does not declare.
-    Only(&'f [Scalar]),
 }
 
 /// Serializes all keys of the details, also for a field without details.
@@ -276,11 +243,7 @@ static NO_DETAILS: FieldDetails = FieldDetails {
     coordinates: None,
     kept: None,
     unit: None,
-    min: None,
-    max: None,
-    length: None,
-    pattern: None,
-    only: Vec::new(),
+    constraints: Constraints::NONE,
     default: None,
     quirks: Vec::new(),
     also: Vec::new(),

@@ -7,6 +7,7 @@ mod available;
 mod body;
 mod cadence;
 mod condition;
+mod constraint;
 mod coordinates;
 mod dump;
 mod dump_check;
@@ -39,11 +40,12 @@ pub use crate::vocabulary::{
 };
 pub use available::{Availability, Available, Declared};
 pub use body::{
-    BodyField, Constraint, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf,
-    StructType, Type, TypeDef, TypeShape, Variant,
+    BodyField, EnumRepr, EnumType, EnumValue, Example, Field, FieldDetails, OneOf, StructType,
+    Type, TypeDef, TypeShape, Variant,
 };
 pub use cadence::{Cadence, Step};
 pub use condition::{Asked, Condition};
+pub use constraint::{Argument, Constraint, Constraints, Judged};
 pub use coordinates::{CoordinateSystem, Store};
 pub use dump::DumpError;
 pub use entity::Entity;

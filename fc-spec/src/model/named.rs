@@ -6,7 +6,7 @@ use std::collections::HashSet;
 
 /// A kind of thing that a model declares and uses by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Thing {
+enum Thing {
     Group,
     Entity,
     Store,
@@ -32,9 +32,9 @@ impl Thing {
 }
 
 /// A name of a thing, with its user.
-pub(super) struct Named<'m> {
-    pub thing: Thing,
-    pub name: &'m str,
+struct Named<'m> {
+    thing: Thing,
+    name: &'m str,
     user: String,
 }
 
@@ -68,8 +68,23 @@ impl Model {
         things.map(|(thing, name)| (thing, name.as_str())).collect()
     }
 
+    /// Removes the groups, entities, coordinate systems and stores that the model does not use.
+    pub(super) fn retain_named(&mut self) {
+        let named = self.named().into_iter();
+        let named: HashSet<_> = named.map(|it| (it.thing, it.name.to_owned())).collect();
+        let is_named = |thing, name: &String| named.contains(&(thing, name.clone()));
+        self.groups.retain(|it| is_named(Thing::Group, &it.id));
+        for range in &mut self.ranges {
+            range.groups.retain(|it| is_named(Thing::Group, it));
+        }
+        self.entities.retain(|it| is_named(Thing::Entity, &it.name));
+        self.coordinates
+            .retain(|it| is_named(Thing::CoordinateSystem, &it.name));
+        self.stores.retain(|it| is_named(Thing::Store, &it.name));
+    }
+
     /// Returns every name of a declared thing.
-    pub(super) fn named(&self) -> Vec<Named<'_>> {
+    fn named(&self) -> Vec<Named<'_>> {
         let mut all = Names(Vec::new());
         for operation in &self.operations {
             let user = || operation.name.clone();

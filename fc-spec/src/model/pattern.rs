@@ -11,19 +11,30 @@ use regex_syntax::ast::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
+use std::sync::OnceLock;
 
 /// A regular expression that a text must match as a whole.
 ///
 /// The dialect is that of `regex-lite`: `\d`, `\w` and `\s` are ASCII, and `.` excludes only `\n`.
 /// A construct that other languages interpret differently is translated or refused.
 /// A dump contains the source of the pattern.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(into = "String", try_from = "String")]
 #[schemars(with = "String")]
 pub struct Pattern {
     source: String,
     portable: String,
+    /// Compiled at the first match.
+    regex: OnceLock<Option<Regex>>,
 }
+
+impl PartialEq for Pattern {
+    fn eq(&self, other: &Self) -> bool {
+        self.source == other.source
+    }
+}
+
+impl Eq for Pattern {}
 
 /// The reason why a string is not a valid pattern.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,7 +65,11 @@ impl Pattern {
         if parts > MOST_PARTS {
             return Err(PatternError::TooLarge);
         }
-        Ok(Self { source, portable })
+        Ok(Self {
+            source,
+            portable,
+            regex: OnceLock::new(),
+        })
     }
 
     /// Returns the pattern as the spec writes it.
@@ -72,8 +87,9 @@ impl Pattern {
     /// Returns `true` if the whole text matches.
     #[must_use]
     pub fn matches(&self, text: &str) -> bool {
-        let regex = Regex::new(&format!("^(?:{})$", self.portable));
-        regex.is_ok_and(|regex| regex.is_match(text))
+        let compile = || Regex::new(&format!("^(?:{})$", self.portable)).ok();
+        let regex = self.regex.get_or_init(compile);
+        regex.as_ref().is_some_and(|regex| regex.is_match(text))
     }
 }
 

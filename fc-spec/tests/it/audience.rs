@@ -244,7 +244,7 @@ fn nothing_that_is_left_names_what_is_gone() {
     let plain = Some(Condition::When(vec![asked]));
     assert_eq!(field("plain").details().condition, plain);
     let tone = field("tone").details();
-    assert_eq!(tone.only, [Scalar::Number(Number::Int(1))]);
+    assert_eq!(tone.constraints.only, [Scalar::Number(Number::Int(1))]);
     assert_eq!(tone.default, None);
     let rows = model
         .tables

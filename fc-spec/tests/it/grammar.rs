@@ -13,13 +13,12 @@ const READERS: [&str; 2] = ["load", "scaffold.rs"];
 const HOME: &str = "language/grammar";
 
 /// Keys that mean something else as well, and what.
-const ALSO: [(&str, &str); 13] = [
+const ALSO: [(&str, &str); 12] = [
     ("body", "what a fault calls a message"),
     ("command", "what a fault calls an operation"),
     ("commands", "the folder of the groups' files"),
     ("data", "the wire key whose object has a title of its own"),
     ("encodings", "what a fault calls several of them"),
-    ("items", "what a fault counts in a list"),
     ("json", "a type"),
     (
         "number",

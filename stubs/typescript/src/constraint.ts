@@ -1,7 +1,26 @@
-// What a field demands of its values beyond their type.
+// Constraints of fields: their types, and the check of a value.
 
 import { BodyError } from './fault.ts'
 import type { FieldPlan, Value } from './plan.ts'
+
+/** The demands of a field on its values, in addition to their type. */
+export interface Constraints {
+  /** Least value. */
+  readonly min?: number | bigint
+  /** Greatest value. */
+  readonly max?: number | bigint
+  /** Least and greatest number of items, characters or bytes. */
+  readonly length?: readonly [number, number]
+  /** Regular expression that all of a text must match. */
+  readonly pattern?: string
+  /** The values of an enum that it takes. */
+  readonly only?: readonly (number | bigint | string)[]
+}
+
+/** Returns `true` if there is a constraint. */
+export function isConstrained({ min, max, length, pattern, only }: Constraints): boolean {
+  return [min, max, length, pattern, only].some((one) => one !== undefined)
+}
 
 /** Characters of a text, of which some are two units of UTF-16. */
 export function characters(text: string): number {

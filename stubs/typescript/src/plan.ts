@@ -1,5 +1,6 @@
 // Schemas as reader and writer use them: each is prepared once.
 
+import { isConstrained } from './constraint.ts'
 import type { AnyChoice, AnyEnum, AnyStruct, FieldSchema, ListSchema, NamedSchema, TypeSchema } from './schema.ts'
 
 export type { AnyStruct } from './schema.ts'
@@ -43,7 +44,7 @@ export function planOf(struct: AnyStruct): StructPlan {
   const known = plans.get(struct)
   if (known) return known
   const fields = Object.entries(struct.fields).map(([name, schema], slot): FieldPlan => {
-    const { key, min, max, length, pattern, only } = schema
+    const { key, pattern } = schema
     const lead = `${JSON.stringify(key)}:`
     return {
       name,
@@ -52,7 +53,7 @@ export function planOf(struct: AnyStruct): StructPlan {
       lead,
       leadBytes: encoder.encode(lead),
       pattern: pattern === undefined ? null : new RegExp(`^(?:${pattern})$`, 'u'),
-      isConstrained: [min, max, length, pattern, only].some((one) => one !== undefined),
+      isConstrained: isConstrained(schema),
     }
   })
   const plan: StructPlan = {

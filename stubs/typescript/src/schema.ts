@@ -1,5 +1,7 @@
 // What the runtime has to know of a message: one constant for each type, which the compiler holds to the type itself.
 
+import type { Constraints } from './constraint.ts'
+
 /** An integer type. */
 export type IntegerName = 'i8' | 'i16' | 'i32' | 'u8' | 'u16' | 'u32' | 'i64' | 'u64'
 
@@ -78,7 +80,7 @@ export type Comparable = number | bigint | string | boolean
 export type ConditionSchema = Readonly<Record<string, readonly Comparable[]>>
 
 /** A field of a message. */
-export interface FieldSchema {
+export interface FieldSchema extends Constraints {
   /** Its key on the wire. */
   readonly key: string
   /** Its type. */
@@ -91,16 +93,6 @@ export interface FieldSchema {
   readonly also?: readonly string[]
   /** A number or bool inside a JSON string, or a bool as 1 or 0. */
   readonly form?: 'string' | 'number'
-  /** Least value. */
-  readonly min?: number | bigint
-  /** Greatest value. */
-  readonly max?: number | bigint
-  /** Least and greatest number of items, characters or bytes. */
-  readonly length?: readonly [number, number]
-  /** Regular expression that all of a text must match. */
-  readonly pattern?: string
-  /** The values of an enum that it takes. */
-  readonly only?: readonly (number | bigint | string)[]
   /** An empty value counts as absent. */
   readonly emptyIsAbsent?: boolean
   /** A number is also accepted as a string, and in hex. */

@@ -8,10 +8,10 @@ use crate::package::conditions::Asked;
 use crate::package::context::Context;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::items::{Item, Shape, Spelled};
-use crate::package::marks::{Bound, FieldMarks};
+use crate::package::marks::FieldMarks;
 use crate::package::process::has_states;
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Number, Scalar, Type, Value};
+use fc_spec::model::{Argument, EnumRepr, EnumType, EnumValue, Field, Number, Scalar, Type, Value};
 
 /// Generates the source of a header.
 pub fn source(
@@ -149,8 +149,8 @@ fn lists(out: &mut Source, field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_
         let keys = marks.also.iter().map(|key| literal(key));
         list("std::string_view", "also", keys.collect());
     }
-    for (name, bound) in &marks.constraints {
-        if let Bound::Values(values) = bound {
+    for (name, argument) in &marks.constraints {
+        if let Argument::Values(values) = argument {
             let ty = match values.first() {
                 Some(Scalar::String(_)) => "std::string_view",
                 _ => "std::int64_t",
@@ -194,12 +194,12 @@ fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
         Some("string") => ".quoted()",
         Some(_) => ".numeric()",
     });
-    for (name, bound) in &marks.constraints {
-        let value = match bound {
-            Bound::Number(value) => number(value),
-            Bound::Range(least, most) => [*least, *most].map(|it| integer(it.into())).join(", "),
-            Bound::Pattern(pattern) => raw(pattern),
-            Bound::Values(_) => format!("{name}_{}", field.name),
+    for (name, argument) in &marks.constraints {
+        let value = match argument {
+            Argument::Number(value) => number(value),
+            Argument::Range(least, most) => [*least, *most].map(|it| integer(it.into())).join(", "),
+            Argument::Pattern(pattern) => raw(pattern.portable()),
+            Argument::Values(_) => format!("{name}_{}", field.name),
         };
         out.extend([".", name, "(", &value, ")"]);
     }

@@ -4,9 +4,11 @@ use crate::package::context::Context;
 use crate::package::digits::grouped;
 use crate::package::docs::escape_links;
 use crate::package::language::Case;
-use crate::package::marks::{Bound, FieldMarks};
+use crate::package::marks::FieldMarks;
 use crate::package::style::{Comment, Style};
-use fc_spec::model::{Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden};
+use fc_spec::model::{
+    Argument, Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden,
+};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -154,7 +156,7 @@ pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -
     if marks.is_lenient {
         out.push_str(".lenient()");
     }
-    let is_of_list = |bound: &Bound<'_>| matches!(bound, Bound::Range(..));
+    let is_of_list = |argument: &Argument<'_>| matches!(argument, Argument::Range(..));
     let (of_list, of_items): (Vec<_>, Vec<_>) =
         marks.constraints.iter().partition(|it| is_of_list(&it.1));
     out.extend(of_items.into_iter().map(demand));
@@ -165,12 +167,12 @@ pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -
     out
 }
 
-fn demand((name, bound): &(&str, Bound<'_>)) -> String {
-    let value = match bound {
-        Bound::Number(value) => number(value),
-        Bound::Pattern(pattern) => literal(pattern),
-        Bound::Values(taken) => taken.iter().map(scalar).collect::<Vec<_>>().join(", "),
-        Bound::Range(least, most) => match u32::try_from(*most) {
+fn demand((name, argument): &(&str, Argument<'_>)) -> String {
+    let value = match argument {
+        Argument::Number(value) => number(value),
+        Argument::Pattern(pattern) => literal(pattern.portable()),
+        Argument::Values(taken) => taken.iter().map(scalar).collect::<Vec<_>>().join(", "),
+        Argument::Range(least, most) => match u32::try_from(*most) {
             Ok(most) if most < i32::MAX as u32 => format!("{least}, {most}"),
             _ => least.to_string(),
         },

@@ -220,10 +220,11 @@ impl<'m> Rows<'_, 'm> {
             sent: words::sent(field.wire_form, self.lang),
             ..self.type_cell(&field.ty)
         };
+        let numbers = details.constraints.numbers();
         Row {
             presence: presence(field.optional, details.condition.is_some()),
             unit: details.unit.clone(),
-            range: words::range(details.min.as_ref(), details.max.as_ref()),
+            range: numbers.map(|it| self.lang.text(&it).to_owned()),
             note: details.note.as_ref().map(|note| self.sentence(note)),
             example: leaf_example(field),
             more: self.more(owner, field).map(Box::new),
@@ -244,11 +245,12 @@ impl<'m> Rows<'_, 'm> {
             return None;
         }
         let details = field.details();
+        let constraints = &details.constraints;
         let quirks = details.quirks.iter();
         Some(More {
             length: self.length(field),
-            pattern: details.pattern.clone().map(String::from),
-            only: details.only.iter().map(scalar).collect(),
+            pattern: constraints.pattern.clone().map(String::from),
+            only: constraints.only.iter().map(scalar).collect(),
             default: details.default.as_ref().map(scalar),
             quirks: quirks.map(|quirk| quirk.word(self.lang)).collect(),
             also: details.also.clone(),
@@ -330,7 +332,7 @@ impl<'m> Rows<'_, 'm> {
     }
 
     fn length(&self, field: &Field) -> Option<Length> {
-        let (least, most) = field.details().length?;
+        let (least, most) = field.details().constraints.length?;
         let count = if least == most {
             least.to_string()
         } else {

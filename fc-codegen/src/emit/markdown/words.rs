@@ -3,8 +3,8 @@
 use fc_spec::model::Lang;
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, CodeRange, Confirmation, Direction, Effect, EncodingRole,
-    EnvelopeRole, HeaderRole, Impact, JsonRule, Kind, KindRole, Number, PortRole, Quirk, RangeUse,
-    ResultRole, Severity, Side, Text, Type, TypeRef, Value, WireForm,
+    EnvelopeRole, HeaderRole, Impact, JsonRule, Kind, KindRole, PortRole, Quirk, RangeUse,
+    ResultRole, Severity, Side, Text, Type, TypeRef, WireForm,
 };
 use fc_spec::text;
 
@@ -210,17 +210,6 @@ pub(crate) fn confirmed(confirmation: &Confirmation, lang: Lang) -> String {
         .as_ref()
         .map(|reply| lang.pick(format!("，原话“{reply}”"), format!(": \"{reply}\"")));
     word + &reference.unwrap_or_default() + &reply.unwrap_or_default()
-}
-
-/// Returns a range, such as `≥ 0` or `0 … 100`.
-pub(super) fn range(min: Option<&Number>, max: Option<&Number>) -> Option<String> {
-    let number = |number: &Number| Value::Number(number.clone()).to_string();
-    match (min, max) {
-        (Some(min), Some(max)) => Some(format!("{} … {}", number(min), number(max))),
-        (Some(min), None) => Some(format!("≥ {}", number(min))),
-        (None, Some(max)) => Some(format!("≤ {}", number(max))),
-        (None, None) => None,
-    }
 }
 
 /// Returns the use of a range, and the groups that it names.

@@ -12,10 +12,10 @@ use crate::package::expr::Expressions;
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::language::Case;
-use crate::package::marks::{Bound, FieldMarks};
+use crate::package::marks::FieldMarks;
 use crate::package::name::free;
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, Field, Scalar, Text, Type, TypeShape, Value, Variant};
+use fc_spec::model::{Argument, EnumRepr, Field, Scalar, Text, Type, TypeShape, Value, Variant};
 
 /// Writes message types. Enums come first, and choices last.
 pub fn types<'m>(
@@ -216,12 +216,12 @@ fn key(
         let keys = marks.also.iter().map(|key| literal(key).into());
         set("also", Code::tuple(keys.collect()));
     }
-    for (name, bound) in &marks.constraints {
-        let value = match bound {
-            Bound::Number(value) => number(value).into(),
-            Bound::Range(least, most) => format!("({least}, {most})").into(),
-            Bound::Pattern(pattern) => regex(pattern).into(),
-            Bound::Values(taken) => values(field.ty.item(), taken),
+    for (name, argument) in &marks.constraints {
+        let value = match argument {
+            Argument::Number(value) => number(value).into(),
+            Argument::Range(least, most) => format!("({least}, {most})").into(),
+            Argument::Pattern(pattern) => regex(pattern.portable()).into(),
+            Argument::Values(taken) => values(field.ty.item(), taken),
         };
         set(name, value);
     }

@@ -14,8 +14,8 @@ use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Call, Item, Module, Shape, Spelled};
-use crate::package::marks::{Bound, FieldMarks};
-use fc_spec::model::{Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
+use crate::package::marks::FieldMarks;
+use fc_spec::model::{Argument, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
 
 /// Generates a module of message types.
@@ -266,12 +266,12 @@ fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> V
     }
     items.extend(marks.form.map(|form| format!("wire = {}", literal(form))));
     let constraints = marks.constraints.iter();
-    items.extend(constraints.map(|(name, bound)| match bound {
-        Bound::Number(value) => format!("{name} = {}", number(value)),
-        Bound::Range(least, most) if least == most => format!("{name} = {least}"),
-        Bound::Range(least, most) => format!("{name} = {least}..={most}"),
-        Bound::Pattern(pattern) => format!("{name} = {}", literal(pattern)),
-        Bound::Values(taken) => {
+    items.extend(constraints.map(|(name, argument)| match argument {
+        Argument::Number(value) => format!("{name} = {}", number(value)),
+        Argument::Range(least, most) if least == most => format!("{name} = {least}"),
+        Argument::Range(least, most) => format!("{name} = {least}..={most}"),
+        Argument::Pattern(pattern) => format!("{name} = {}", literal(pattern.portable())),
+        Argument::Values(taken) => {
             let taken: Vec<String> = taken.iter().map(enum_wire).collect();
             format!("{name}({})", taken.join(", "))
         }

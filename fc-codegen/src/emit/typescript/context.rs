@@ -122,5 +122,7 @@ pub fn is_safe(field: &Field) -> bool {
         _ => i128::MAX,
     };
     let details = field.details();
-    is_64_bit(field.ty.item()) && fits(&details.min, least) && fits(&details.max, i128::MAX)
+    is_64_bit(field.ty.item())
+        && fits(&details.constraints.min, least)
+        && fits(&details.constraints.max, i128::MAX)
 }

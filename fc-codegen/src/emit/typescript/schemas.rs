@@ -8,9 +8,9 @@ use super::source::{head, named};
 use crate::package::expr::Expressions;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::language::Case;
-use crate::package::marks::{Bound, FieldMarks};
+use crate::package::marks::FieldMarks;
 use crate::sample::Samples;
-use fc_spec::model::{EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
+use fc_spec::model::{Argument, EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
 
 pub const ABOUT: [&str; 2] = [
     "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
@@ -132,12 +132,12 @@ fn field(
             (!marks.also.is_empty()).then(|| Layout::texts(marks.also)),
         )
         .with("form", marks.form.map(Layout::text));
-    for (name, bound) in &marks.constraints {
-        let value = match bound {
-            Bound::Number(value) => number(value, large),
-            Bound::Range(least, most) => Layout::list([*least, *most].map(Layout::number)),
-            Bound::Pattern(pattern) => Layout::text(pattern),
-            Bound::Values(taken) => Layout::list(taken.iter().map(|it| held(field, it))),
+    for (name, argument) in &marks.constraints {
+        let value = match argument {
+            Argument::Number(value) => number(value, large),
+            Argument::Range(least, most) => Layout::list([*least, *most].map(Layout::number)),
+            Argument::Pattern(pattern) => Layout::text(pattern.portable()),
+            Argument::Values(taken) => Layout::list(taken.iter().map(|it| held(field, it))),
         };
         members = members.with(&Case::Camel.apply(name), value);
     }

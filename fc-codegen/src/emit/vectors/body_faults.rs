@@ -7,9 +7,7 @@ use super::sites::{Site, sites};
 use super::unknown::{UNKNOWN_KEY, unknown_enum_value};
 use crate::emit::json::{float, int, object, text};
 use crate::sample::Profile;
-use crate::sample::constraint::{
-    LONGEST, base64_of, cycled, int_range, on_the_wire, pattern_takes,
-};
+use crate::sample::constraint::{LONGEST, base64_of, cycled, on_the_wire, pattern_takes};
 use fc_spec::model::{
     EncodingRole, EnumType, Field, Number, OneOf, Quirk, Type, TypeShape, Value, WireForm,
 };
@@ -202,7 +200,7 @@ fn unknown_value(shape: &EnumType, field: &Field) -> Option<Broken> {
 
 /// Returns values that the `only` of a field excludes: a known one, and an unknown one that the enum alone would keep.
 fn not_taken(shape: &EnumType, field: &Field) -> Vec<Broken> {
-    let only = &field.details().only;
+    let only = &field.details().constraints.only;
     if only.is_empty() {
         return Vec::new();
     }
@@ -221,24 +219,24 @@ fn no_variant(case: &Case<'_, '_>, choice: &OneOf) -> Option<Broken> {
     (!taken).then_some(("no_variant", "", nothing_known))
 }
 
-/// Returns values just below and just above the range of a number field.
+/// Returns numbers that a field refuses, near the edges of those that it accepts.
 fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
     match ty {
         Type::Int(kind) => {
-            let (least, most) = int_range(*kind, field);
+            let refused = field.details().constraints.refused_ints(*kind).into_iter();
             // The ends of 64 bits are left out, because some JSON readers round them.
-            let exact = |edge: i128| edge.unsigned_abs() < 1 << 53;
-            let below = exact(least).then(|| ("_below", int(least - 1)));
-            let above = exact(most).then(|| ("_above", int(most + 1)));
-            below.into_iter().chain(above).collect()
+            let exact = refused.filter(|(_, value)| value.unsigned_abs() <= 1 << 53);
+            exact.map(|(name, value)| (name, int(value))).collect()
         }
         Type::Float(_) => {
             let beside = |edge: Option<&Number>, step: f64| {
                 let edge = edge?.to_f64();
                 Some(float(edge + step * edge.abs().max(1.0)))
             };
-            let below = beside(field.details().min.as_ref(), -1.0).map(|value| ("_below", value));
-            let above = beside(field.details().max.as_ref(), 1.0).map(|value| ("_above", value));
+            let below = beside(field.details().constraints.min.as_ref(), -1.0)
+                .map(|value| ("_below", value));
+            let above = beside(field.details().constraints.max.as_ref(), 1.0)
+                .map(|value| ("_above", value));
             below.into_iter().chain(above).collect()
         }
         _ => Vec::new(),
@@ -248,7 +246,12 @@ fn out_of_range(ty: &Type, field: &Field) -> Vec<(&'static str, Value)> {
 /// Returns values just too short and just too long, which `value` makes. A length counts the items of an array, not
 /// their contents.
 fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<Broken> {
-    let length = site.field.details().length.filter(|_| !site.is_item);
+    let length = site
+        .field
+        .details()
+        .constraints
+        .length
+        .filter(|_| !site.is_item);
     let Some((least, most)) = length else {
         return Vec::new();
     };
@@ -265,7 +268,7 @@ fn wrong_lengths(site: &Site<'_>, value: impl Fn(u64) -> Option<Value>) -> Vec<B
 
 /// Returns the sample with one character changed so that it breaks the pattern.
 fn bad_pattern(field: &Field, sample: &str) -> Option<Broken> {
-    field.details().pattern.as_ref()?;
+    field.details().constraints.pattern.as_ref()?;
     let stem: String = sample
         .chars()
         .take(sample.chars().count().saturating_sub(1))

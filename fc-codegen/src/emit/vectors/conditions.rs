@@ -52,7 +52,7 @@ fn contradicted(
 
 /// Returns all values of a field with a bool or an enum.
 fn values(case: &Case<'_, '_>, field: &Field) -> Vec<Value> {
-    let only = &field.details().only;
+    let only = &field.details().constraints.only;
     match &field.ty {
         Type::Bool => {
             let both = [true, false].map(Value::Bool);

@@ -52,7 +52,7 @@ pub(super) fn with_unknown_values(
         };
         if site.present
             && !shape.closed
-            && site.field.details().only.is_empty()
+            && site.field.details().constraints.only.is_empty()
             && let Some(unknown) = unknown_enum_value(shape)
         {
             let unknown = constraint::on_the_wire(unknown, site.field.wire_form);

@@ -127,7 +127,7 @@ impl<'m> Arbitrary<'m> {
             }
             Type::Float(kind) => float(*kind, field, random),
             // Strings of any pattern are not worth a generator: the example is one.
-            Type::String if field.details().pattern.is_some() => match &field.example {
+            Type::String if field.details().constraints.pattern.is_some() => match &field.example {
                 Example::Given(value) => value.clone(),
                 Example::Derived | Example::Absent => Value::String(String::new()),
             },
@@ -145,7 +145,11 @@ impl<'m> Arbitrary<'m> {
             Type::Json => json(random, 3),
             Type::Array(item) => {
                 let length = if depth == 0 {
-                    field.details().length.map_or(0, |(least, _)| least)
+                    field
+                        .details()
+                        .constraints
+                        .length
+                        .map_or(0, |(least, _)| least)
                 } else {
                     count(field, random, 3)
                 };
@@ -154,8 +158,8 @@ impl<'m> Arbitrary<'m> {
                     .collect()
             }
             // An enum of which the field takes some values only.
-            Type::Named(_) if !field.details().only.is_empty() => {
-                scalar(random.pick(&field.details().only))
+            Type::Named(_) if !field.details().constraints.only.is_empty() => {
+                scalar(random.pick(&field.details().constraints.only))
             }
             Type::Named(named) => {
                 let ty = self.samples.model().types.get(named);
@@ -192,8 +196,8 @@ fn integer((least, most): (i128, i128), field: &Field, random: &mut Random) -> V
         _ => otherwise,
     };
     let (least, most) = (
-        bound(field.details().min.as_ref(), least),
-        bound(field.details().max.as_ref(), most),
+        bound(field.details().constraints.min.as_ref(), least),
+        bound(field.details().constraints.max.as_ref(), most),
     );
     Value::Number(Number::Int(random.int(least, most)))
 }
@@ -211,8 +215,8 @@ fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
     };
     let share = random.next() as f64 / u64::MAX as f64;
     let value = match (
-        bound(field.details().min.as_ref()),
-        bound(field.details().max.as_ref()),
+        bound(field.details().constraints.min.as_ref()),
+        bound(field.details().constraints.max.as_ref()),
     ) {
         (Some(least), Some(most)) => least + (most - least) * share,
         (Some(least), None) => least + share * 1e6,
@@ -234,7 +238,7 @@ fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
 
 /// How many items, characters or bytes.
 fn count(field: &Field, random: &mut Random, most: usize) -> u64 {
-    match field.details().length {
+    match field.details().constraints.length {
         Some((least, most)) => least + random.next() % (most.min(least + 40) - least + 1),
         None if field.details().quirks.contains(&Quirk::EmptyIsAbsent) => 1,
         None => u64::try_from(random.below(most)).unwrap(),

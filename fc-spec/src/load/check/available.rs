@@ -213,7 +213,10 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             };
             let details = field.details();
             let is_for = has(details.available.as_ref(), name);
-            if is_for && !details.only.is_empty() && !details.only.iter().any(knows) {
+            if is_for
+                && !details.constraints.only.is_empty()
+                && !details.constraints.only.iter().any(knows)
+            {
                 report(
                     part.origin.at(FIELD.only),
                     text!("这个字段可取的值", "value that this field takes"),

@@ -5,7 +5,6 @@ use super::value::{Mismatch, check_constraints, check_type};
 use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TEXT};
-use crate::language::scalar;
 use crate::load::draft::Draft;
 use crate::load::lower::USUAL_OBJECT;
 use crate::model::{
@@ -74,8 +73,8 @@ pub(super) fn check_texts(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
         for (key, bound) in [
-            (FIELD.min, field.details().min.as_ref()),
-            (FIELD.max, field.details().max.as_ref()),
+            (FIELD.min, field.details().constraints.min.as_ref()),
+            (FIELD.max, field.details().constraints.max.as_ref()),
         ] {
             let Some(bound) = bound else {
                 continue;
@@ -108,9 +107,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                 )),
             }
         }
-        if let (Some(min), Some(max)) = (&field.details().min, &field.details().max)
-            && scalar::compare(min, max).is_gt()
-        {
+        if field.details().constraints.is_inverted() {
             faults.push(
                 Diagnostic::error(
                     FaultCode::MinAboveMax,
@@ -143,7 +140,7 @@ fn wrong_type(
 /// Checks that `length` belongs to strings, bytes and lists, and is in order.
 pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
-        let Some((least, most)) = field.details().length else {
+        let Some((least, most)) = field.details().constraints.length else {
             continue;
         };
         let span = part.origin.at(FIELD.length);
@@ -214,7 +211,7 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
 /// Checks that `only` belongs to enums and lists valid values, each once.
 pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in typed_fields(draft) {
-        if field.details().only.is_empty() {
+        if field.details().constraints.only.is_empty() {
             continue;
         }
         if !is_enum(draft, &field.ty) {

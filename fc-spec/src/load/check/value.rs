@@ -5,7 +5,7 @@ use crate::language::ambiguous_scalar::misread;
 use crate::language::scalar::{self, value};
 use crate::load::draft::Draft;
 use crate::model::{
-    Constraint, EnumType, Field, FloatKind, Number, OneOf, Scalar, StructType, Text, Type,
+    Argument, EnumType, Field, FloatKind, Judged, Number, OneOf, Scalar, StructType, Text, Type,
     TypeShape, Value, WireForm,
 };
 use crate::source::Span;
@@ -364,107 +364,39 @@ pub(super) fn check_constraints(
     value: &Value,
     found: &mut Vec<Mismatch>,
 ) {
-    // Inverted bounds admit no value, so they are not applied.
-    let details = field.details.as_deref();
-    let bounds = details.and_then(|it| Some((it.min.as_ref()?, it.max.as_ref()?)));
-    let is_inverted = bounds.is_some_and(|(min, max)| scalar::compare(min, max).is_gt());
-    let broken = |constraint| match (constraint, value) {
-        (Constraint::Min(_) | Constraint::Max(_), _) if is_inverted => None,
-        (Constraint::Min(min), Value::Number(number)) => {
-            let is_below = scalar::compare(number, min).is_lt();
-            let message = || {
-                text!(
-                    "应不小于 {min}，实际为 {found}",
-                    "expected at least {min}, found {found}",
-                    min = show(min),
-                    found = show(number)
-                )
-            };
-            is_below.then(|| (FaultCode::ExampleRange, message()))
-        }
-        (Constraint::Max(max), Value::Number(number)) => {
-            let is_above = scalar::compare(number, max).is_gt();
-            let message = || {
-                text!(
-                    "应不大于 {max}，实际为 {found}",
-                    "expected at most {max}, found {found}",
-                    max = show(max),
-                    found = show(number)
-                )
-            };
-            is_above.then(|| (FaultCode::ExampleRange, message()))
-        }
-        (Constraint::Length(least, most), value) => {
-            let length = length(&field.ty, value)?;
-            let length = u64::try_from(length).unwrap_or(u64::MAX);
-            let message = || {
-                let what = match field.ty {
-                    Type::String => text!("字符数", "characters"),
-                    Type::Base64 => text!("字节数", "bytes"),
-                    _ => text!("项数", "items"),
-                };
-                if least == most {
-                    text!(
-                        "{what}应为 {least}，实际为 {length}",
-                        "expected {least} {what}, found {length}",
-                        what = what
-                    )
-                } else {
-                    text!(
-                        "{what}应为 {least} 到 {most}，实际为 {length}",
-                        "expected {least} to {most} {what}, found {length}",
-                        what = what
-                    )
-                }
-            };
-            let fits = (least..=most).contains(&length);
-            (!fits).then(|| (FaultCode::ExampleLength, message()))
-        }
-        (Constraint::Pattern(pattern), Value::String(text)) if field.ty == Type::String => {
-            let fits = pattern.matches(text);
-            let message = || {
-                text!(
-                    "整段文本应与正则表达式 `{pattern}` 匹配",
-                    "the whole text must match the pattern `{pattern}`"
-                )
-            };
-            (!fits).then(|| (FaultCode::ExamplePattern, message()))
-        }
-        (Constraint::Only(taken), Value::Number(_) | Value::String(_))
-            if matches!(field.ty, Type::Named(_)) =>
-        {
-            let is_taken = taken.iter().any(|taken| Value::from(taken) == *value);
-            let taken = taken.iter().map(|taken| Value::from(taken).to_string());
-            let message = || {
-                text!(
-                    "应为以下取值之一：{taken}",
-                    "expected one of {taken}",
-                    taken = Text::listed(taken)
-                )
-            };
-            (!is_taken).then(|| (FaultCode::ExampleValue, message()))
-        }
-        (
-            Constraint::Min(_) | Constraint::Max(_) | Constraint::Pattern(_) | Constraint::Only(_),
-            _,
-        ) => None,
+    let constraints = &field.details().constraints;
+    let Some(value) = judged(&field.ty, value) else {
+        return;
     };
-    let broken = field.details().constraints().filter_map(broken);
-    found.extend(broken.map(|(code, message)| Mismatch::new(code, node, message)));
-}
-
-/// Returns the number that `length` limits: characters, bytes or items.
-fn length(ty: &Type, value: &Value) -> Option<usize> {
-    match (ty, value) {
-        (Type::String, Value::String(text)) => Some(text.chars().count()),
-        (Type::Base64, Value::String(text)) => base64_len(text),
-        (Type::Array(_), Value::Array(items)) => Some(items.len()),
-        _ => None,
+    // Inverted bounds admit no value, so they are not applied.
+    if constraints.is_inverted() && matches!(value, Judged::Number(_)) {
+        return;
     }
+    found.extend(constraints.iter().filter_map(|constraint| {
+        let message = constraint.broken(&value)?;
+        let code = match constraint.argument() {
+            Argument::Number(_) => FaultCode::ExampleRange,
+            Argument::Range(..) => FaultCode::ExampleLength,
+            Argument::Pattern(_) => FaultCode::ExamplePattern,
+            Argument::Values(_) => FaultCode::ExampleValue,
+        };
+        Some(Mismatch::new(code, node, message))
+    }));
 }
 
-fn show(number: &Number) -> Value {
-    Value::Number(number.clone())
+/// Returns the part of a value that constraints judge. `None` for a value without constraints.
+fn judged<'v>(ty: &Type, value: &'v Value) -> Option<Judged<'v>> {
+    Some(match (ty, value) {
+        (Type::Named(_), Value::Number(number)) => {
+            Judged::EnumValue(Scalar::Number(number.clone()))
+        }
+        (Type::Named(_), Value::String(text)) => Judged::EnumValue(Scalar::String(text.clone())),
+        (Type::String, Value::String(text)) => Judged::String(text),
+        (Type::Base64, Value::String(text)) => Judged::Bytes(base64_len(text)?),
+        (Type::Array(_), Value::Array(items)) => Judged::Items(items.len()),
+        (_, Value::Number(number)) => Judged::Number(number.clone()),
+        _ => return None,
+    })
 }
 
 /// Describes a value in its wire form.

@@ -10,8 +10,9 @@ use crate::language::scalar;
 use crate::load::draft::{Origin, Part, TypeDraft};
 use crate::load::shape::{lacks_form, misread_marker};
 use crate::model::{
-    Asked, BodyField, BodyState, Condition, Example, Field, FieldDetails, OneOf, Pattern,
-    StructRef, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant, WireForm,
+    Asked, BodyField, BodyState, Condition, Constraints, Example, Field, FieldDetails, OneOf,
+    Pattern, StructRef, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant,
+    WireForm,
 };
 use crate::names;
 use crate::syntax::{Entries, Entry, Node};
@@ -286,11 +287,7 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         coordinates: FIELD.coordinates.read(typed),
         kept: COMMON.kept.read(node),
         unit: FIELD.unit.read(typed),
-        min: FIELD.min.read(typed),
-        max: FIELD.max.read(typed),
-        length: FIELD.length.of(typed.or(listed)).and_then(length_of),
-        pattern: (FIELD.pattern.read(typed)).and_then(|it| Pattern::new(it).ok()),
-        only: FIELD.only.get(typed),
+        constraints: constraints(typed, listed),
         default: FIELD.default.read(typed),
         quirks: FIELD.quirk.get(node),
         also: FIELD.also.get(node),
@@ -299,6 +296,17 @@ fn details(node: Node<'_>, mark: &str) -> Option<Box<FieldDetails>> {
         deprecated: deprecation(FIELD.deprecated.of(node)),
     };
     (details != FieldDetails::default()).then(|| Box::new(details))
+}
+
+/// Returns the constraints of a field. A list of inline objects has a length at most.
+fn constraints(typed: Option<Node<'_>>, listed: Option<Node<'_>>) -> Constraints {
+    Constraints {
+        min: FIELD.min.read(typed),
+        max: FIELD.max.read(typed),
+        length: FIELD.length.of(typed.or(listed)).and_then(length_of),
+        pattern: (FIELD.pattern.read(typed)).and_then(|it| Pattern::new(it).ok()),
+        only: FIELD.only.get(typed),
+    }
 }
 
 /// Returns the condition in `when:`, otherwise in `unless:`. A separate check reports a field with both.

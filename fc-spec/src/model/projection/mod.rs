@@ -4,11 +4,10 @@
 
 mod operation;
 
-use super::named::Thing;
 use super::{
-    Answer, Asked, Condition, EnumType, Example, Field, FieldDetails, Model, OneOf, Operation,
-    Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape,
-    Types, Unlinked, Value, Variant,
+    Answer, Asked, Condition, Constraints, EnumType, Example, Field, FieldDetails, Model, OneOf,
+    Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef,
+    TypeShape, Types, Unlinked, Value, Variant,
 };
 use crate::text;
 use std::collections::HashSet;
@@ -119,18 +118,7 @@ impl Model {
 
     /// Removes unused groups, entities, coordinate systems and stores. Removes answers, questions and conflicts about removed things.
     fn leave_out_what_nothing_uses(&mut self) {
-        let named = self.named().into_iter();
-        let named: HashSet<_> = named.map(|it| (it.thing, it.name.to_owned())).collect();
-        let is_named = |thing, name: &String| named.contains(&(thing, name.clone()));
-        self.groups.retain(|it| is_named(Thing::Group, &it.id));
-        for range in &mut self.ranges {
-            range.groups.retain(|it| is_named(Thing::Group, it));
-        }
-        self.entities.retain(|it| is_named(Thing::Entity, &it.name));
-        self.coordinates
-            .retain(|it| is_named(Thing::CoordinateSystem, &it.name));
-        self.stores.retain(|it| is_named(Thing::Store, &it.name));
-
+        self.retain_named();
         let asked: HashSet<String> = ids(&self.answers).collect();
         let (types, operations) = (&self.types, &self.operations);
         let is_here = |subject: &Subject| match subject {
@@ -260,9 +248,12 @@ impl View<'_> {
             other => other.clone(),
         };
         let details = field.details.as_deref().map(|details| {
-            let only = details.only.iter().filter(|value| knows(value));
+            let only = details.constraints.only.iter().filter(|value| knows(value));
             Box::new(FieldDetails {
-                only: only.cloned().collect(),
+                constraints: Constraints {
+                    only: only.cloned().collect(),
+                    ..details.constraints.clone()
+                },
                 default: details.default.clone().filter(knows),
                 condition: match self.condition(shape, field) {
                     Left::Some(condition) => Some(condition),

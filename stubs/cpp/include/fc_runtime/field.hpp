@@ -155,8 +155,6 @@ class Field {
   [[nodiscard]] constexpr bool is_empty_absent() const { return empty_is_absent_; }
   [[nodiscard]] constexpr bool is_base64() const { return base64_; }
   [[nodiscard]] constexpr bool is_sensitive() const { return sensitive_; }
-  [[nodiscard]] constexpr const Limit& lowest() const { return min_; }
-  [[nodiscard]] constexpr const Limit& highest() const { return max_; }
   [[nodiscard]] constexpr std::string_view pattern_source() const { return pattern_; }
   [[nodiscard]] constexpr bool has_length() const { return has_length_; }
   [[nodiscard]] constexpr bool has_only() const { return only_count_ > 0; }
@@ -176,6 +174,13 @@ class Field {
   [[nodiscard]] constexpr std::size_t also_count() const { return also_count_; }
   [[nodiscard]] constexpr std::string_view also_at(std::size_t index) const { return also_[index]; }
 
+  /// Returns the reason why the field does not take a number; an empty text if it takes it.
+  template <class Number>
+  [[nodiscard]] std::string_view number_fault(Number value) const {
+    if (min_.is_set() && min_.above(value)) return "the number is too small";
+    if (max_.is_set() && max_.below(value)) return "the number is too large";
+    return {};
+  }
   [[nodiscard]] constexpr bool takes_length(std::uint64_t length) const {
     return !has_length_ || (length >= least_ && length <= most_);
   }

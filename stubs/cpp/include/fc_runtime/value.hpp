@@ -231,14 +231,8 @@ bool keeps_items(const Field& field, const T& value, Breach& breach) {
         return false;
     }
   } else if constexpr (is_number<T>) {
-    if (field.lowest().is_set() && field.lowest().above(value)) {
-      breach = {BodyErrorKind::OutOfRange, "the number is too small"};
-      return false;
-    }
-    if (field.highest().is_set() && field.highest().below(value)) {
-      breach = {BodyErrorKind::OutOfRange, "the number is too large"};
-      return false;
-    }
+    breach = {BodyErrorKind::OutOfRange, field.number_fault(value)};
+    return breach.detail.empty();
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!field.pattern_source().empty() && !matches(value, field.pattern_source())) {
       breach = {BodyErrorKind::BadPattern, "the string does not match its pattern"};

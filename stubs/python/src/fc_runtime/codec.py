@@ -10,7 +10,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any, Final, Generic, TypeVar, Union, cast, get_args, get_origin
 
 from .conditions import ConditionError, ConditionErrorKind
-from .constraints import constraint, without_constraints
+from .constraints import constraint, length_check, without_constraints
 from .document import Entries, Extra, Json, has_lone_surrogate, parse_body, to_bytes, write_text, write_tree
 from .errors import BodyError, BodyErrorKind, quoted
 from .message import Key, Message, Scalar, Unknown, Variants, wire_of
@@ -21,7 +21,6 @@ from .values import (
     bool_codec,
     float_codec,
     integer_codec,
-    length_check,
     text_codec,
 )
 

@@ -1,29 +1,45 @@
-"""What a field demands of its values beyond their type: asked when the whole object has been read."""
+"""The constraints of a field on its values: declared with its `Key`, checked when the whole object has been read."""
 
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final, cast
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, cast
 
 from .errors import BodyError, BodyErrorKind
-from .values import length_check, outside
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from enum import Enum
 
-    from .message import Key
 
-_CONSTRAINTS: Final = {"min": None, "max": None, "length": None, "pattern": None, "only": ()}
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraints:
+    """The demands of a field on its values, in addition to their type."""
+
+    min: float | None = None
+    """Least value of a number."""
+    max: float | None = None
+    """Greatest value of a number."""
+    length: tuple[int, int] | None = None
+    """Fewest and most characters of a text, bytes of a base64, items of a list."""
+    pattern: str | None = None
+    """Regular expression that a text must match as a whole."""
+    only: tuple[Enum, ...] = ()
+    """Values of its enum that it takes; all where there are none."""
+
+
+_NONE = Constraints()
 
 
 def without_constraints() -> dict[str, Any]:
     """What to replace in a key for one that demands nothing but its type."""
-    return dict(_CONSTRAINTS)
+    return {field.name: getattr(_NONE, field.name) for field in fields(Constraints)}
 
 
-def constraint(key: Key) -> Callable[[Any], None] | None:
+def constraint(key: Constraints) -> Callable[[Any], None] | None:
     """What raises `BodyError` for a value that the key does not take; `None` if the key takes all of its type."""
-    if all(getattr(key, name) == nothing for name, nothing in _CONSTRAINTS.items()):
+    if all(getattr(key, name) == nothing for name, nothing in without_constraints().items()):
         return None
     low, high = key.min, key.max
     check_length = length_check(key, "characters, bytes or items")
@@ -44,6 +60,26 @@ def constraint(key: Key) -> Callable[[Any], None] | None:
             raise BodyError(BodyErrorKind.OUT_OF_RANGE, f"the value must be one of: {taken}")
 
     return check
+
+
+def length_check(key: Constraints, of: str) -> Callable[[int], None]:
+    """Checks how long a value is."""
+    if key.length is None:
+        return lambda _: None
+    least, most = key.length
+
+    def check(found: int) -> None:
+        if not least <= found <= most:
+            wanted = str(least) if least == most else f"{least} … {most}"
+            raise BodyError(BodyErrorKind.BAD_LENGTH, f"{found} {of}; {wanted} are wanted")
+
+    return check
+
+
+def outside(low: float | None, high: float | None) -> BodyError:
+    """The error of a number that is not within these bounds."""
+    least, most = ("−∞" if low is None else low), ("∞" if high is None else high)
+    return BodyError(BodyErrorKind.OUT_OF_RANGE, f"the number must be within {least} … {most}")
 
 
 def _each(value: Any) -> Iterator[Any]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Generic, TypeAlias, TypeVar
 
+from .constraints import Constraints
 from .document import Extra
 
 if TYPE_CHECKING:
@@ -121,23 +122,13 @@ Condition: TypeAlias = "Mapping[str, Sequence[int | str | bool | Enum]]"
 
 
 @dataclass(frozen=True, slots=True)
-class Key:
+class Key(Constraints):
     """How a field travels, and what is demanded of its values."""
 
     name: str
     """Its wire key."""
     also: tuple[str, ...] = ()
     """Other keys under which it is accepted."""
-    min: float | None = None
-    """Least value of a number."""
-    max: float | None = None
-    """Greatest value of a number."""
-    length: tuple[int, int] | None = None
-    """Fewest and most characters of a text, bytes of a base64, items of a list."""
-    pattern: str | None = None
-    """Regular expression that a text must match as a whole."""
-    only: tuple[Enum, ...] = ()
-    """Values of its enum that it takes; all where there are none."""
     form: Form = Form.PLAIN
     """How it travels."""
     lenient_number: bool = False

@@ -8,6 +8,7 @@ from base64 import b64decode, b64encode
 from binascii import Error as Base64Error
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from .constraints import length_check, outside
 from .document import Number, has_lone_surrogate, write_text
 from .errors import BodyError, BodyErrorKind
 from .message import Form, Key, Scalar
@@ -39,20 +40,6 @@ def _text(tree: Tree, wanted: str) -> str:
     if has_lone_surrogate(tree):
         raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
     return tree
-
-
-def length_check(key: Key, of: str) -> Callable[[int], None]:
-    """Checks how long a value is."""
-    if key.length is None:
-        return lambda _: None
-    least, most = key.length
-
-    def check(found: int) -> None:
-        if not least <= found <= most:
-            wanted = str(least) if least == most else f"{least} … {most}"
-            raise BodyError(BodyErrorKind.BAD_LENGTH, f"{found} {of}; {wanted} are wanted")
-
-    return check
 
 
 def text_codec(key: Key) -> tuple[Read, Write]:
@@ -169,12 +156,6 @@ def _range(key: Key, low: float | None, high: float | None) -> tuple[float | Non
     lows = [bound for bound in (key.min, low) if bound is not None]
     highs = [bound for bound in (key.max, high) if bound is not None]
     return max(lows, default=None), min(highs, default=None)
-
-
-def outside(low: float | None, high: float | None) -> BodyError:
-    """The error of a number that is not within these bounds."""
-    least, most = ("−∞" if low is None else low), ("∞" if high is None else high)
-    return BodyError(BodyErrorKind.OUT_OF_RANGE, f"the number must be within {least} … {most}")
 
 
 def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
