@@ -2,15 +2,18 @@ import org.jetbrains.kotlin.gradle.dsl.ExplicitApiMode
 import org.jetbrains.kotlin.gradle.dsl.JvmTarget
 
 plugins {
-    kotlin("jvm") version "2.4.20" apply false
+    kotlin("jvm") apply false
 }
+
+val artifact: String by project
+val coroutinesVersion: String by project
 
 subprojects {
     apply(plugin = "org.jetbrains.kotlin.jvm")
 
     repositories { mavenCentral() }
 
-    dependencies { "api"("org.jetbrains.kotlinx:kotlinx-coroutines-core:1.10.2") }
+    dependencies { "api"("org.jetbrains.kotlinx:kotlinx-coroutines-core:$coroutinesVersion") }
 
     configure<JavaPluginExtension> {
         sourceCompatibility = JavaVersion.VERSION_1_8
@@ -18,7 +21,7 @@ subprojects {
     }
 
     configure<org.jetbrains.kotlin.gradle.dsl.KotlinJvmProjectExtension> {
-        if (project.name != "examples") explicitApi = ExplicitApiMode.Strict
+        if (project.name != "$artifact-examples") explicitApi = ExplicitApiMode.Strict
         compilerOptions {
             jvmTarget.set(JvmTarget.JVM_1_8)
             allWarningsAsErrors.set(true)
@@ -27,6 +30,6 @@ subprojects {
     }
 }
 
-project(":generated") { dependencies { "api"(project(":runtime")) } }
+project(":$artifact-generated") { dependencies { "api"(project(":$artifact-runtime")) } }
 
-project(":examples") { dependencies { "implementation"(project(":generated")) } }
+project(":$artifact-examples") { dependencies { "implementation"(project(":$artifact-generated")) } }
