@@ -2,7 +2,7 @@
 //!
 //! [`emit`] turns a model into artifacts. [`package`] contains the content that all packages share, and `fc-reflect`
 //! invents values and frames. Only [`output`] writes to the disk. [`inspect`] dumps the model, [`questions`] lists the
-//! questions for its owner, and [`codes`] lists its codes. [`check`] finds all errors that prevent generating.
+//! questions for its owner, and [`codes`] lists its codes. [`version`] makes versions of packages. [`check`] finds all errors that prevent generating.
 
 pub mod check;
 pub mod codes;
@@ -15,6 +15,7 @@ pub mod product;
 pub mod questions;
 pub mod target;
 mod target_error;
+pub mod version;
 mod yaml_error;
 
 use fc_reflect::sample;

@@ -147,8 +147,10 @@
 //! `section.<number>`.
 
 mod fields;
+mod fingerprint;
 mod release_dump;
 
+pub use fingerprint::fingerprint;
 pub use release_dump::release_dump;
 
 use crate::sample::Samples;

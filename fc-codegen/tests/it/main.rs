@@ -38,6 +38,7 @@ mod rooms;
 mod target;
 mod touch;
 mod vector_words;
+mod version;
 mod vocabulary;
 mod wire_facts;
 mod words;
