@@ -8,7 +8,7 @@ use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
     changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
-    places, questions, release, retire, schema, settle, shell,
+    package, places, questions, release, retire, schema, settle, shell,
 };
 
 /// Styles of help and usage errors.
@@ -69,6 +69,7 @@ pub enum Command {
     Changelog(changelog::Options),
     Release(release::Options),
     Generate(generate::Options),
+    Package(package::Options),
     Inspect(inspect::Options),
     Where(places::Options),
     Codes(codes::Options),

@@ -202,6 +202,14 @@ pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<
 }
 
 impl Options {
+    /// Returns the options of a run that checks the files of these targets and writes nothing.
+    pub fn checking_only(targets: Vec<String>) -> Self {
+        Self {
+            only: targets,
+            ..Self::checking()
+        }
+    }
+
     /// Returns the options of a run that checks all files and writes nothing.
     pub fn checking() -> Self {
         Self {
@@ -212,7 +220,7 @@ impl Options {
 }
 
 /// Returns the model from the output of `fcproto inspect`.
-fn dumped(name: &str, text: &str) -> Result<Model, Failure> {
+pub fn dumped(name: &str, text: &str) -> Result<Model, Failure> {
     Ok(Dump::read(text).map_err(|error| {
         said!(
             "`{name}`：{error}",

@@ -20,6 +20,7 @@ mod lint;
 mod lsp;
 mod new;
 mod outcome;
+mod package;
 mod place;
 mod places;
 mod plugin;
@@ -72,6 +73,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Init(options) => init::run(&args.place, options),
         Command::New(options) => new::run(&args.place, options),
         Command::Generate(options) => generate::run(&args.place, options),
+        Command::Package(options) => package::run(&args.place, options),
         Command::Inspect(options) => inspect::run(&args.place, options),
         Command::Where(options) => places::run(&args.place, options),
         Command::Questions(options) => questions::run(&args.place, options),

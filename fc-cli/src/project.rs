@@ -15,6 +15,7 @@ use crate::place::Place;
 const PROTOCOL: &str = "protocol.yaml";
 
 /// A project: a directory with `fc.yaml`, or with a spec at its usual place.
+#[derive(Clone)]
 pub struct Project {
     /// The project's directory.
     pub root: PathBuf,

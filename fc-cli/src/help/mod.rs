@@ -14,7 +14,7 @@ use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
     changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
-    places, questions, release, retire, schema, settle, shell,
+    package, places, questions, release, retire, schema, settle, shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -60,6 +60,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["changelog"] => changelog::help(),
         ["release"] => release::help(),
         ["generate"] => generate::help(),
+        ["package"] => package::help(),
         ["inspect"] => inspect::help(),
         ["where"] => places::help(),
         ["codes"] => codes::help(),

@@ -31,6 +31,8 @@ mod lint;
 mod lsp;
 mod merge;
 mod new;
+#[cfg(unix)]
+mod package;
 mod pre_commit;
 mod progress;
 mod questions;

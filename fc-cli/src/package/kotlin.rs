@@ -1,0 +1,192 @@
+//! The jars for Kotlin and Java, in a Maven repository.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use fc_codegen::version::Ecosystem;
+
+use super::maven::{Coordinates, seal};
+use super::tool::Tool;
+use super::{Job, files};
+use crate::input;
+use crate::lang::said;
+use crate::outcome::Failure;
+
+const JAR: Tool = Tool {
+    name: "jar",
+    get: "apt install openjdk-17-jdk-headless",
+};
+
+/// The script of the package, which needs no Gradle.
+const COMPILE: Tool = Tool {
+    name: "./compile",
+    get: "cp -r stubs/kotlin/{compile,tool,runtime} DIR",
+};
+
+/// The file with group, number and versions of dependencies, which Gradle reads too.
+const PROPERTIES: &str = "gradle.properties";
+
+/// The time of all entries, so that the same classes make the same jar.
+const DATE: &str = "--date=2000-01-01T00:00:00Z";
+
+/// A jar with its sources.
+struct Part<'p> {
+    /// The directory of the part in the package.
+    name: &'p str,
+    coordinates: Coordinates,
+    dependencies: Vec<Coordinates>,
+}
+
+/// Compiles the package with its script, and lays out a repository with runtime and generated code.
+pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
+    let package = job.package(PROPERTIES)?;
+    let file = package.join(PROPERTIES);
+    let properties = Properties::read(&file)?;
+    let number = properties.get("version")?;
+    let version = job.version(Ecosystem::Maven, number)?;
+    let (group, base) = (properties.get("group")?, properties.get("artifact")?);
+    let library = |group: &str, artifact: &str, version: &str| Coordinates {
+        group: group.to_owned(),
+        artifact: artifact.to_owned(),
+        version: version.to_owned(),
+    };
+    let runtime = library(group, &format!("{base}-runtime"), number);
+    let parts = [
+        Part {
+            name: "runtime",
+            coordinates: runtime.clone(),
+            dependencies: vec![
+                library(
+                    "org.jetbrains.kotlin",
+                    "kotlin-stdlib",
+                    properties.get("kotlinVersion")?,
+                ),
+                library(
+                    "org.jetbrains.kotlinx",
+                    "kotlinx-coroutines-core-jvm",
+                    properties.get("coroutinesVersion")?,
+                ),
+            ],
+        },
+        Part {
+            name: "generated",
+            coordinates: library(group, &format!("{base}-generated"), &version),
+            dependencies: vec![runtime],
+        },
+    ];
+    // A relative program begins at the directory of this process on some systems.
+    let mut compile = Command::new(package.join(COMPILE.name));
+    COMPILE.finish(
+        compile
+            .args(parts.iter().map(|it| it.name))
+            .current_dir(&package),
+    )?;
+    for part in &parts {
+        part.lay_out(job, &package)?;
+    }
+    Ok(version)
+}
+
+impl Part<'_> {
+    fn lay_out(&self, job: &Job<'_>, package: &Path) -> Result<(), Failure> {
+        let Self {
+            name, coordinates, ..
+        } = self;
+        let directory = coordinates.directory(&job.out)?;
+        let (artifact, version) = (&coordinates.artifact, &coordinates.version);
+        let manifest = job.work.join(format!("{name}.manifest"));
+        let module = artifact.replace('-', ".");
+        files::write(
+            &manifest,
+            format!(
+                "Automatic-Module-Name: {module}\nImplementation-Title: {artifact}\nImplementation-Version: {version}\n"
+            ),
+        )?;
+        let texts = texts(package)?;
+        let none = Vec::new();
+        for (classifier, contents, texts) in [
+            ("", Some(package.join("build").join(name)), &texts.licences),
+            (
+                "-sources",
+                Some(package.join(name).join("src/main/kotlin")),
+                &none,
+            ),
+            // Without Dokka, which only Gradle runs, the jar that repositories demand has the README.
+            ("-javadoc", None, &texts.readmes),
+        ] {
+            let jar = directory.join(coordinates.file(classifier, "jar"));
+            let mut arguments = vec![
+                "--create".to_owned(),
+                DATE.to_owned(),
+                format!("--file={}", jar.display()),
+                format!("--manifest={}", manifest.display()),
+            ];
+            let mut add = |directory: &Path, entry: &str| {
+                arguments.extend(["-C".to_owned(), directory.display().to_string()]);
+                arguments.push(entry.to_owned());
+            };
+            if let Some(contents) = &contents {
+                add(contents, ".");
+            }
+            for text in texts {
+                add(package, text);
+            }
+            JAR.run(package, arguments)?;
+        }
+        let description = format!("{artifact}: messages and calls of a robot protocol");
+        let pom = coordinates.pom(&description, &self.dependencies);
+        files::write(&directory.join(coordinates.file("", "pom")), pom)?;
+        seal(&directory)
+    }
+}
+
+/// The texts next to the sources of a package.
+struct Texts {
+    licences: Vec<String>,
+    readmes: Vec<String>,
+}
+
+fn texts(package: &Path) -> Result<Texts, Failure> {
+    let entries = files::entries(package)?;
+    let files = entries.iter().filter(|path| path.is_file());
+    let names: Vec<_> = files
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    let starting = |start: &str| {
+        let names = names.iter().filter(|name| name.starts_with(start));
+        names.cloned().collect()
+    };
+    Ok(Texts {
+        licences: starting("LICENSE"),
+        readmes: starting("README"),
+    })
+}
+
+/// The settings of a package: lines `key=value`.
+struct Properties {
+    file: PathBuf,
+    values: BTreeMap<String, String>,
+}
+
+impl Properties {
+    fn read(file: &Path) -> Result<Self, Failure> {
+        let text = input::file(file)?;
+        let lines = text.lines().filter(|line| !line.starts_with('#'));
+        let values = lines.filter_map(|line| line.split_once('='));
+        let values = values.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()));
+        Ok(Self {
+            file: file.to_owned(),
+            values: values.collect(),
+        })
+    }
+
+    fn get(&self, key: &str) -> Result<&str, Failure> {
+        let value = self.values.get(key).map(String::as_str);
+        let value = value.filter(|it| !it.is_empty());
+        value.ok_or_else(|| {
+            let file = self.file.display();
+            said!("`{file}` 中没有 `{key}=…`", "`{file}` has no `{key}=…`").into()
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! The list of all files with their checksums, in the format of `sha256sum`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::files;
+use crate::input;
+use crate::outcome::Failure;
+use crate::project::is_there;
+
+/// The name of the list.
+const FILE: &str = "SHA256SUMS";
+
+/// Returns the digest of bytes in hexadecimal.
+pub fn hex<D: Digest>(bytes: &[u8]) -> String {
+    let mut text = String::new();
+    for byte in D::digest(bytes) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}
+
+/// Returns the SHA-256 of a file in hexadecimal.
+pub fn of_file(path: &Path) -> Result<String, Failure> {
+    Ok(hex::<Sha256>(&fs::read(path)?))
+}
+
+/// Replaces the files of a language by those of another directory. Returns their paths relative to `out`.
+///
+/// Files that the list does not name stay.
+pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, Failure> {
+    let list = out.join(FILE);
+    let text = if is_there(&list) {
+        input::file(&list)?
+    } else {
+        String::new()
+    };
+    let lines = text.lines().filter_map(|line| line.split_once("  "));
+    let mut sums: BTreeMap<String, String> = lines
+        .map(|(sum, path)| (path.to_owned(), sum.to_owned()))
+        .collect();
+    let prefix = format!("{language}/");
+    let is_old = |path: &str| path.starts_with(&prefix) && !path.split('/').any(|it| it == "..");
+    for path in sums.keys().filter(|path| is_old(path)) {
+        remove(out, path)?;
+    }
+    sums.retain(|path, _| !path.starts_with(&prefix));
+    let mut listed = Vec::new();
+    for path in files::below(made)? {
+        let from = made.join(&path);
+        let path = format!("{prefix}{path}");
+        let to = out.join(&path);
+        if let Some(parent) = to.parent() {
+            files::directory(parent)?;
+        }
+        sums.insert(path.clone(), of_file(&from)?);
+        fs::rename(&from, &to).map_err(|error| files::unwritable(&to, &error))?;
+        listed.push(path);
+    }
+    let lines = sums.iter().map(|(path, sum)| format!("{sum}  {path}\n"));
+    files::write(&list, lines.collect::<String>())?;
+    Ok(listed)
+}
+
+/// Removes a file if it exists, and its directories once they are empty.
+fn remove(out: &Path, path: &str) -> Result<(), Failure> {
+    let file = out.join(path);
+    match fs::remove_file(&file) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(files::unwritable(&file, &error));
+        }
+        _ => {}
+    }
+    let above = file.ancestors().skip(1).take_while(|it| *it != out);
+    for directory in above {
+        if fs::remove_dir(directory).is_err() {
+            break;
+        }
+    }
+    Ok(())
+}
