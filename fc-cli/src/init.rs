@@ -155,10 +155,12 @@ fn manifest(runtime: Option<&Path>) -> Result<String, Failure> {
     let has = |checkout: &&Path| CRATES.iter().all(|name| checkout.join(name).is_dir());
     let checkout = runtime.or_else(|| Some(built_from.as_path()).filter(has));
     let mut manifest = MANIFEST.to_owned();
+    // Cargo packs no crate with a dependency that has only a path.
+    let version = format!("version = {:?}", env!("CARGO_PKG_VERSION"));
     for name in CRATES {
         let from = match checkout {
-            Some(checkout) => path_of(&checkout.join(name))?,
-            None => format!("version = {:?}", env!("CARGO_PKG_VERSION")),
+            Some(checkout) => format!("{}, {version}", path_of(&checkout.join(name))?),
+            None => version.clone(),
         };
         manifest = manifest.replace(&format!("{{{{{name}}}}}"), &from);
     }

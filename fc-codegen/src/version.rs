@@ -31,12 +31,12 @@ impl Edition {
     ///
     /// | Ecosystem | Release 2024.09 | Draft | Rules |
     /// |---|---|---|---|
-    /// | Cargo, npm | `0.2.0+2024.9` | `0.2.0-dev.x1a2b3c4d5e6f` | SemVer 2.0, 9 and 10: `-` precedes, `+` has no order |
+    /// | Cargo, npm | `0.2.0+2024.9` | `0.2.0-dev.x1a2b3c4d5e6f` | Semantic Versioning 2.0, 9 and 10: `-` precedes, `+` has no order |
     /// | Python | `0.2.0+2024.9` | `0.2.0.dev0+x1a2b3c4d5e6f` | PEP 440: local versions follow, `.dev` precedes |
     /// | Maven | `0.2.0-2024.9` | `0.2.0-alpha-x1a2b3c4d5e6f` | `ComparableVersion`: a number follows, `alpha` precedes |
     /// | Debian | `0.2.0+2024.9` | `0.2.0~dev.x1a2b3c4d5e6f` | deb-version(7): `+` follows, `~` precedes |
     ///
-    /// A draft precedes every release of the spec with the same number of the package. SemVer does not order two
+    /// A draft precedes every release of the spec with the same number of the package. Cargo and npm do not order two
     /// releases of the spec, and registries refuse the second one: it needs a new number.
     ///
     /// Python drops zeros before a number, so no form has them. The `x` keeps a fingerprint without letters from being

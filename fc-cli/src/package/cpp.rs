@@ -1,4 +1,4 @@
-//! The install tree of CMake, as `.tar.gz` and `.deb`.
+//! The install tree of the C++ package, as `.tar.gz` and `.deb`.
 
 use fc_codegen::version::Ecosystem;
 

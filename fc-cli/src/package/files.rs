@@ -58,11 +58,11 @@ pub fn below(directory: &Path) -> Result<Vec<String>, Failure> {
     Ok(found)
 }
 
-/// Returns the only entry of a directory with this ending.
-pub fn only(directory: &Path, ending: &str) -> Result<PathBuf, Failure> {
-    let found = entries(directory)?.into_iter();
+/// Returns the entry of a directory with this ending.
+pub fn with_ending(directory: &Path, ending: &str) -> Result<PathBuf, Failure> {
+    let mut found = entries(directory)?.into_iter();
     let ends = |path: &PathBuf| path.to_string_lossy().ends_with(ending);
-    found.filter(ends).next_back().ok_or_else(|| {
+    found.find(ends).ok_or_else(|| {
         let directory = directory.display();
         said!(
             "`{directory}` 中没有 `{ending}`",

@@ -26,7 +26,7 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
             )
         })?;
     build(&package, &job.work, &["--sdist"])?;
-    unpack(&files::only(&job.work, ".tar.gz")?, &job.work)?;
+    unpack(&files::with_ending(&job.work, ".tar.gz")?, &job.work)?;
     let mut packed = files::entries(&job.work)?.into_iter();
     let packed = packed.find(|it| it.is_dir()).unwrap_or_default();
     let version = files::set_toml_version(&packed.join("pyproject.toml"), "project", |number| {

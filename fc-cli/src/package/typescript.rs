@@ -18,7 +18,7 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
     let package = job.package("package.json")?;
     let into = |directory: &Path| format!("--pack-destination={}", directory.display());
     NPM.run(&package, ["pack", &into(&job.work)])?;
-    unpack(&files::only(&job.work, ".tgz")?, &job.work)?;
+    unpack(&files::with_ending(&job.work, ".tgz")?, &job.work)?;
     let packed = job.work.join("package");
     let number = NPM.run(&packed, ["pkg", "get", "version"])?;
     let version = job.version(Ecosystem::Npm, number.trim().trim_matches('"'))?;

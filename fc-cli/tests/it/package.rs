@@ -83,6 +83,21 @@ fn version_follows_the_release_of_the_spec() {
 }
 
 #[test]
+fn created_project_is_packed_with_its_runtime() {
+    let project = Project::empty();
+    project.fc(&["init", "lamp"]).expect(0);
+    let run = project
+        .fc_in("lamp", &["package", "--out", "dist", "rust"])
+        .expect(0);
+    for name in ["fc-derive", "fc-runtime", "lamp-protocol"] {
+        assert!(
+            run.stdout.contains(&format!("  rust/{name}-0.")),
+            "{run:#?}"
+        );
+    }
+}
+
+#[test]
 fn stale_files_are_not_packed() {
     let project = with_crate();
     project.append("lamp/src/lib.rs", "// Mine.\n");

@@ -20,9 +20,9 @@ fn forget_positions(value: &mut Value) {
     match value {
         Value::Object(entries) => {
             entries.retain(|(key, value)| key != "place" || value.get("line").is_none());
-            entries
-                .iter_mut()
-                .for_each(|(_, value)| forget_positions(value));
+            for (_, value) in entries {
+                forget_positions(value);
+            }
         }
         Value::Array(items) => items.iter_mut().for_each(forget_positions),
         Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}

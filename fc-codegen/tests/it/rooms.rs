@@ -42,6 +42,7 @@ const CRATES: &[Crate] = &[
     Crate {
         name: "fc-codegen",
         rooms: &[
+            "version",
             "product",
             "yaml_error",
             "package",
