@@ -64,6 +64,10 @@ pub use client::{AnyReport, Client, Reports};
 ///
 /// The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.
 pub use fc_runtime as runtime;
+/// 本 crate 的版本。`fcproto package` 打出的包还带有规范的发布号或摘要。
+///
+/// The version of this crate. `fcproto package` adds the release of the spec or its fingerprint.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub use messages::{
     building::*, cell::*, dispatch::*, identity::*, laser::*, map::*, recharge::*, settings::*,
     standby::*, station::*, status::*, task::*, types::*, unnamed::*, upper_body::*,

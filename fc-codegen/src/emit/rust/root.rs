@@ -90,6 +90,11 @@ pub mod tables;
         "The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.",
     ]));
     out.line("pub use fc_runtime as runtime;");
+    out.docs(&Docs::written([
+        "本 crate 的版本。`fcproto package` 打出的包还带有规范的发布号或摘要。",
+        "The version of this crate. `fcproto package` adds the release of the spec or its fingerprint.",
+    ]));
+    out.line("pub const VERSION: &str = env!(\"CARGO_PKG_VERSION\");");
     every_id(&mut out, "", context);
     // Only types: a group can have the name of a crate, which a glob import must not hide.
     every_type(&mut out, "", context);
